@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 
 #include "model/units.h"
 
@@ -22,21 +23,34 @@ std::string text_of(const Vec3& v) {
   return fmt::format("({:.3g}, {:.3g}, {:.3g})", plain(v.x), plain(v.y), plain(v.z));
 }
 
-std::string standing(const Vec3& axis_W) {
-  struct Stance {
-    Vec3 axis_W;
-    const char* words;
-  };
-  constexpr std::array<Stance, 6> kStances{
-      {{{1, 0, 0}, "lies on its side, its axis points towards you"},
-       {{-1, 0, 0}, "lies on its side, its axis points away from you"},
-       {{0, 1, 0}, "lies on its side, its axis points to the right"},
-       {{0, -1, 0}, "lies on its side, its axis points to the left"},
-       {{0, 0, 1}, "stands upright, its axis points up"},
-       {{0, 0, -1}, "hangs from above, its axis points down"}}};
+struct Stance {
+  Vec3 axis_W;
+  const char* words;
+  const char* brief;
+};
+constexpr std::array<Stance, 6> kStances{
+    {{{1, 0, 0}, "lies on its side, its axis points towards you", ""},
+     {{-1, 0, 0}, "lies on its side, its axis points away from you", "axis away"},
+     {{0, 1, 0}, "lies on its side, its axis points to the right", "axis right"},
+     {{0, -1, 0}, "lies on its side, its axis points to the left", "axis left"},
+     {{0, 0, 1}, "stands upright, its axis points up", "upright"},
+     {{0, 0, -1}, "hangs from above, its axis points down", "hangs"}}};
+
+/// Null: along none of the six.
+const Stance* stance_of(const Mounting& m) {
+  const Vec3 axis_W = m.direction_W({1, 0, 0});
   for (const Stance& stance : kStances)
-    if (dot(axis_W, stance.axis_W) > std::cos(kNearly_rad)) return stance.words;
-  return fmt::format("is tilted, its axis points along {} of W", text_of(axis_W));
+    if (dot(axis_W, stance.axis_W) > std::cos(kNearly_rad)) return &stance;
+  return nullptr;
+}
+
+/// ", hangs, motion x 3": behind the name of the device, on the page and wherever it is named.
+std::string brief_of(const Mounting& m) {
+  const Stance* const stance = stance_of(m);
+  const std::string_view stands = stance != nullptr ? stance->brief : "tilted";
+  std::string out = stands.empty() ? "" : fmt::format(", {}", stands);
+  if (m.scale != 1.0) out += fmt::format(", motion x {:g}", m.scale);
+  return out;
 }
 
 }  // namespace
@@ -53,9 +67,13 @@ Mounting mounting_of(const model::DeviceSettings& settings) {
 }
 
 std::string words_of(const Mounting& m) {
-  std::string out =
-      fmt::format("the base {}; down is {} in its own axes", standing(m.direction_W({1, 0, 0})),
-                  text_of(m.direction_in_base({0, 0, -1})));
+  const Stance* const stance = stance_of(m);
+  const std::string stands = stance != nullptr
+                                 ? stance->words
+                                 : fmt::format("is tilted, its axis points along {} of W",
+                                               text_of(m.direction_W({1, 0, 0})));
+  std::string out = fmt::format("the base {}; down is {} in its own axes", stands,
+                                text_of(m.direction_in_base({0, 0, -1})));
   if (m.shift_m != Vec3{}) out += fmt::format("; its origin is at {} m of W", text_of(m.shift_m));
   if (m.scale != 1.0)
     out += fmt::format(
@@ -67,6 +85,7 @@ std::string words_of(const Mounting& m) {
 
 DeviceInfo mounted(DeviceInfo info, const Mounting& m) {
   const double s = m.scale;
+  info.name += brief_of(m);
   info.max_force_N /= s;
   info.max_continuous_force_N /= s;
   info.motion_scale = s;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// safety_lines.h - the wires beside the device: e-stop, dead-man and grip in, enable and heartbeat
-// out.
+// safety_lines.h - the wires beside the device: e-stop, dead-man, grip and clutch in, enable and
+// heartbeat out.
 //
 // The PC is never the safety device: the lines watch an e-stop chain that works without them, add
 // one more permission in series, and prove that the loop is alive. Once per tick, in this order:
@@ -38,6 +38,8 @@ class SafetyLines {
   [[nodiscard]] virtual model::Fault write(const LinesTick& tick) RT_SAFE = 0;
   /// Does the grip switch close the jaws? As of the last read; nothing where none is wired.
   virtual std::optional<bool> grip() const RT_SAFE { return std::nullopt; }
+  /// Is the clutch pressed? As of the last read; nothing where none is wired.
+  virtual std::optional<bool> clutch() const RT_SAFE { return std::nullopt; }
   /// May the drives have power?
   virtual bool enabled() const RT_SAFE = 0;
   /// The scope line; nothing where none is wired.

@@ -112,6 +112,7 @@ struct LinesSettings {
   int enable = -1, heartbeat = -1, led = -1, scope = -1;
   int grip = -1;                 // foot or hand switch that closes the jaws
   bool grip_closes_low = false;  // at the low level; else at the high one
+  int clutch = -1;               // switch that parts tool and handle
   bool wired() const { return !chip.empty(); }
 };
 

@@ -57,6 +57,11 @@ constexpr std::array kTable{
                "the tool moved unseen, farther than limits.speed_mps allows for the pause; contact "
                "ends, held tissue is let go",
                "check for lost samples and long pauses"},
+    FaultEntry{
+        Fault::kClutchPressed, "clutch pressed",
+        "the tool stays where it is, without a force, while the handle moves; held tissue is "
+        "let go",
+        "release the clutch: contact begins anew where the tool is"},
     FaultEntry{Fault::kUnknown, "unknown", "a fault of another version of tact, or a broken record",
                "use programs and recordings of one build"},
     FaultEntry{Fault::kForceNotFinite, "force not finite", "the model produced NaN or infinity",

@@ -30,6 +30,7 @@ enum class Fault : std::uint16_t {
   kPowerLimited = 13,
   kToolInside = 14,
   kContactLost = 15,
+  kClutchPressed = 16,
   kUnknown = 100,  // never raised: what is said of a number that the table does not have
   kForceNotFinite = 101,
   kSampleNotFinite = 102,

@@ -4,15 +4,24 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <ctime>
+
 #include "firmware/console/control_name.h"
 #include "model/io/socket_file.h"
+#include "model/time_ns.h"
 
 namespace tact::firmware::console {
 namespace {
 
 constexpr const char* kTooEarly = "the request came before it was ready";
+constexpr int kMaxPauses = 1000;  // of 1 ms; at the lowest rate a tick is 10 ms
 
 }  // namespace
+
+void pause_a_moment() {
+  constexpr timespec kMoment{.tv_sec = 0, .tv_nsec = model::kMillisecond_ns};
+  nanosleep(&kMoment, nullptr);
+}
 
 void OperatorDesk::obey(std::int64_t longest_ns) {
   const Act act = signals_.wait(longest_ns, control_ != nullptr ? control_->fd() : -1);
@@ -50,31 +59,45 @@ Answer OperatorDesk::do_word(const std::string& word, bool too_early) {
 Answer OperatorDesk::arm(bool too_early) {
   if (too_early) return refuse("armed", kTooEarly);
   if (const std::string why = view_.why_not_arm(); !why.empty()) return refuse("armed", why);
-  // The loop answers by its counter: it is asked, and counts what it could not do.
-  const std::uint32_t before = requests_.refused.load();
-  signals_.raise_edge(requests_.arm);
-  if (requests_.refused.load() == before)
-    return {.done = true, .sentence = view_.device() + ": armed, force is on"};
-  constexpr const char* kNotThen =
-      "not armed: no power, or no good sample in that moment; look, and "
-      "arm again";
-  view_.tell(kNotThen);
-  return {.done = false, .sentence = fmt::format("{}: {}", view_.device(), kNotThen)};
+  const auto armed = ask_loop(loop::Request::kArm);
+  if (armed == true) return {.done = true, .sentence = view_.device() + ": armed, force is on"};
+  return not_done("armed", armed,
+                  "no power, or no good sample in that moment; look, and arm again");
 }
 
 Answer OperatorDesk::reset(bool too_early) {
   if (too_early) return refuse("reset", kTooEarly);
   if (const std::string why = view_.why_not_reset(); !why.empty()) return refuse("reset", why);
-  signals_.raise_edge(requests_.reset);
-  return {.done = true,
-          .sentence = view_.device() + ": reset; it is ready when its cause is gone, then arm it"};
+  const auto ready = ask_loop(loop::Request::kReset);
+  if (ready != true) return not_done("reset", ready, "its cause is not gone, or no good sample");
+  return {.done = true, .sentence = view_.device() + ": reset, ready; arm it"};
 }
 
 // Force goes away by it: never too early, and asked of the loop whatever was shown last.
 Answer OperatorDesk::disarm() {
-  signals_.raise_edge(requests_.disarm);
+  const auto off = ask_loop(loop::Request::kDisarm);
+  if (off != true) return not_done("disarmed", off, "it is armed again");
   return {.done = true,
           .sentence = view_.device() + ": no force; arm it again when it shall have one"};
+}
+
+// Waits for the echo of its number, at most kMaxPauses. A loop that does not tick by then shall not
+// do it later: the request is taken back.
+std::optional<bool> OperatorDesk::ask_loop(loop::Request request) {
+  const std::uint32_t number = requests_.ask(request);
+  for (int i = 0; i < kMaxPauses; ++i) {
+    if (const auto answer = requests_.answer(number)) return answer;
+    pause_();
+  }
+  requests_.ask(loop::Request::kNone);
+  return std::nullopt;
+}
+
+Answer OperatorDesk::not_done(const char* what, const std::optional<bool>& answer,
+                              const char* why) const {
+  const auto words = fmt::format("not {}: {}", what, answer ? why : "the loop gives no answer");
+  view_.tell(words);
+  return {.done = false, .sentence = fmt::format("{}: {}", view_.device(), words)};
 }
 
 Answer OperatorDesk::stop() {

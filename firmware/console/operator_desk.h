@@ -7,23 +7,32 @@
 #pragma once
 
 #include <functional>
+#include <optional>
+#include <string>
+#include <utility>
 
 #include "firmware/console/control_socket.h"
 #include "firmware/console/operator_signals.h"
 #include "firmware/console/operator_view.h"
+#include "firmware/loop/requests.h"
 
 namespace tact::firmware::console {
 
+/// 1 ms.
+void pause_a_moment();
+
 class OperatorDesk {
  public:
-  /// `control`: none, and signals alone are heard.
+  /// `control`: none, and signals alone are heard. `pause` lets the loop have a moment to answer.
   OperatorDesk(const OperatorSignals& signals, loop::Requests& requests, OperatorView& view,
-               std::function<telemetry::Frame()> newest, ControlSocket* control = nullptr)
+               std::function<telemetry::Frame()> newest, ControlSocket* control = nullptr,
+               std::function<void()> pause = pause_a_moment)
       : signals_(signals),
         requests_(requests),
         view_(view),
         newest_(std::move(newest)),
-        control_(control) {}
+        control_(control),
+        pause_(std::move(pause)) {}
 
   /// Waits at most so long for a request, shows the newest frame, and does or refuses it.
   void obey(std::int64_t longest_ns);
@@ -36,6 +45,8 @@ class OperatorDesk {
   Answer reset(bool too_early);
   Answer disarm();
   Answer stop();
+  std::optional<bool> ask_loop(loop::Request request);
+  Answer not_done(const char* what, const std::optional<bool>& answer, const char* why) const;
   Answer refuse(const char* what, const std::string& why) const;
 
   const OperatorSignals& signals_;
@@ -43,6 +54,7 @@ class OperatorDesk {
   OperatorView& view_;
   std::function<telemetry::Frame()> newest_;
   ControlSocket* control_;
+  std::function<void()> pause_;
 };
 
 /// The desk's door for tactctl; none, and told, where it cannot be opened: signals are heard still.

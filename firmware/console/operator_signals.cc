@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <array>
-#include <utility>
 
 #include "model/time_ns.h"
 
@@ -47,12 +46,6 @@ void ignore(int signal) {
 
 }  // namespace
 
-void wait_several_ticks() {
-  // 20 ms: two ticks at 100 Hz, the lowest rate of a scene.
-  constexpr timespec kSeveralTicks{.tv_sec = 0, .tv_nsec = 20'000'000};
-  nanosleep(&kSeveralTicks, nullptr);
-}
-
 void outlive_stray_signals() {
   const sigset_t requests = requests_of_a_person();
   pthread_sigmask(SIG_BLOCK, &requests, nullptr);
@@ -65,8 +58,7 @@ void outlive_stray_signals() {
       ignore(signal);
 }
 
-OperatorSignals::OperatorSignals(std::function<void()> let_loop_read)
-    : signals_(requests_of_a_person()), let_loop_read_(std::move(let_loop_read)) {
+OperatorSignals::OperatorSignals() : signals_(requests_of_a_person()) {
   std::signal(SIGINT, SIG_DFL);  // a shell starts background programs with SIGINT ignored
   // Blocked in this thread and all that it starts: a thread that is not would end the process.
   for (const int signal : kLeave) sigaddset(&signals_, signal);
@@ -98,14 +90,6 @@ int OperatorSignals::forget() const {
   int forgotten = 0;
   while (sigtimedwait(&requests, nullptr, &kNow) > 0) ++forgotten;
   return forgotten;
-}
-
-void OperatorSignals::raise_edge(std::atomic<bool>& request) const {
-  // Up and down again, each for some ticks: the loop acts on an edge, and the next request is one.
-  request.store(true);
-  let_loop_read_();
-  request.store(false);
-  let_loop_read_();
 }
 
 }  // namespace tact::firmware::console

@@ -11,9 +11,6 @@
 
 #include <csignal>
 #include <cstdint>
-#include <functional>
-
-#include "firmware/loop/rt_loop.h"
 
 namespace tact::firmware::console {
 
@@ -24,15 +21,10 @@ enum class Act : std::uint8_t { kNone, kLeave, kReset, kArm };
 /// writer. A crash of its own ends it all the same: the kernel heeds nobody's wish to ignore that.
 void outlive_stray_signals();
 
-/// The loop reads levels once per tick, so each must stand for some: at 100 Hz two.
-void wait_several_ticks();
-
 class OperatorSignals {
  public:
-  /// Blocks them in this thread and in all that it starts: wait() takes them. `let_loop_read`
-  /// returns once the loop has read the levels.
-  explicit OperatorSignals(std::function<void()> let_loop_read = wait_several_ticks);
-
+  /// Blocks them in this thread and in all that it starts: wait() takes them.
+  OperatorSignals();
   ~OperatorSignals();
   OperatorSignals(const OperatorSignals&) = delete;
   OperatorSignals& operator=(const OperatorSignals&) = delete;
@@ -41,13 +33,10 @@ class OperatorSignals {
   Act wait(std::int64_t longest_ns, int other_fd = -1) const;
   /// Those of USR1 and USR2 that came until now are gone. Returns how many kinds there were.
   int forget() const;
-  /// A rising edge for the loop, and the fall after it.
-  void raise_edge(std::atomic<bool>& request) const;
 
  private:
   sigset_t signals_{};
   int signal_fd_ = -1;  // readable while one waits; without it they are seen when the time is up
-  std::function<void()> let_loop_read_;
 };
 
 }  // namespace tact::firmware::console

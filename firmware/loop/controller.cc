@@ -2,6 +2,7 @@
 #include "firmware/loop/controller.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "firmware/loop/jaw_force.h"
 
@@ -54,7 +55,13 @@ void Controller::touch(const TickInput& input) RT_SAFE {
   const std::uint64_t passed = std::uint64_t{input.skipped_periods} + 1;  // since the last tick
   const auto periods = static_cast<std::uint32_t>(std::min<std::uint64_t>(passed, kMaxPeriods));
   const hal::Sample& sample = input.sample;
-  if (sample.fresh) {
+  const bool is_open = input.clutch == ClutchState::kOpen;
+  // The tool stays, and touches nothing: what comes after begins where it is then.
+  if (is_open && !std::exchange(was_open_, is_open)) contact_.reset();
+  was_open_ = is_open;
+  if (is_open) {
+    if (sample.fresh) stamp_ns_ = sample.stamp_ns;
+  } else if (sample.fresh) {
     contact_.touch(sample.tool, periods, reach_m(unseen_ + passed, sample.stamp_ns));
     stamp_ns_ = sample.stamp_ns;
     seen_ = true;
@@ -68,7 +75,8 @@ void Controller::touch(const TickInput& input) RT_SAFE {
 void Controller::feel(const TickInput& input) RT_SAFE {
   if (!seen_) return;  // before the first sample there is no pose
   // A blade cuts only what a hand can feel: armed, as the tick before left it.
-  felt_ = contact_.feel(input.sample.tool, supervisor_.armed());
+  const bool is_open = input.clutch == ClutchState::kOpen;
+  felt_ = contact_.feel(input.sample.tool, supervisor_.armed() && !is_open);
   if (felt_.is_lost) ++contact_losses_;
   jaw_force_N_ = jaw_force_N(contact_.touches(), input.sample.tool.grip_ratio);
 }
@@ -90,10 +98,11 @@ Fault Controller::find_fault(const TickInput& input, bool finite, bool too_late)
 // A force that is no longer the tissue's is told before what the gate does with it, unless the gate
 // lets go. A loss is told then, too: what makes it, missed samples and jumps, often makes the gate
 // let go. A person must learn before arming that the tool is inside.
-Fault Controller::find_limit(Fault acting) const RT_SAFE {
+Fault Controller::find_limit(Fault acting, bool is_coupled) const RT_SAFE {
   const bool open = !lets_go(acting);
   const State state = supervisor_.state();
   if (felt_.is_lost && state == State::kArmed) return Fault::kContactLost;
+  if (!is_coupled) return Fault::kClutchPressed;
   if (felt_.is_inside && (open || state == State::kOff || state == State::kReady))
     return Fault::kToolInside;
   if ((felt_.is_saturated || felt_.is_unsettled) && open) return Fault::kLawSaturated;
@@ -104,12 +113,13 @@ Fault Controller::find_limit(Fault acting) const RT_SAFE {
 gate::GripVerdict Controller::limit_grip(const TickInput& input) RT_SAFE {
   if (!grip_gate_) return {};
   const hal::Sample& sample = input.sample;
-  return grip_gate_->limit({.wanted_N = lets_go(acting_) ? 0.0 : jaw_force_N_,
-                            .gap_m = sample.grip_gap_m,
-                            .speed_mps = sample.grip_speed_mps,
-                            .fresh = sample.fresh,
-                            .armed = supervisor_.armed(),
-                            .skipped_periods = input.skipped_periods});
+  return grip_gate_->limit(
+      {.wanted_N = lets_go(acting_) || input.clutch != ClutchState::kCoupled ? 0.0 : jaw_force_N_,
+       .gap_m = sample.grip_gap_m,
+       .speed_mps = sample.grip_speed_mps,
+       .fresh = sample.fresh,
+       .armed = supervisor_.armed(),
+       .skipped_periods = input.skipped_periods});
 }
 
 TickOutput Controller::judge(const TickInput& input) RT_SAFE {
@@ -124,18 +134,23 @@ TickOutput Controller::judge(const TickInput& input) RT_SAFE {
   const gate::GripVerdict grip = limit_grip(input);
   supervisor_.trip(grip.fault);
   // Where the gate latches it makes the force zero by itself; the state follows.
-  const gate::GateVerdict verdict = gate_.judge({.wanted = felt_.wrench,
-                                                 .tool = input.sample.tool,
-                                                 .fresh = input.sample.fresh,
-                                                 .armed = supervisor_.armed(),
-                                                 .skipped_periods = input.skipped_periods});
+  // Its workspace is the device's, so it is given the handle.
+  hal::Tool handle = input.sample.tool;
+  handle.position_m = handle.position_m - input.clutch_shift_m;
+  const bool is_coupled = input.clutch == ClutchState::kCoupled;
+  const gate::GateVerdict verdict =
+      gate_.judge({.wanted = is_coupled ? felt_.wrench : model::Wrench{},
+                   .tool = handle,
+                   .fresh = input.sample.fresh,
+                   .armed = supervisor_.armed(),
+                   .skipped_periods = input.skipped_periods});
   supervisor_.trip(verdict.fault);
   acting_ = verdict.acting;
   const Fault acting = verdict.acting != Fault::kNone ? verdict.acting : grip.acting;
   newest_ = {.wanted = felt_.wrench,
              .written = verdict.wrench,
              .state = supervisor_.state(),
-             .limit = find_limit(acting),
+             .limit = find_limit(acting, is_coupled),
              .fault = supervisor_.fault(),
              .given_energy_J = gate_.given_energy_J(),
              .rms_force_N = gate_.rms_force_N(),

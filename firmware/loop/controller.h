@@ -9,6 +9,7 @@
 
 #include "firmware/gate/gate.h"
 #include "firmware/gate/grip_gate.h"
+#include "firmware/loop/clutch.h"
 #include "firmware/loop/late_watch.h"
 #include "firmware/loop/supervisor.h"
 #include "hal/device.h"
@@ -22,8 +23,11 @@ struct TickInput {
   hal::Sample sample;
   Fault device_fault = Fault::kNone;
   Commands commands;
-  bool ready = true;                  // lines and device would let a force through
+  bool ready = true;  // lines and device would let a force through
+  ClutchState clutch = ClutchState::kCoupled;
   std::uint32_t skipped_periods = 0;  // between the tick before and this one
+  std::uint32_t clutches = 0;         // so far: the clutch has opened
+  model::Vec3 clutch_shift_m{};       // of the tool from the handle, in W
 };
 
 /// All that leaves it.
@@ -73,7 +77,7 @@ class Controller {
 
  private:
   Fault find_fault(const TickInput& input, bool finite, bool too_late) const RT_SAFE;
-  Fault find_limit(Fault acting) const RT_SAFE;
+  Fault find_limit(Fault acting, bool is_coupled) const RT_SAFE;
   gate::GripVerdict limit_grip(const TickInput& input) RT_SAFE;
   double reach_m(std::uint64_t periods, std::int64_t stamp_ns) const RT_SAFE;
 
@@ -85,6 +89,7 @@ class Controller {
   model::contact::ContactResponse felt_;  // of this tick
   double jaw_force_N_ = 0.0;              // of this tick
   Fault acting_ = Fault::kNone;           // in the gate, in the last tick
+  bool was_open_ = false;                 // the clutch, in the last tick
   TickOutput newest_;
   model::contact::PatchShape shape_;
   ShapeSlot shapes_;

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "firmware/loop/grid.h"
 
@@ -54,22 +53,32 @@ void RtLoop::release_device() RT_SAFE {
     if (fault != Fault::kNone) requests_.trip(fault);  // no tick will come that could tell it
 }
 
-bool RtLoop::hear_requests() RT_SAFE {
-  // Relaxed, as everywhere here: each flag stands for itself, no other data is read because of it.
+void RtLoop::hear_requests() RT_SAFE {
+  // Relaxed, as everywhere here: each word stands for itself, no other data is read because of it.
   // One that is seen a tick later is a request made a tick later.
-  const bool asked_before = std::exchange(asked_, requests_.arm.load(std::memory_order_relaxed));
-  record_.input.commands = {.arm = asked_ || arms_at_start(),
+  const Commands before = record_.input.commands;
+  const std::uint32_t asked = requests_.asked.load(std::memory_order_relaxed);
+  // The supervisor acts on an edge: between two requests there is a tick without one.
+  answers_ = asked != heard_ && !before.arm && !before.reset && !before.disarm;
+  if (answers_) heard_ = asked;
+  const auto request = answers_ ? static_cast<Request>(asked & 3U) : Request::kNone;
+  record_.input.commands = {.arm = request == Request::kArm || arms_at_start(),
                             .stop = requests_.stop.load(std::memory_order_relaxed),
-                            .reset = requests_.reset.load(std::memory_order_relaxed),
-                            .disarm = requests_.disarm.load(std::memory_order_relaxed)};
-  return asked_ && !asked_before;
+                            .reset = request == Request::kReset,
+                            .disarm = request == Request::kDisarm};
 }
 
-void RtLoop::answer_requests(bool asks_anew) RT_SAFE {
-  // A person's request is answered in the tick that saw it: armed by now, or refused and counted.
+// A person's request is answered in the tick that took it: done by now, or refused.
+void RtLoop::answer_requests() RT_SAFE {
   const State state = record_.output.state;
-  if (asks_anew && state != State::kArmed)
-    requests_.refused.fetch_add(1, std::memory_order_relaxed);
+  if (answers_) {
+    const Commands& commands = record_.input.commands;
+    const bool done = commands.arm     ? state == State::kArmed
+                      : commands.reset ? state == State::kReady
+                                       : commands.disarm && state != State::kArmed;
+    if (commands.arm && !done) requests_.refused.fetch_add(1, std::memory_order_relaxed);
+    requests_.echo(heard_, done);
+  }
   if (state == State::kArmed || state == State::kStopped)
     requests_.arm_at_start.store(false, std::memory_order_relaxed);
 }
@@ -94,11 +103,21 @@ Fault RtLoop::read(std::int64_t now_ns) RT_SAFE {
   const Fault read_fault = device_.read(sample, now_ns);
   device_grip_ratio_ = sample.tool.grip_ratio;
   sample.tool.grip_ratio = grip_.step(device_grip_ratio_, lines_.grip());
+  if (const auto pressed = lines_.clutch()) use_clutch(*pressed);
   progress_.enter(Callee::kOwn);
   const Fault watch_fault = requests_.fault.load(std::memory_order_relaxed);
   for (const Fault fault : {watch_fault, lines_fault, read_fault, write_fault_})
     if (fault != Fault::kNone) return fault;
   return Fault::kNone;
+}
+
+void RtLoop::use_clutch(bool pressed) RT_SAFE {
+  const TickOutput& before = record_.output;
+  const bool has_force = before.written != model::Wrench{} || before.written_grip_N != 0.0;
+  TickInput& input = record_.input;
+  input.clutch = clutch_.step(pressed, has_force, input.sample);
+  input.clutch_shift_m = clutch_.shift_m();
+  input.clutches = statistics_.clutches = clutch_.count();
 }
 
 // A fault takes the drives' permission before it takes their force. The heartbeat of this tick
@@ -152,7 +171,7 @@ void RtLoop::cycle(std::int64_t due_ns) RT_SAFE {
   record_.due_ns = due_ns;
   record_phase(Phase::kWake, wake_ns - due_ns);
 
-  const bool asks_anew = hear_requests();
+  hear_requests();
   TickInput& input = record_.input;
   input.device_fault = read(wake_ns);
   // After both were read: power that fell in this tick stops the force in this tick.
@@ -164,7 +183,7 @@ void RtLoop::cycle(std::int64_t due_ns) RT_SAFE {
   controller_.feel(input);
   const std::int64_t felt_ns = end_phase(Phase::kFeel, touched_ns);
   record_.output = controller_.judge(input);
-  answer_requests(asks_anew);
+  answer_requests();
   const std::int64_t judged_ns = end_phase(Phase::kJudge, felt_ns);
 
   write();

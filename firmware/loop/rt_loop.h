@@ -7,14 +7,15 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <cstdint>
 
 #include "firmware/loop/clock.h"
+#include "firmware/loop/clutch.h"
 #include "firmware/loop/controller.h"
 #include "firmware/loop/grip_input.h"
 #include "firmware/loop/latency_histogram.h"
 #include "firmware/loop/progress.h"
+#include "firmware/loop/requests.h"
 #include "firmware/loop/ring.h"
 #include "firmware/loop/stop_times.h"
 #include "firmware/loop/tick_record.h"
@@ -23,28 +24,13 @@
 
 namespace tact::firmware::loop {
 
-/// What people and the watch ask of a running loop; written by other threads and signal handlers.
-struct Requests {
-  std::atomic<bool> arm{false};           // by its rising edge, when ready
-  std::atomic<bool> arm_at_start{false};  // once, as soon as it is ready: the loop's own request
-  std::atomic<bool> stop{false};          // force to zero, then leave
-  std::atomic<bool> reset{false};
-  std::atomic<bool> disarm{false};         // force to zero, ready to be armed again
-  std::atomic<Fault> fault{Fault::kNone};  // of the watch; the first stays to the end of the run
-  std::atomic<std::uint32_t> refused{0};   // edges of arm that armed nothing
-
-  void trip(Fault found) RT_SAFE {
-    Fault none = Fault::kNone;
-    fault.compare_exchange_strong(none, found, std::memory_order_relaxed);
-  }
-};
-
 /// What a run leaves behind. Read it after run() has returned.
 struct LoopStatistics {
   std::uint64_t ticks = 0;
   std::uint64_t late_ticks = 0;     // ended after their own period
   std::uint64_t skipped_ticks = 0;  // grid points that had no tick
   std::uint64_t contact_losses = 0;
+  std::uint32_t clutches = 0;       // times that the clutch has opened
   std::uint64_t inside_ticks = 0;   // a sphere was inside the organ and felt nothing
   double max_force_N = 0.0;         // written
   double max_grip_force_N = 0.0;    // written, on the fingers
@@ -90,11 +76,12 @@ class RtLoop {
 
  private:
   void cycle(std::int64_t due_ns) RT_SAFE;
-  /// What others ask goes into this tick; true: to arm, and it was not asked a tick ago.
-  bool hear_requests() RT_SAFE;
-  void answer_requests(bool asks_anew) RT_SAFE;
+  /// What others ask goes into this tick.
+  void hear_requests() RT_SAFE;
+  void answer_requests() RT_SAFE;
   bool arms_at_start() const RT_SAFE;
   Fault read(std::int64_t now_ns) RT_SAFE;
+  void use_clutch(bool pressed) RT_SAFE;
   void write() RT_SAFE;
   void tell() RT_SAFE;
   /// Reads the clock; marked_ns() the time since then by marks, for phases alone.
@@ -112,12 +99,14 @@ class RtLoop {
   Requests& requests_;
   TickRing& ring_;
   GripInput grip_;
+  Clutch clutch_;
   double device_grip_ratio_ = 0.0;  // of its last sample
   LoopStatistics statistics_;
   TickRecord record_;
   MarkedTime marked_;
   std::int64_t due_ns_ = 0;
-  bool asked_ = false;                // requests_.arm, in the tick before
+  std::uint32_t heard_ = 0;           // the newest request of a person that a tick has taken
+  bool answers_ = false;              // this tick has taken it
   Fault write_fault_ = Fault::kNone;  // judged in the next tick
   StopWatch stop_watch_;
   Progress progress_;

@@ -104,6 +104,7 @@ std::string make_report(const RunFacts& facts, const loop::LoopStatistics& loop,
                        {"skipped", loop.skipped_ticks},
                        {"contact_lost", loop.contact_losses},
                        {"inside_ticks", loop.inside_ticks},
+                       {"clutches", loop.clutches},
                        {"thread", to_json(facts.costs)},
                        {"phases", phases(loop)},
                        {"force_max_N", loop.max_force_N},
@@ -154,6 +155,9 @@ std::string make_summary(const RunFacts& facts, const loop::LoopStatistics& loop
   if (loop.inside_ticks > 0)
     out += fmt::format("\n  the tool was inside the organ, without force, in {} of {} ticks",
                        loop.inside_ticks, loop.ticks);
+  if (loop.clutches > 0)
+    out += fmt::format("\n  the clutch opened {} times: the tool stayed while the handle moved",
+                       loop.clutches);
   // Five seconds: time to touch something; the usual cause is an organ that stands elsewhere.
   if (loop.max_force_N == 0.0 && facts.duration_s > 5.0 && facts.fault == model::Fault::kNone)
     out +=

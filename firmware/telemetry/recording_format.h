@@ -43,7 +43,7 @@ struct FrameRecord {
 };
 
 /// The last letter is the format's version.
-inline constexpr char kLogMagic[8] = {'t', 'a', 'c', 't', 'l', 'o', 'g', '9'};
+inline constexpr char kLogMagic[8] = {'t', 'a', 'c', 't', 'l', 'o', 'g', 'A'};
 
 struct LogStart {
   char magic[8] = {};

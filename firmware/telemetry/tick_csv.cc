@@ -41,7 +41,7 @@ std::string tick_csv_head(const LogHeader& header) {
       "tool_vx_mps,tool_vy_mps,tool_vz_mps,tool_wx_radps,tool_wy_radps,tool_wz_radps,grip_ratio,"
       "force_x_N,force_y_N,force_z_N,torque_x_Nm,torque_y_Nm,torque_z_Nm,"
       "wanted_x_N,wanted_y_N,wanted_z_N,wanted_x_Nm,wanted_y_Nm,wanted_z_Nm,"
-      "rms_force_N,given_energy_J,contact_losses,wanted_grip_N,grip_N,margin_us";
+      "rms_force_N,given_energy_J,contact_losses,wanted_grip_N,grip_N,clutches,margin_us";
   // From the one table of names, so that columns and record cannot differ.
   for (const char* phase : loop::kPhaseName)
     fmt::format_to(std::back_inserter(out), ",{}_us", phase);
@@ -64,9 +64,9 @@ std::string tick_csv_row(const LoggedTick& tick) {
   for (const Vec3& v :
        {o.written.force_N, o.written.torque_Nm, o.wanted.force_N, o.wanted.torque_Nm})
     put(out, v);
-  fmt::format_to(std::back_inserter(out), ",{},{},{},{},{},{:.3f}", o.rms_force_N, o.given_energy_J,
-                 o.contact_losses, o.wanted_grip_N, o.written_grip_N,
-                 1e-3 * static_cast<double>(tick.margin_ns));
+  fmt::format_to(std::back_inserter(out), ",{},{},{},{},{},{},{:.3f}", o.rms_force_N,
+                 o.given_energy_J, o.contact_losses, o.wanted_grip_N, o.written_grip_N,
+                 tick.input.clutches, 1e-3 * static_cast<double>(tick.margin_ns));
   for (const std::int32_t ns : tick.phase_ns)
     fmt::format_to(std::back_inserter(out), ",{:.3f}", 1e-3 * static_cast<double>(ns));
   return out + '\n';

@@ -73,7 +73,8 @@ struct BasicCanLoop {
   std::int64_t asked_ns = 0;   // for torque, since starting; 0: not yet
   bool felt = false;           // a force has reached the drives: power that goes is a fault now
   FaultLatch latch{};
-  WaitNote waits{};  // for power, before that
+  WaitNote waits{};             // for power, before that
+  std::int64_t ask_again_ns{};  // for it
 
   /// Latches; `kind` is a CanCause, or of the drives' own list.
   template <class Kind>
@@ -83,6 +84,25 @@ struct BasicCanLoop {
                .axis = static_cast<std::uint8_t>(axis),
                .kind = static_cast<std::uint8_t>(kind),
                .code = code});
+  }
+  /// Before any force: it starts again, and the drive is asked for as long as it has no power.
+  template <class Kind>
+  void wait_for_power(std::size_t axis, Kind kind, std::uint32_t code) RT_SAFE {
+    if (power == CanPower::kReady) power = CanPower::kStarting;
+    asked_ns = 0;
+    waits.set({.axis = static_cast<std::uint8_t>(axis),
+               .kind = static_cast<std::uint8_t>(kind),
+               .code = code});
+  }
+  /// Once a second while one waits.
+  bool asks_again() RT_SAFE {
+    if (waits.cause().kind == 0 || now_ns < ask_again_ns) return false;
+    ask_again_ns = now_ns + model::kSecond_ns;
+    return true;
+  }
+  void become_ready() RT_SAFE {
+    power = CanPower::kReady;
+    waits.clear();
   }
   bool start_is_late() const RT_SAFE {
     return power == CanPower::kStarting && asked_ns != 0 && now_ns - asked_ns > kLongestStart_ns;

@@ -66,23 +66,21 @@ class Cia402s final : public can::CanDrives {
   }
 
   void update_power(CanLoop& loop) RT_SAFE override {
-    if (loop.power == CanPower::kStarting && all_enabled(loop)) {
-      loop.power = CanPower::kReady;
-      loop.waits.clear();
-    }
+    if (loop.power == CanPower::kStarting && all_enabled(loop)) loop.become_ready();
     for (std::size_t i = 0; i < 3; ++i) {
       const Axis& axis = axes_[i];
       if (loop.power == CanPower::kReady && axis.idle_ticks >= kMaxIdleTicks)
         loop.fail(i, Cia402Cause::kNotFollowing, 0);
       if (axis.state == Cia402State::kOperationEnabled) continue;
       const auto state = static_cast<std::uint32_t>(axis.state);
-      if (loop.power == CanPower::kReady) lose_power(loop, i, state);
-      if (!loop.start_is_late()) continue;
-      if (!axis.guard.on()) loop.fail(i, Cia402Cause::kUnguarded, state);
+      const bool lost = loop.power == CanPower::kReady;
+      if (!lost && !loop.start_is_late()) continue;
+      if (!lost && !axis.guard.on()) loop.fail(i, Cia402Cause::kUnguarded, state);
+      // Before any force reached the hand the drive is asked again until it has power.
       if (loop.felt)
-        loop.fail(i, Cia402Cause::kNotStarted, state);
+        loop.fail(i, lost ? Cia402Cause::kLeftEnabled : Cia402Cause::kNotStarted, state);
       else
-        note_wait(loop, i);
+        loop.wait_for_power(i, Cia402Cause::kWaits, axis.statusword);
     }
   }
 
@@ -140,19 +138,6 @@ class Cia402s final : public can::CanDrives {
     int idle_ticks = 0;  // enabled without following, in a row, since ready
     HeartbeatGuard guard;
   };
-
-  /// Before any force reached the hand: the drive is asked again until it has power.
-  void lose_power(CanLoop& loop, std::size_t at, std::uint32_t state) RT_SAFE {
-    if (loop.felt) return loop.fail(at, Cia402Cause::kLeftEnabled, state);
-    loop.power = CanPower::kStarting;
-    loop.asked_ns = 0;
-    note_wait(loop, at);
-  }
-  void note_wait(CanLoop& loop, std::size_t at) const RT_SAFE {
-    loop.waits.set({.axis = static_cast<std::uint8_t>(at),
-                    .kind = static_cast<std::uint8_t>(Cia402Cause::kWaits),
-                    .code = axes_[at].statusword});
-  }
 
   void take_sample(CanLoop& loop, std::size_t at, const CstSample& sample,
                    std::int64_t arrival_ns) RT_SAFE {

@@ -4,11 +4,11 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <chrono>
+#include <cerrno>
 #include <filesystem>
-#include <thread>
 
 #include "hal/device_lock.h"
+#include "hal/permission.h"
 #include "hal/udev_rules.h"
 
 namespace tact::hal::falcon_usb {
@@ -83,25 +83,15 @@ Result<libusb_device*> choose(const Falcons& falcons, const std::string& bus_pat
 }
 
 Error open_error(int error, const std::string& node) {
-  if (error == LIBUSB_ERROR_ACCESS)
-    return Error{
-        fmt::format("the Falcon at {} may not be opened; its udev rule is missing ({}): {}", node,
-                    kFalconRule, kRuleCure)};
+  if (error == EACCES) return why_refused(node, kFalconRule).error();
   return Error{fmt::format("the Falcon at {} cannot be opened ({}): unplug it and plug it in again",
                            node, libusb_strerror(static_cast<libusb_error>(error)))};
 }
 
-/// For a moment after it is plugged in the node is root's alone, until udev has given it away: a
-/// refusal counts once it has lasted.
-int open_when_permitted(libusb_device* device, libusb_device_handle** handle) {
-  constexpr auto kPause = std::chrono::milliseconds(20);
-  constexpr int kTries = 11;  // 200 ms
-  int error = libusb_open(device, handle);
-  for (int i = 1; i < kTries && error == LIBUSB_ERROR_ACCESS; ++i) {
-    std::this_thread::sleep_for(kPause);
-    error = libusb_open(device, handle);
-  }
-  return error;
+/// 0, EACCES, or an error of libusb.
+int try_open(libusb_device* device, libusb_device_handle** handle) {
+  const int error = libusb_open(device, handle);
+  return error == LIBUSB_ERROR_ACCESS ? EACCES : error;
 }
 
 Error claim_error(int error, bool driver_bound, const std::string& node) {
@@ -140,16 +130,16 @@ Result<std::unique_ptr<FalconUsb>> FalconUsb::open(const std::string& bus_path) 
   usb->node_ = node_of(*device);
   // Before it is opened: nothing of another tactd's device is touched.
   if (auto error = lock_device("the Falcon at USB " + usb->bus_path_)) return *error;
-  if (const int error = open_when_permitted(*device, &usb->handle_); error != 0)
-    return open_error(error, usb->node_);
+  const int error = open_when_permitted([&] { return try_open(*device, &usb->handle_); });
+  if (error != 0) return open_error(error, usb->node_);
   libusb_set_auto_detach_kernel_driver(usb->handle_, 1);
   const bool driver_bound =
       libusb_kernel_driver_active(usb->handle_, falcon::kFalconUsbInterface) == 1;
-  if (const int error = libusb_claim_interface(usb->handle_, falcon::kFalconUsbInterface);
-      error != 0) {
+  if (const int refused = libusb_claim_interface(usb->handle_, falcon::kFalconUsbInterface);
+      refused != 0) {
     const bool still_bound =
         driver_bound && libusb_kernel_driver_active(usb->handle_, falcon::kFalconUsbInterface) == 1;
-    return claim_error(error, still_bound, usb->node_);
+    return claim_error(refused, still_bound, usb->node_);
   }
   usb->claimed_ = true;
   // A driver that came back on release would set the chip up its own way, before usbfs has it.

@@ -9,6 +9,7 @@
 
 #include "hal/device_lock.h"
 #include "hal/force_dimension/sdk_words.h"
+#include "hal/permission.h"
 #include "hal/udev_rules.h"
 
 namespace tact::hal::force_dimension {
@@ -28,13 +29,14 @@ Error failed(const SdkFunctions& sdk, const char* what) {
 }
 
 Result<char> open_device(const SdkFunctions& sdk, int wanted) {
-  // Missing rights look like no device, so the sentence names the rule, too.
+  // Missing rights look to the library like no device.
+  if (const auto refusal = refused_usb_device("1451", nullptr, kForceDimensionRule))
+    return refusal->error();
   const int count = sdk.device_count();
   if (count <= 0)
-    return Error{fmt::format(
+    return Error{
         "no Force Dimension device is found: switch its supply on, plug in its USB cable and end "
-        "other programs that use it; if only root finds it, this udev rule is missing: {}; {}",
-        kForceDimensionRule, kRuleCure)};
+        "other programs that use it"};
   if (wanted < 0 && count > 1)
     return Error{fmt::format(
         "{} Force Dimension devices are here; say which one by device.force_dimension.id, 0 to {}",

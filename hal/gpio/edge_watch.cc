@@ -33,7 +33,7 @@ class GpioEdges final : public EdgeWatch {
 Result<std::unique_ptr<EdgeWatch>> open_edge_watch(const std::string& wanted, int line,
                                                    const std::string& who,
                                                    const SystemRoots& roots) {
-  const auto chip = choose_chip(find_gpio_chips(roots), wanted);
+  const auto chip = choose_chip(find_permitted_chips(roots), wanted);
   if (!chip) return chip.error();
   if (line < 0 || line >= chip->lines)
     return Error{fmt::format("line {} is none of {} \"{}\", which has lines 0 to {}", line,

@@ -15,6 +15,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "hal/permission.h"
 #include "hal/udev_rules.h"
 
 namespace tact::hal::gpio {
@@ -95,6 +96,16 @@ std::vector<GpioChip> find_gpio_chips(const SystemRoots& roots) {
   return chips;
 }
 
+std::vector<GpioChip> find_permitted_chips(const SystemRoots& roots) {
+  std::vector<GpioChip> chips;
+  open_when_permitted([&] {
+    chips = find_gpio_chips(roots);
+    const auto refused = [](const GpioChip& chip) { return chip.error == EACCES; };
+    return std::any_of(chips.begin(), chips.end(), refused) ? EACCES : 0;
+  });
+  return chips;
+}
+
 std::string name_chips(const std::vector<GpioChip>& chips) {
   std::string names;
   for (const GpioChip& chip : chips) {
@@ -105,8 +116,7 @@ std::string name_chips(const std::vector<GpioChip>& chips) {
 }
 
 model::Error not_permitted(const GpioChip& chip) {
-  return model::Error{fmt::format("{} \"{}\" may not be opened; its udev rule is missing: {}; {}",
-                                  chip.path, chip.label, kGpioRule, kRuleCure)};
+  return why_refused(chip.path, kGpioRule).error();
 }
 
 model::Result<GpioChip> choose_chip(const std::vector<GpioChip>& chips, const std::string& wanted) {

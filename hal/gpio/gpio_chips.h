@@ -34,6 +34,8 @@ struct GpioChip {
 
 /// All chips, by number.
 std::vector<GpioChip> find_gpio_chips(const SystemRoots& roots = {});
+/// The same; one that is refused is asked again for 200 ms (hal/permission.h).
+std::vector<GpioChip> find_permitted_chips(const SystemRoots& roots);
 
 /// What is there, for a sentence: `gpiochip0 "pinctrl-intel", gpiochip1 "mcp2221"`.
 std::string name_chips(const std::vector<GpioChip>& chips);
@@ -41,7 +43,7 @@ std::string name_chips(const std::vector<GpioChip>& chips);
 /// The chip that is meant: by path, label or name, and on no bus where every access sleeps.
 model::Result<GpioChip> choose_chip(const std::vector<GpioChip>& chips, const std::string& wanted);
 
-/// The chip is there, and the udev rule that opens it is not.
+/// The chip is there, and may not be opened.
 model::Error not_permitted(const GpioChip& chip);
 
 inline constexpr const char* kUnknownBus = "an unknown bus";

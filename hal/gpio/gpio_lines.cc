@@ -28,7 +28,7 @@ constexpr const char* kConsumer = "tactd";
 /// The requested lines, and the place of each in its request; -1: not wired.
 struct Groups {
   LineRequest inputs, outputs, scope;
-  int estop_a = -1, estop_b = -1, dead_man = -1, grip = -1;
+  int estop_a = -1, estop_b = -1, dead_man = -1, grip = -1, clutch = -1;
   int enable = -1, heartbeat = -1, led = -1;
   bool grip_closes_low = false;
 };
@@ -40,7 +40,8 @@ class GpioLines final : public SafetyLines {
         lines_(std::move(lines)),
         logic_({.estop = lines_.estop_a >= 0,
                 .dead_man = lines_.dead_man >= 0,
-                .grip = lines_.grip >= 0}) {}
+                .grip = lines_.grip >= 0,
+                .clutch = lines_.clutch >= 0}) {}
   ~GpioLines() override { release(); }
   GpioLines(const GpioLines&) = delete;
   GpioLines& operator=(const GpioLines&) = delete;
@@ -52,7 +53,8 @@ class GpioLines final : public SafetyLines {
     const Fault fault = logic_.judge({.estop_a = level(values, lines_.estop_a),
                                       .estop_b = level(values, lines_.estop_b),
                                       .dead_man = level(values, lines_.dead_man),
-                                      .grip = grip_pressed(values)},
+                                      .grip = grip_pressed(values),
+                                      .clutch = level(values, lines_.clutch)},
                                      now_ns);
     return is_lost() ? Fault::kLinesLost : fault;
   }
@@ -69,6 +71,7 @@ class GpioLines final : public SafetyLines {
   }
 
   std::optional<bool> grip() const RT_SAFE override { return logic_.grip(); }
+  std::optional<bool> clutch() const RT_SAFE override { return logic_.clutch(); }
   bool enabled() const RT_SAFE override { return !is_lost() && !dropped() && logic_.enabled(); }
 
   // libgpiod 1.6 keeps the last level of each line in plain memory that nobody reads: two threads
@@ -129,11 +132,12 @@ struct NamedOffset {
   const char* key;
   int offset;
 };
-std::array<NamedOffset, 8> offsets_of(const LinesSettings& s) {
+std::array<NamedOffset, 9> offsets_of(const LinesSettings& s) {
   return {{{"estop_a", s.estop_a},
            {"estop_b", s.estop_b},
            {"dead_man", s.dead_man},
            {"grip", s.grip},
+           {"clutch", s.clutch},
            {"enable", s.enable},
            {"heartbeat", s.heartbeat},
            {"led", s.led},
@@ -202,6 +206,7 @@ std::optional<Groups> request(Chip& chip, const LinesSettings& s) {
   lines.dead_man = inputs.add(s.dead_man);
   lines.grip = inputs.add(s.grip);
   lines.grip_closes_low = s.grip_closes_low;
+  lines.clutch = inputs.add(s.clutch);
   lines.enable = outputs.add(s.enable);
   lines.heartbeat = outputs.add(s.heartbeat);
   lines.led = outputs.add(s.led);
@@ -243,7 +248,7 @@ Result<bool> check_offsets(const LinesSettings& settings, const GpioChip& chip) 
 Result<std::unique_ptr<SafetyLines>> open_safety_lines(const LinesSettings& settings,
                                                        const SystemRoots& roots) {
   if (!settings.wired()) return std::unique_ptr<SafetyLines>(new NoSafetyLines);
-  const auto chip = choose_chip(find_gpio_chips(roots), settings.chip);
+  const auto chip = choose_chip(find_permitted_chips(roots), settings.chip);
   if (!chip) return chip.error();
   if (const auto good = check_offsets(settings, *chip); !good) return good.error();
   return open_lines_of(*chip, settings);

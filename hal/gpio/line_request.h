@@ -19,7 +19,7 @@
 
 namespace tact::hal::gpio {
 
-inline constexpr std::size_t kMaxRequestLines = 4;  // estop_a, estop_b, dead_man, grip
+inline constexpr std::size_t kMaxRequestLines = 5;  // estop_a, estop_b, dead_man, grip, clutch
 using Levels = std::array<int, kMaxRequestLines>;   // by place in the request; 1: high
 
 enum class LineUse { kInput, kOutput, kEdges };  // outputs begin low

@@ -73,6 +73,7 @@ Fault SafetyLogic::judge(const SafetyLevels& levels, std::int64_t now_ns) RT_SAF
       cause = LinesCause::kGripFlaps;
     }
   }
+  if (wiring_.clutch) clutch_.step(levels.clutch, now_ns);
   if (wiring_.dead_man && !levels.dead_man) {
     fault_ = Fault::kDeadManReleased;
     cause = LinesCause::kDeadManOpen;

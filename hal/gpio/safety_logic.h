@@ -7,6 +7,7 @@
 //                                             only then a contact that sticks is mended
 //   dead-man low                           -> kDeadManReleased, at once
 //   grip switch flaps (grip_switch.h)      -> kGripFlaps, until it has been quiet for a second
+//   clutch      counts after 10 ms, as the grip switch; one that flaps takes the force, no fault
 //   heartbeat   toggles after every healthy tick; the relay beside it drops some 10 ms without
 //   enable      100 ms after the heartbeat has begun; gone in the tick of a fault, or when the
 //               heartbeat has paused for more than 10 ms: lines need well over 100 ticks a second
@@ -33,11 +34,13 @@ struct SafetyWiring {
   bool estop = false;  // both channels
   bool dead_man = false;
   bool grip = false;
+  bool clutch = false;
 };
 
 struct SafetyLevels {
   bool estop_a = false, estop_b = false, dead_man = false;
   bool grip = false;  // pressed, whichever level that is
+  bool clutch = false;
 };
 
 struct SafetyOutputs {
@@ -74,6 +77,9 @@ class SafetyLogic {
   std::optional<bool> grip() const RT_SAFE {
     return wiring_.grip ? std::optional(grip_.pressed()) : std::nullopt;
   }
+  std::optional<bool> clutch() const RT_SAFE {
+    return wiring_.clutch ? std::optional(clutch_.pressed()) : std::nullopt;
+  }
   bool enabled() const RT_SAFE { return outputs_.enable && fault_ == model::Fault::kNone; }
   /// The most telling cause of the fault that stands, or of the last one. Any thread.
   LinesCause cause() const RT_SAFE { return cause_.load(std::memory_order_relaxed); }
@@ -84,7 +90,7 @@ class SafetyLogic {
   SafetyWiring wiring_;
   model::Fault fault_ = model::Fault::kNone;
   std::atomic<LinesCause> cause_{LinesCause::kNone};
-  GripSwitch grip_;
+  GripSwitch grip_, clutch_;
   SafetyOutputs outputs_;
   std::int64_t now_ns_ = 0;
   std::int64_t differ_since_ns_ = 0;

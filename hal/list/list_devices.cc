@@ -2,7 +2,6 @@
 #include "hal/list/list_devices.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -11,6 +10,7 @@
 #include <tuple>
 
 #include "hal/can/can_open.h"
+#include "hal/permission.h"
 #include "hal/udev_rules.h"
 #include "model/io/input_file.h"
 
@@ -40,16 +40,16 @@ std::vector<fs::path> entries(const std::string& folder) {
   return paths;
 }
 
-int system_access_error(const std::string& path) {
-  // Asked, not opened: whoever uses the device is not disturbed.
-  return access(path.c_str(), R_OK | W_OK) == 0 ? 0 : errno;
+int lasting_access_error(const std::string& path) {
+  return open_when_permitted([&] { return access_error(path); });
 }
 
 void lack_permission(FoundPart& part, const std::string& node, const char* rule, int error) {
   if (error == 0) return;
   if (error == EACCES || error == EPERM) {
-    part.lacking = fmt::format("{} may not be opened; its udev rule is missing: {}", node, rule);
-    part.cure = kRuleCure;
+    const Refusal refusal = why_refused(node, rule);
+    part.lacking = refusal.lacking;
+    part.cure = refusal.cure;
   } else {
     part.lacking = fmt::format("{} cannot be opened: {}", node, std::strerror(error));
     part.cure = "unplug it, plug it in again, and look at dmesg";
@@ -208,7 +208,7 @@ const char* name_of(PartKind kind) {
 }
 
 PartProbes system_probes() {
-  return {.roots = {}, .access_error = system_access_error, .can_link = system_can_link};
+  return {.roots = {}, .access_error = lasting_access_error, .can_link = system_can_link};
 }
 
 std::vector<FoundPart> list_devices(const PartProbes& probes) {

@@ -33,6 +33,8 @@ constexpr double kIdleTorque = 0.1;  // of the largest: measured at rest, when 0
 // Each reply moves the mean of what nobody asked for by so much: 50 ms at 1 kHz.
 constexpr double kUnaskedShare = 0.02;
 
+constexpr int kLowSupplyFault = 40;
+
 /// Kinds of FaultCause, after those that all drives have.
 enum class MoteusCause : std::uint8_t {
   kFault = static_cast<std::uint8_t>(can::CanCause::kFirstOwn),  // code: of register 0x00F
@@ -41,6 +43,7 @@ enum class MoteusCause : std::uint8_t {
   kNotStarted,     // code: the mode it is in
   kUnaskedTorque,  // code: mN m
   kIncomplete,     // replies that lack what was asked for
+  kLowSupply,      // waited for, before any force; code: of register 0x00F
 };
 
 class Moteuses final : public can::CanFdDrives {
@@ -88,17 +91,19 @@ class Moteuses final : public can::CanFdDrives {
       judge(loop, i);
       settled = settled && axes_[i].settled >= kSettledTicks;
     }
-    if (loop.power == CanPower::kStarting && settled) loop.power = CanPower::kReady;
+    if (loop.power == CanPower::kStarting && settled) loop.become_ready();
   }
 
   void push(Loop& loop, const delta::Joints& torque_Nm) RT_SAFE override {
     const bool powered = loop.power != CanPower::kOff;
     if (powered && loop.asked_ns == 0) loop.asked_ns = loop.now_ns;
+    const bool clears = powered && loop.asks_again();  // the fault of one without power
     for (std::size_t i = 0; i < 3; ++i) {
       axes_[i].asked_before_Nm = axes_[i].asked_Nm;
       axes_[i].asked_Nm = powered ? torque_Nm[i] : 0.0;
-      loop.bus.push(powered ? moteus_torque(nodes_[i], torque_Nm[i], kWatchdog_s)
-                            : moteus_stop_and_ask(nodes_[i]));
+      const bool stops = !powered || (clears && axes_[i].is_in(MoteusMode::kFault));
+      loop.bus.push(stops ? moteus_stop_and_ask(nodes_[i])
+                          : moteus_torque(nodes_[i], torque_Nm[i], kWatchdog_s));
     }
   }
 
@@ -112,6 +117,7 @@ class Moteuses final : public can::CanFdDrives {
   std::string words(const can::FaultCause& cause) const override {
     switch (static_cast<MoteusCause>(cause.kind)) {
       case MoteusCause::kFault:
+      case MoteusCause::kLowSupply:
         return moteus_fault_sentence(static_cast<int>(cause.code));
       case MoteusCause::kTimeout:
         return fmt::format(
@@ -170,6 +176,8 @@ class Moteuses final : public can::CanFdDrives {
     const auto mode = static_cast<std::uint32_t>(axis.mode);
     // The first reply after a stop may still tell of the time before it.
     const bool asked = loop.asked_ns != 0 && loop.axes[i].heartbeat_ns > loop.asked_ns;
+    if (asked && axis.is_in(MoteusMode::kFault) && axis.fault == kLowSupplyFault && !loop.felt)
+      return loop.wait_for_power(i, MoteusCause::kLowSupply, kLowSupplyFault);
     if (asked && axis.is_in(MoteusMode::kFault))
       loop.fail(i, MoteusCause::kFault, static_cast<std::uint32_t>(axis.fault));
     if (asked && axis.is_in(MoteusMode::kTimeout)) loop.fail(i, MoteusCause::kTimeout, 0);

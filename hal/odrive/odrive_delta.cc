@@ -80,10 +80,8 @@ class Odrives final : public can::CanDrives {
   }
 
   void update_power(CanLoop& loop) RT_SAFE override {
-    if (loop.power == CanPower::kStarting && loop.asked_ns != 0 && all_in_closed_loop(loop)) {
-      loop.power = CanPower::kReady;
-      loop.waits.clear();
-    }
+    if (loop.power == CanPower::kStarting && loop.asked_ns != 0 && all_in_closed_loop(loop))
+      loop.become_ready();
     for (std::size_t i = 0; i < 3; ++i) {
       if (axes_[i].is_in(OdriveAxisState::kClosedLoop)) continue;
       if (loop.power == CanPower::kReady)
@@ -112,8 +110,7 @@ class Odrives final : public can::CanDrives {
       if (loop.power == CanPower::kStarting) ticks_ = 0;
       return;
     }
-    if (loop.waits.cause().kind != 0 && loop.now_ns >= ask_again_ns_) {
-      ask_again_ns_ = loop.now_ns + model::kSecond_ns;
+    if (loop.asks_again()) {
       for (const int node : nodes_) loop.bus.push(odrive_clear_errors(node, false));
       ticks_ = 0;
       return;
@@ -179,21 +176,13 @@ class Odrives final : public can::CanDrives {
     const bool is_06 = generation_ == OdriveGeneration::k06;
     const std::uint32_t error = beat->axis_error;
     if (error == (is_06 ? kUnderVoltage06 : kUnderVoltage05) && !loop.felt)
-      return wait_for_supply(loop, at);
+      return loop.wait_for_power(at, OdriveCause::kNoSupply, 0);
     if (error != 0 && !(was_silent && error == (is_06 ? kWatchdog06 : kWatchdog05)))
       loop.fail(at, is_06 ? OdriveCause::kErrors06 : OdriveCause::kErrors05, error);
     if (is_06) return;
     const auto beat05 = decode_odrive_heartbeat_05(frame, node);
     const std::uint32_t parts = beat05 ? odrive_parts_05(*beat05) : 0;
     if (parts != 0) loop.fail(at, OdriveCause::kParts05, parts);
-  }
-
-  /// Asked again once a second.
-  static void wait_for_supply(CanLoop& loop, std::size_t at) RT_SAFE {
-    if (loop.power == CanPower::kReady) loop.power = CanPower::kStarting;
-    loop.asked_ns = 0;
-    loop.waits.set({.axis = static_cast<std::uint8_t>(at),
-                    .kind = static_cast<std::uint8_t>(OdriveCause::kNoSupply)});
   }
 
   bool all_in_closed_loop(const CanLoop& loop) const RT_SAFE {
@@ -219,7 +208,6 @@ class Odrives final : public can::CanDrives {
   CanPower power_ = CanPower::kOff;      // of the last push
   bool cleared_ = false;                 // errors of the time between opening and the first tick
   int ticks_ = 0;                        // since off, or starting
-  std::int64_t ask_again_ns_ = 0;        // a drive without supply
   std::array<std::uint64_t, 4> news_{};  // by OdriveNews
 };
 

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "hal/device_lock.h"
+#include "hal/permission.h"
 #include "hal/phantom/hd_words.h"
 #include "hal/udev_rules.h"
 
@@ -75,6 +76,8 @@ Result<PhantomSession> open_phantom_session(const model::PhantomSettings& settin
   const auto hd = load_hd(settings.library, trust_library);
   if (!hd) return hd.error();
   const std::string name = settings.name.empty() ? "Default Device" : settings.name;
+  if (auto refusal = refused_usb_device("2988", nullptr, kPhantomRule)) return refusal->error();
+  if (auto refusal = refused_usb_device("0301", "2988", kOldPhantomRule)) return refusal->error();
   // Before the library looks at it: its forces may be another program's.
   if (auto error = lock_device(fmt::format("the PHANTOM \"{}\"", name))) return *error;
   take_hd_errors(*hd);  // of before
@@ -92,9 +95,8 @@ Result<PhantomSession> open_phantom_session(const model::PhantomSettings& settin
     }
     return Error{fmt::format(
         "the PHANTOM \"{}\" does not open: {}; device.phantom.name is the name that the maker's "
-        "Touch_Setup gave it; if only root opens it, this udev rule is missing: {}; {}",
-        name, code == 0 ? "there is no such device" : words_of_hd_error(code), kPhantomRule,
-        kRuleCure)};
+        "Touch_Setup gave it",
+        name, code == 0 ? "there is no such device" : words_of_hd_error(code))};
   }
   hd->make_current(session.id);
   auto error = ask_limits(session);

@@ -15,8 +15,8 @@ class SimLines final : public SafetyLines {
  public:
   struct Inputs {
     std::atomic<bool> estop_a{true}, estop_b{true}, dead_man{true};
-    std::atomic<bool> grip{false};       // pressed
-    std::atomic<bool> chip_lost{false};  // every call fails from now on
+    std::atomic<bool> grip{false}, clutch{false};  // pressed
+    std::atomic<bool> chip_lost{false};            // every call fails from now on
   };
 
   explicit SimLines(const gpio::SafetyWiring& wiring = {.estop = true, .dead_man = true})
@@ -28,7 +28,8 @@ class SimLines final : public SafetyLines {
         logic_.judge({.estop_a = inputs_.estop_a.load(std::memory_order_relaxed),
                       .estop_b = inputs_.estop_b.load(std::memory_order_relaxed),
                       .dead_man = inputs_.dead_man.load(std::memory_order_relaxed),
-                      .grip = inputs_.grip.load(std::memory_order_relaxed)},
+                      .grip = inputs_.grip.load(std::memory_order_relaxed),
+                      .clutch = inputs_.clutch.load(std::memory_order_relaxed)},
                      now_ns);
     return lost_ ? model::Fault::kLinesLost : fault;
   }
@@ -39,6 +40,7 @@ class SimLines final : public SafetyLines {
     return model::Fault::kNone;
   }
   std::optional<bool> grip() const RT_SAFE override { return logic_.grip(); }
+  std::optional<bool> clutch() const RT_SAFE override { return logic_.clutch(); }
   bool enabled() const RT_SAFE override { return !lost_ && !dropped_ && logic_.enabled(); }
   void drop() RT_SAFE override { dropped_ = true; }
   void scope(bool) RT_SAFE override {}

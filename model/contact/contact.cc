@@ -45,7 +45,7 @@ void Contact::reset() RT_SAFE {
   forget();
   rest_.reset();
   moved_.reset();
-  closed_ = closing_ = false;
+  closed_ = closing_ = is_lost_ = was_unsettled_ = false;
 }
 
 // No sphere is known to be anywhere, nor the blade: it cuts nothing on a way that nobody saw.

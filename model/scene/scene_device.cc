@@ -206,6 +206,7 @@ void visit_lines(reader::Keys& k, LinesSettings& lines) {
   std::size_t level = lines.grip_closes_low ? 1 : 0;
   k.choice("grip_closes", kGripLevels, "polarity of the grip line", level, kOptional);
   lines.grip_closes_low = level == 1;
+  visit_line(k, "clutch", "in, high = pressed: the tool stays, the handle moves", lines.clutch);
   visit_line(k, "enable", "out, high = the drives may have power", lines.enable);
   visit_line(k, "heartbeat", "out, toggles after every healthy tick", lines.heartbeat);
   visit_line(k, "led", "out, high = armed", lines.led);

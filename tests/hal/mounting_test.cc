@@ -81,6 +81,19 @@ TEST(Mounting, WordsNameDownInTheBasesOwnAxesAndWhatIsScaled) {
             std::string::npos);
 }
 
+TEST(Mounting, TheNameOfTheDeviceTellsHowItStandsAndWhatIsScaled) {
+  const auto name_of = [](const Vec3& turn_deg, double scale) {
+    model::DeviceSettings settings;
+    settings.base_orientation_deg = turn_deg;
+    settings.motion_scale = scale;
+    return mounted(Puppet().info(), mounting_of(settings)).name;
+  };
+  EXPECT_EQ(name_of({}, 1.0), "puppet");
+  EXPECT_EQ(name_of({0, 90, 0}, 3.0), "puppet, hangs, motion x 3");
+  EXPECT_EQ(name_of({0, -90, 0}, 1.0), "puppet, upright");
+  EXPECT_EQ(name_of({0, 45, 0}, 0.5), "puppet, tilted, motion x 0.5");
+}
+
 TEST(Mounting, PowerAgreesOnBothSides) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> draw(-1.0, 1.0);

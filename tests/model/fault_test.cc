@@ -37,6 +37,7 @@ TEST(Fault, LatchesFromOneHundred) {
   EXPECT_FALSE(latches(Fault::kLawSaturated));
   EXPECT_FALSE(latches(Fault::kToolInside));
   EXPECT_FALSE(latches(Fault::kContactLost));
+  EXPECT_FALSE(latches(Fault::kClutchPressed));
   EXPECT_TRUE(latches(Fault::kUnknown));
   EXPECT_TRUE(latches(Fault::kDeviceLost));
 }
@@ -46,6 +47,8 @@ TEST(Fault, AToolInsideAndLostContactHaveTheirWords) {
   EXPECT_STREQ(describe(Fault::kToolInside).name, "inside the organ");
   EXPECT_EQ(static_cast<int>(Fault::kContactLost), 15);
   EXPECT_STREQ(describe(Fault::kContactLost).name, "contact lost");
+  EXPECT_EQ(static_cast<int>(Fault::kClutchPressed), 16);
+  EXPECT_STREQ(describe(Fault::kClutchPressed).name, "clutch pressed");
 }
 
 TEST(Fault, ANumberThatTheTableDoesNotHaveIsToldAsUnknown) {

@@ -62,17 +62,12 @@ void Mischief::pull_wires(hal::sim::SimLines& lines) {
 
 // Resets and arms when it has stopped, and sometimes presses what it should not.
 void Mischief::operate(firmware::loop::Requests& requests, bool stopped) {
-  if (happens(1e-4)) requests.arm.store(happens(0.5));
-  if (happens(1e-4)) requests.reset.store(happens(0.5));
+  using firmware::loop::Request;
+  if (happens(1e-4)) requests.ask(happens(0.5) ? Request::kArm : Request::kReset);
+  if (happens(1e-5)) requests.ask(Request::kDisarm);
   if (--operator_ticks_ > 0) return;
   operator_ticks_ = ticks_between(5, 200);
-  if (!stopped) {
-    requests.reset.store(false);
-    requests.arm.store(!requests.arm.load());
-  } else {
-    requests.arm.store(false);
-    requests.reset.store(!requests.reset.load());
-  }
+  requests.ask(stopped ? Request::kReset : Request::kArm);
 }
 
 }  // namespace tact::soak

@@ -66,13 +66,14 @@ class PuppetLines final : public hal::SafetyLines {
     return write_fault;
   }
   std::optional<bool> grip() const RT_SAFE override { return grip_pressed; }
+  std::optional<bool> clutch() const RT_SAFE override { return clutch_pressed; }
   bool enabled() const RT_SAFE override { return enable; }
   void scope(bool up) RT_SAFE override { up ? ++ups : ++downs; }
   void stop() override {}
 
   model::Fault fault = model::Fault::kNone, write_fault = model::Fault::kNone;
   bool enable = true;
-  std::optional<bool> grip_pressed;
+  std::optional<bool> grip_pressed, clutch_pressed;
   hal::LinesTick last;
   const int* device_writes = nullptr;
   int writes_of_device_before = 0, ups = 0, downs = 0;

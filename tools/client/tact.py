@@ -28,7 +28,7 @@ except ImportError:
 
 MAGIC, TELEMETRY_VERSION = 0x74636174, 5
 RECORDING_VERSIONS = {7: 0, 8: 1304, 9: 1496}  # bytes of the operator behind each frame
-LOG_MAGIC, RECORDING_MAGIC = b"tactlog9", b"tactrec\n"
+LOG_MAGIC, RECORDING_MAGIC = b"tactlogA", b"tactrec\n"
 SEAL = b"tactseal"
 PHASES = ("wake", "read", "touch", "feel", "judge", "write", "tell", "total")
 STATES = ("off", "ready", "armed", "stopped")
@@ -73,18 +73,19 @@ LOG_HEADER = np.dtype([
     ("limits", "<f8", 14), ("force_share", "<f8"), ("non_rt", "u1"), ("scene_hash", "S23"), ("overrides", "S1024"),
     ("scene_name", "S64"), ("law", "S64"), ("revision", "S64"), ("host", "S64"), ("began_utc", "S24"), ("header_crc", "<u4"),
     ("pad", "<u4")])
-LOGGED_TICK = _placed(376, [
+LOGGED_TICK = _placed(400, [
     ("tick", "<u8", None, 0), ("non_rt", "u1", None, 8), ("due_ns", "<i8", None, 16), ("margin_ns", "<i8", None, 24),
     ("phase_ns", "<i4", 8, 32), ("tool_position_m", "<f8", 3, 64), ("tool_orientation", "<f8", 4, 88),
     ("tool_velocity_mps", "<f8", 3, 120), ("tool_angular_velocity_radps", "<f8", 3, 144), ("tool_grip_ratio", "<f8", None, 168),
     ("grip_gap_m", "<f8", None, 176), ("grip_speed_mps", "<f8", None, 184), ("sample_stamp_ns", "<i8", None, 192),
     ("sample_sequence", "<u8", None, 200), ("sample_fresh", "u1", None, 208), ("device_fault", "<u2", None, 216),
     ("command_arm", "u1", None, 218), ("command_stop", "u1", None, 219), ("command_reset", "u1", None, 220),
-    ("command_disarm", "u1", None, 221), ("ready", "u1", None, 222), ("skipped_periods", "<u4", None, 224),
-    ("wanted_force_N", "<f8", 3, 232), ("wanted_torque_Nm", "<f8", 3, 256), ("written_force_N", "<f8", 3, 280),
-    ("written_torque_Nm", "<f8", 3, 304), ("state", "u1", None, 328), ("limit", "<u2", None, 330), ("fault", "<u2", None, 332),
-    ("given_energy_J", "<f8", None, 336), ("rms_force_N", "<f8", None, 344), ("contact_losses", "<u8", None, 352),
-    ("wanted_grip_N", "<f8", None, 360), ("written_grip_N", "<f8", None, 368)])
+    ("command_disarm", "u1", None, 221), ("ready", "u1", None, 222), ("clutch", "u1", None, 223),
+    ("skipped_periods", "<u4", None, 224), ("clutches", "<u4", None, 228), ("clutch_shift_m", "<f8", 3, 232),
+    ("wanted_force_N", "<f8", 3, 256), ("wanted_torque_Nm", "<f8", 3, 280), ("written_force_N", "<f8", 3, 304),
+    ("written_torque_Nm", "<f8", 3, 328), ("state", "u1", None, 352), ("limit", "<u2", None, 354), ("fault", "<u2", None, 356),
+    ("given_energy_J", "<f8", None, 360), ("rms_force_N", "<f8", None, 368), ("contact_losses", "<u8", None, 376),
+    ("wanted_grip_N", "<f8", None, 384), ("written_grip_N", "<f8", None, 392)])
 LOG_RECORD = np.dtype([("tick", LOGGED_TICK), ("crc", "<u4"), ("pad", "<u4")])
 
 
@@ -216,12 +217,11 @@ def read_ticks(path):
     body, told = data[LOG_HEADER.itemsize:], int(header["ticks"])
     count = len(body) // LOG_RECORD.itemsize
     torn = count < told or not told and len(body) % LOG_RECORD.itemsize
-    count = min(count, told or count)
-    ticks, bad = _good(body, LOG_RECORD, count, "tick", LOGGED_TICK.itemsize)
+    ticks, bad = _good(body, LOG_RECORD, min(count, told or count), "tick", LOGGED_TICK.itemsize)
     recording, words = None, f"cut off in tick number {count + 1}" if torn else ""
     if told and not torn:
         try:
-            recording = _recording(body[count * LOG_RECORD.itemsize:], str(path), "")
+            recording = _recording(body[told * LOG_RECORD.itemsize:], str(path), "")
         except Error as error:
             words = f"its pictures: {str(error).removeprefix(f'{path}: ')}"
     return TickLog(header, ticks, recording, "; ".join(filter(None, (damage, bad, words))))

@@ -25,6 +25,18 @@ namespace {
 using model::Error;
 using model::Result;
 
+/// Where no force may reach the fingers the case of the fingers would show nothing.
+std::vector<Case> without_void(const std::vector<Case>& asked, const model::Limits& limits,
+                               LimitsReport& report) {
+  std::vector<Case> cases;
+  for (const Case& c : asked)
+    if (c.grip == Grip::kJaws && !(limits.grip_force_N > 0.0))
+      report.not_run.push_back({.name = c.name, .why = kNoGripForce});
+    else
+      cases.push_back(c);
+  return cases;
+}
+
 Runs prepare(const std::vector<Case>& cases, const LimitsBench& bench) {
   Runs runs;
   for (const Case& c : cases)
@@ -86,10 +98,10 @@ Result<LimitsReport> run_simulated(const model::scene::Scene& scene, const hal::
                           .gate_limits = options.gate_limits};
   // As the loop's thread does: else the last digits of a fading force would differ from tactd's.
   firmware::pc::flush_denormals();
-  const Runs runs = prepare(options.cases, bench);
+  LimitsReport report = begin_report(scene, info);
+  const Runs runs = prepare(without_void(options.cases, bench.limits, report), bench);
   for (const auto& run : runs)
     if (!run->play()) break;
-  LimitsReport report = begin_report(scene, info);
   name_the_rest(report, options);
   return finished(std::move(report), runs, bench, info, options.wall);
 }
@@ -145,7 +157,7 @@ Result<LimitsReport> run_real(const model::scene::Scene& scene, hal::Device& dev
 
 const char* why_left_out(const Case& c, const model::LinesSettings& lines) {
   // Nobody can be asked to tear at a device by so many m/s in a given tick.
-  if (c.hand != HandMove::kStill) return kNeedsHand;
+  if (c.hand != HandMove::kStill || c.grip == Grip::kJaws) return kNeedsHand;
   const bool has_estop = lines.wired() && (lines.estop_a >= 0 || lines.estop_b >= 0);
   if (c.trouble == Trouble::kEmergencyStop && !has_estop) return "no emergency stop is wired";
   if (c.trouble == Trouble::kDeadMan && !(lines.wired() && lines.dead_man >= 0))

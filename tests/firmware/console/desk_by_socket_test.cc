@@ -27,7 +27,7 @@ class DeskBySocket : public DeskSurroundings {
     ASSERT_TRUE(opened) << opened.error().sentence;
     control = std::move(*opened);
     desk = std::make_unique<OperatorDesk>(
-        signals, requests, view, [this] { return frame; }, control.get());
+        signals, requests, view, [this] { return frame; }, control.get(), tick);
   }
   void TearDown() override {
     testing::internal::GetCapturedStderr();
@@ -132,9 +132,7 @@ TEST_F(DeskBySocket, ASignalAndAWordAtOnceAreTwoRequests) {
 }
 
 TEST_F(DeskBySocket, WhatTheLoopRefusesIsTheAnswer) {
-  const OperatorSignals refusing([this] { requests.refused.store(1); });
-  desk = std::make_unique<OperatorDesk>(
-      refusing, requests, view, [this] { return frame; }, control.get());
+  refuses = true;
   show(State::kReady);
   const Answer answer = ask("arm");
   EXPECT_FALSE(answer.done);

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -18,12 +20,17 @@ class DeskSurroundings : public testing::Test {
   PuppetDevice device{clock};
   PuppetLines lines;
   loop::Requests requests;
-  std::vector<std::string> edges;  // what the loop saw rise
-  OperatorSignals signals{[this] {
-    if (requests.arm.load()) edges.emplace_back("arm");
-    if (requests.reset.load()) edges.emplace_back("reset");
-    if (requests.disarm.load()) edges.emplace_back("disarm");
-  }};
+  std::vector<std::string> edges;  // what the loop was asked
+  bool refuses = false, stands = false;
+  int pauses = 0;
+  OperatorSignals signals;
+  std::function<void()> tick = [this] {
+    ++pauses;
+    const std::uint32_t asked = requests.asked.load();
+    if (stands) return;
+    edges.emplace_back(std::array{"none", "arm", "reset", "disarm"}[asked & 3U]);
+    requests.echo(asked, !refuses);
+  };
   OperatorView view{device, lines, false};
   telemetry::Frame frame;
 };

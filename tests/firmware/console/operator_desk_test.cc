@@ -30,7 +30,7 @@ class Desk : public DeskSurroundings {
     return testing::internal::GetCapturedStderr();
   }
 
-  OperatorDesk desk{signals, requests, view, [this] { return frame; }};
+  OperatorDesk desk{signals, requests, view, [this] { return frame; }, nullptr, tick};
 };
 
 TEST_F(Desk, ArmsOnlyAfterTheWordsThatItMayBe) {
@@ -72,16 +72,22 @@ TEST_F(Desk, ResetsAStopAloneAndTheWordsComeAgainBeforeTheNextArming) {
 }
 
 TEST_F(Desk, WhatTheLoopRefusesIsTold) {
-  const OperatorSignals refusing([this] { requests.refused.store(1); });
-  OperatorDesk other(refusing, requests, view, [this] { return frame; });
+  refuses = true;
   show(State::kReady);
-  raise(SIGUSR2);
-  EXPECT_NE(told([&] { other.obey(1'000'000'000); }).find("no power"), std::string::npos);
+  EXPECT_NE(ask(SIGUSR2).find("not armed: no power"), std::string::npos);
+  EXPECT_EQ(pauses, 1) << "the echo ends the wait";
+}
+
+TEST_F(Desk, ALoopThatDoesNotAnswerIsNotAskedLater) {
+  stands = true;
+  show(State::kReady);
+  EXPECT_NE(ask(SIGUSR2).find("not armed: the loop gives no answer"), std::string::npos);
+  EXPECT_EQ(requests.asked.load() & 3U, 0U) << "taken back";
 }
 
 TEST_F(Desk, ADeviceThatArmsItselfAtTheStartWaitsForAPersonAfterAStop) {
   OperatorView itself(device, lines, true);
-  OperatorDesk other(signals, requests, itself, [this] { return frame; });
+  OperatorDesk other(signals, requests, itself, [this] { return frame; }, nullptr, tick);
   for (const State state : {State::kReady, State::kArmed, State::kStopped, State::kReady}) {
     frame.state = state;
     const std::string words = told([&] { other.obey(0); });

@@ -6,7 +6,49 @@
 
 namespace tact::firmware::loop::loop_stop_test {
 
-using LoopStop = PuppetLoop;
+class LoopStop : public PuppetLoop {
+ protected:
+  /// Of the loop, in the next tick or the one after it.
+  std::optional<bool> answer_to(Request request) {
+    const std::uint32_t number = requests.ask(request);
+    EXPECT_EQ(requests.answer(number), std::nullopt) << "before any tick";
+    run_ticks(1);
+    if (!requests.answer(number)) run_ticks(1);
+    return requests.answer(number);
+  }
+};
+
+TEST_F(LoopStop, EachRequestHasANumberThatTheLoopEchoesInTheTickThatActs) {
+  device.height_m = 0.006;
+  run_ticks(5);
+  const std::uint32_t first = requests.ask(Request::kArm);
+  run_ticks(1);
+  EXPECT_EQ(newest().output.state, State::kArmed);
+  EXPECT_EQ(requests.answer(first), true);
+  const std::uint32_t second = requests.ask(Request::kDisarm);
+  EXPECT_NE(second, first);
+  EXPECT_EQ(requests.answer(second), std::nullopt);
+  run_ticks(1);  // an edge needs a tick without a request before it
+  EXPECT_EQ(newest().output.state, State::kArmed);
+  run_ticks(1);
+  EXPECT_EQ(newest().output.state, State::kReady);
+  EXPECT_EQ(requests.answer(second), true);
+  const std::uint32_t third = requests.ask(Request::kReset);
+  requests.ask(Request::kArm);  // takes its place
+  run_ticks(2);
+  EXPECT_EQ(requests.answer(third), std::nullopt);
+  EXPECT_EQ(newest().output.state, State::kArmed);
+}
+
+TEST_F(LoopStop, ARequestThatIsTakenBackIsNotDoneLater) {
+  device.height_m = 0.006;
+  run_ticks(5);
+  requests.ask(Request::kArm);
+  requests.ask(Request::kNone);  // the loop stood in between
+  run_ticks(5);
+  EXPECT_EQ(newest().output.state, State::kReady);
+  EXPECT_EQ(requests.refused.load(), 0u);
+}
 
 TEST_F(LoopStop, AnOpenEmergencyStopTakesTheForceInTheSameTick) {
   press();
@@ -25,15 +67,10 @@ TEST_F(LoopStop, AReleasedEmergencyStopMovesNothingWithoutAResetAndAnArmEdge) {
   lines.fault = Fault::kNone;
   run_ticks(100);
   EXPECT_EQ(device.last, model::Wrench{});
-  requests.arm.store(true);
-  run_ticks(1);
-  requests.reset.store(true);  // while arm still stands
+  EXPECT_EQ(answer_to(Request::kArm), false);
   run_ticks(5);
   EXPECT_EQ(newest().output.state, State::kStopped);
-  requests.reset.store(false);
-  requests.arm.store(false);
-  run_ticks(1);
-  requests.reset.store(true);
+  EXPECT_EQ(answer_to(Request::kReset), true);
   run_ticks(5);
   EXPECT_EQ(newest().output.state, State::kReady);
   EXPECT_EQ(device.last, model::Wrench{});
@@ -43,20 +80,13 @@ TEST_F(LoopStop, AReleasedEmergencyStopMovesNothingWithoutAResetAndAnArmEdge) {
 TEST_F(LoopStop, DisarmingTakesTheForceInTheSameTickAndNoStopComesOfIt) {
   press();
   EXPECT_GT(device.last.force_N.z, 0.05);
-  requests.disarm.store(true);
+  requests.ask(Request::kDisarm);
   run_ticks(1);
   EXPECT_EQ(device.last, model::Wrench{});
   EXPECT_EQ(newest().output.state, State::kReady);
   EXPECT_EQ(newest().output.fault, Fault::kNone);
   EXPECT_TRUE(lines.last.healthy) << "the drives keep their power";
-  requests.arm.store(true);  // while disarm stands
-  run_ticks(3);
-  EXPECT_EQ(newest().output.state, State::kReady);
-  requests.arm.store(false);
-  requests.disarm.store(false);
-  run_ticks(2);
-  requests.arm.store(true);
-  run_ticks(1);
+  EXPECT_EQ(answer_to(Request::kArm), true);
   EXPECT_EQ(newest().output.state, State::kArmed);
   EXPECT_LT(device.last.force_N.z, 0.01) << "it fades in again";
   run_ticks(600);
@@ -98,16 +128,14 @@ TEST_F(LoopStop, ADeviceWithoutPowerTellsWhereItIsAndIsNotArmed) {
 TEST_F(LoopStop, APersonsRequestThatFindsNoPowerIsRefusedAndNotKept) {
   device.can_push = false;
   device.height_m = 0.006;
-  requests.arm.store(true);  // and nothing is ready yet
+  run_ticks(5);
+  EXPECT_EQ(answer_to(Request::kArm), false);
   run_ticks(20);
   EXPECT_EQ(requests.refused.load(), 1u);
   device.can_push = true;
   run_ticks(20);
   EXPECT_EQ(newest().output.state, State::kReady);
-  requests.arm.store(false);
-  run_ticks(1);
-  requests.arm.store(true);
-  run_ticks(1);
+  EXPECT_EQ(answer_to(Request::kArm), true);
   EXPECT_EQ(newest().output.state, State::kArmed);
   EXPECT_EQ(requests.refused.load(), 1u);
 }
@@ -117,7 +145,7 @@ TEST_F(LoopStop, WhatArmsItselfAtTheStartDoesNotAfterAStop) {
   lines.fault = Fault::kEmergencyStop;
   run_ticks(3);
   lines.fault = Fault::kNone;
-  requests.reset.store(true);
+  requests.ask(Request::kReset);
   run_ticks(20);
   EXPECT_EQ(newest().output.state, State::kReady);
 }

@@ -20,6 +20,16 @@
 
 namespace tact::firmware::run::replay_test {
 
+struct ClutchLine final : hal::SafetyLines {
+  model::Fault read(std::int64_t) RT_SAFE override { return model::Fault::kNone; }
+  model::Fault write(const hal::LinesTick&) RT_SAFE override { return model::Fault::kNone; }
+  bool enabled() const RT_SAFE override { return true; }
+  std::optional<bool> clutch() const RT_SAFE override { return pressed; }
+  void scope(bool) RT_SAFE override {}
+  void stop() override {}
+  bool pressed = false;
+};
+
 class ReplayTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -28,7 +38,7 @@ class ReplayTest : public testing::Test {
   }
   void TearDown() override { std::remove(path.c_str()); }
 
-  // A run with everything in it that decides forces: late ticks and arming.
+  // A run with everything in it that decides forces: late ticks, arming, a clutch.
   void record(int ticks) {
     auto device = std::move(*hal::registry::open_device(scene));
     auto ring = std::make_unique<loop::TickRing>();
@@ -36,7 +46,7 @@ class ReplayTest : public testing::Test {
                                 /*hard_real_time=*/false);
     loop::SimulatedClock clock;
     loop::Requests requests;
-    hal::NoSafetyLines lines;
+    ClutchLine lines;
     requests.arm_at_start.store(true);
     loop::RtLoop loop({.period_ns = 1'000'000}, *device, lines, controller, clock, requests, *ring);
     telemetry::LogHeader header;
@@ -50,6 +60,7 @@ class ReplayTest : public testing::Test {
     for (int i = 0; i < ticks; ++i) {
       if (i == 1300) tests::pass_ns(clock, 30'300'000);  // a fault, were this hard real time
       if (i == 1500) tests::pass_ns(clock, 5'300'000);
+      lines.pressed = i >= 2000 && i < 2200;
       loop.step();
       while (ring->pop(record)) log.add(record);
     }
@@ -67,6 +78,11 @@ TEST_F(ReplayTest, TheSameSamplesGiveTheSameForcesBitForBit) {
   EXPECT_EQ(outcome->ticks, 3000u);
   EXPECT_EQ(outcome->different, 0u);
   EXPECT_EQ(outcome->damage, "");
+  auto log = std::move(*telemetry::TickLogReader::open(path));
+  int open_ticks = 0;
+  for (telemetry::LoggedTick tick; log.next(tick);)
+    open_ticks += tick.input.clutch == loop::ClutchState::kOpen ? 1 : 0;
+  EXPECT_GT(open_ticks, 50);
 }
 
 TEST_F(ReplayTest, AnotherSampleGivesAnotherForceAndIsNamed) {
@@ -174,7 +190,7 @@ TEST_F(ReplayTest, ALogOfAnotherVersionIsRefusedByItsNumber) {
   file.close();
   const auto outcome = replay(path, scene, *tissue);
   ASSERT_FALSE(outcome);
-  EXPECT_NE(outcome.error().sentence.find("version 2, this tactd reads version 9"),
+  EXPECT_NE(outcome.error().sentence.find("version 2, this tactd reads version A"),
             std::string::npos)
       << outcome.error().sentence;
 }

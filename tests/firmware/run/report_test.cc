@@ -22,7 +22,7 @@ TEST(Report, IsJsonWhateverBytesADeviceHasForItsName) {
   EXPECT_EQ(report.at("device"), "Touch \uFFFD\uFFFD");
 }
 
-TEST(Report, TellsLossesOfContactAndTicksInsideTheOrgan) {
+TEST(Report, TellsLossesOfContactTicksInsideTheOrganAndClutches) {
   const gate::Gate gate(model::Limits{.force_N = 1.0, .slew_N_per_s = 500.0, .ramp_s = 0.5}, 1e-3,
                         1.0);
   loop::LoopStatistics loop;
@@ -30,12 +30,16 @@ TEST(Report, TellsLossesOfContactAndTicksInsideTheOrgan) {
   const std::string without = make_summary(RunFacts{}, loop);
   EXPECT_EQ(without.find("contact lost"), std::string::npos) << without;
   EXPECT_EQ(without.find("inside the organ"), std::string::npos) << without;
+  EXPECT_EQ(without.find("clutch"), std::string::npos) << without;
   loop.contact_losses = 3;
   loop.inside_ticks = 40;
+  loop.clutches = 2;
   const auto report = nlohmann::json::parse(make_report(RunFacts{}, loop, gate, pc::Environment{}));
   EXPECT_EQ(report.at("contact_lost"), 3);
   EXPECT_EQ(report.at("inside_ticks"), 40);
+  EXPECT_EQ(report.at("clutches"), 2);
   const std::string summary = make_summary(RunFacts{}, loop);
+  EXPECT_NE(summary.find("the clutch opened 2 times"), std::string::npos) << summary;
   EXPECT_NE(summary.find("contact lost 3 times: the tool moved unseen"), std::string::npos);
   EXPECT_NE(summary.find("inside the organ, without force, in 40 of 1000"), std::string::npos);
 }

@@ -79,7 +79,7 @@ TEST_F(WatchedLoop, ADeviceThatHangsLosesTheEnableLineAndThenTheForce) {
   device.asleep.store(false);
   const std::uint64_t before = loop->progress().ticks();
   ASSERT_TRUE(soon([&] { return loop->progress().ticks() > before + 5; }));
-  requests.reset.store(true);  // not even the operator brings it back
+  requests.ask(loop::Request::kReset);  // not even the operator brings it back
   usleep(20'000);
   finish();
   loop::TickRecord record;

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 
@@ -118,6 +119,21 @@ TEST_F(Sysfs, AChipThatDoesNotAnswerIsNamedWithItsPath) {
   ASSERT_FALSE(opened);
   EXPECT_TRUE(has(opened.error().sentence, roots().dev + "/gpiochip0 cannot be opened"))
       << opened.error().sentence;
+}
+
+TEST_F(Sysfs, ARefusedChipIsAskedAgainFor200Ms) {
+  chip(0, {"pci"});
+  const auto see_refusal = [this] {
+    constexpr uid_t kNobody = 65534;
+    fs::permissions(roots().dev + "/gpiochip0", fs::perms::none);
+    if (geteuid() == 0 && setreuid(kNobody, kNobody) != 0) _exit(2);  // root may open any node
+    const auto begun = std::chrono::steady_clock::now();
+    const auto lines = open_safety_lines(wired(), roots());
+    const bool waited = std::chrono::steady_clock::now() - begun >= std::chrono::milliseconds(200);
+    const bool told = !lines && lines.error().sentence.find(kGpioRule) != std::string::npos;
+    _exit(waited && told ? 7 : 8);
+  };
+  EXPECT_EXIT(see_refusal(), testing::ExitedWithCode(7), "");
 }
 
 TEST_F(Sysfs, ASleepingChipIsRefusedBeforeItIsOpened) {

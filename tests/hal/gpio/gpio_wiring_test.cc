@@ -80,7 +80,7 @@ LineRequest Chip::request(LineUse /*use*/, std::span<const int> offsets, const c
 namespace {
 
 constexpr int kEstopA = 16, kEstopB = 17, kDeadMan = 18, kEnable = 0, kHeartbeat = 1, kLed = 2,
-              kScope = 3, kGrip = 19;
+              kScope = 3, kGrip = 19, kClutch = 20;
 
 class GpioWiring : public testing::Test {
  protected:
@@ -90,6 +90,7 @@ class GpioWiring : public testing::Test {
     settings_.estop_a = kEstopA, settings_.estop_b = kEstopB, settings_.dead_man = kDeadMan;
     settings_.enable = kEnable, settings_.heartbeat = kHeartbeat;
     settings_.led = kLed, settings_.scope = kScope, settings_.grip = kGrip;
+    settings_.clutch = kClutch;
     for (const int input : {kEstopA, kEstopB, kDeadMan}) set(input, 1);
   }
   static void set(int offset, int level) {
@@ -109,14 +110,15 @@ class GpioWiring : public testing::Test {
 };
 
 TEST_F(GpioWiring, ALineThatTheChipDoesNotGiveIsAnErrorAndNeverALineThatIsNotWired) {
-  const std::array<std::pair<int, const char*>, 8> lines{{{kEstopA, "estop_a"},
+  const std::array<std::pair<int, const char*>, 9> lines{{{kEstopA, "estop_a"},
                                                           {kEstopB, "estop_b"},
                                                           {kDeadMan, "dead_man"},
                                                           {kEnable, "enable"},
                                                           {kHeartbeat, "heartbeat"},
                                                           {kLed, "led"},
                                                           {kScope, "scope"},
-                                                          {kGrip, "grip"}}};
+                                                          {kGrip, "grip"},
+                                                          {kClutch, "clutch"}}};
   for (const auto& [offset, key] : lines) {
     played().not_given = {offset};
     const auto opened = open();
@@ -167,13 +169,32 @@ TEST_F(GpioWiring, TheGripLineClosesTheJawsAtTheLevelThatTheSceneSays) {
   }
 }
 
+TEST_F(GpioWiring, TheClutchIsPressedAfterItsLineWasHighFor10Ms) {
+  const auto opened = open();
+  ASSERT_TRUE(opened) << opened.error().sentence;
+  std::int64_t now_ns = 0;
+  const auto after_ms = [&](int level, int ms) {
+    set(kClutch, level);
+    for (int i = 0; i < ms; ++i)
+      EXPECT_EQ((*opened)->read(now_ns += 1'000'000), model::Fault::kNone);
+    return (*opened)->clutch();
+  };
+  EXPECT_EQ(after_ms(0, 20), false);
+  EXPECT_EQ(after_ms(1, 9), false) << "a contact bounces";
+  EXPECT_EQ(after_ms(1, 2), true);
+  EXPECT_EQ(after_ms(0, 20), false);
+  EXPECT_EQ((*opened)->grip(), false) << "lines of their own";
+}
+
 TEST_F(GpioWiring, WhatIsNotWiredIsLeftAlone) {
   settings_.estop_a = settings_.estop_b = settings_.dead_man = settings_.grip = -1;
-  played().not_given = {kEstopA, kEstopB, kDeadMan, kGrip};
+  settings_.clutch = -1;
+  played().not_given = {kEstopA, kEstopB, kDeadMan, kGrip, kClutch};
   const auto opened = open();
   ASSERT_TRUE(opened) << opened.error().sentence;
   EXPECT_EQ((*opened)->read(1'000'000), model::Fault::kNone);
   EXPECT_FALSE((*opened)->grip());
+  EXPECT_FALSE((*opened)->clutch());
 }
 
 TEST_F(GpioWiring, ALineInUseIsToldWithItsUserAndTheOthersAreFreeAgain) {
@@ -194,7 +215,7 @@ TEST_F(GpioWiring, OutputsAreLowAndAllLinesFreeAfterStop) {
   EXPECT_EQ((*opened)->write({.healthy = true, .armed = true}), model::Fault::kNone);
   for (const int output : {kHeartbeat, kLed, kScope})
     EXPECT_EQ(played().level.at(static_cast<std::size_t>(output)), 1) << "line " << output;
-  EXPECT_EQ(played().requested.size(), 8u);
+  EXPECT_EQ(played().requested.size(), 9u);
   (*opened)->stop();
   for (const int output : {kEnable, kHeartbeat, kLed, kScope})
     EXPECT_EQ(played().level.at(static_cast<std::size_t>(output)), 0) << "line " << output;

@@ -48,6 +48,45 @@ TEST(MoteusFaults, ADriveThatCannotBeEnabledIsNamedWithItsReason) {
   EXPECT_FALSE(bench.device->ready());
 }
 
+TEST(MoteusFaults, ASupplyThatIsTooLowAtTheStartIsWaitedFor) {
+  Bench bench;
+  ASSERT_EQ(bench.open(), "");
+  bench.axis(1).sag(true);
+  int asked = 0;
+  for (int i = 0, before = 1; i < 8000; ++i) {
+    ASSERT_EQ(bench.tick(), Fault::kNone) << i << ": " << bench.device->trouble();
+    ASSERT_FALSE(bench.device->ready());
+    for (const auto& drive : bench.drives.drive) ASSERT_EQ(drive->torque_Nm(), 0.0);
+    const int mode = bench.axis(1).mode();
+    asked += mode != before && mode == 0 ? 1 : 0;
+    before = mode;
+  }
+  EXPECT_TRUE(bench.says("waiting for power of arm 2 (node 2 on can0): DC bus voltage too low"))
+      << bench.device->trouble();
+  EXPECT_GE(asked, 7) << "once a second";
+  EXPECT_LE(asked, 9);
+  bench.axis(1).sag(false);
+  EXPECT_GT(bench.ticks_until_ready(1500), 0) << bench.device->trouble();
+  EXPECT_EQ(bench.device->trouble(), "");
+  EXPECT_EQ(bench.allocations, 0u);
+}
+
+TEST(MoteusFaults, ASupplyThatSagsBeforeAnyForceIsWaitedForAndAfterOneIsAFault) {
+  Bench bench;
+  bench.run();
+  bench.axis(2).sag(true);
+  for (int i = 0; i < 20; ++i) ASSERT_EQ(bench.tick(), Fault::kNone) << bench.device->trouble();
+  EXPECT_FALSE(bench.device->ready());
+  bench.axis(2).sag(false);
+  ASSERT_GT(bench.ticks_until_ready(1500), 0) << bench.device->trouble();
+  bench.tick({0.0, 0.0, 5.0});
+  bench.axis(2).sag(true);
+  EXPECT_GT(bench.ticks_until(Fault::kDriveFault, 20), 0);
+  EXPECT_TRUE(bench.says("arm 3 (node 3 on can0): DC bus voltage too low"));
+  bench.axis(2).sag(false);
+  bench.expect_latched(Fault::kDriveFault);
+}
+
 TEST(MoteusFaults, ADriveThatNeverGetsReadyIsNamedAfterThreeSeconds) {
   Bench bench;
   bench.drives.install<rig::MoteusDrive>(0, rig::MoteusSettings{.prepare_ms = 100'000});

@@ -7,7 +7,6 @@
 #include "hal/device_lock.h"
 #include "hal/phantom/hd_library.h"
 #include "hal/phantom/phantom_device.h"
-#include "hal/udev_rules.h"
 #include "tests/support/forked.h"
 #include "tests/support/stub_hd/hd_client.h"
 
@@ -58,10 +57,10 @@ TEST_F(PhantomSessions, AnotherLibraryIsRefusedByTheFunctionThatItLacks) {
   expect_refusal({"libm.so.6 has no function hdInitDevice", "device.phantom.library"});
 }
 
-TEST_F(PhantomSessions, ADeviceThatIsNotThereIsToldWithItsNameAndTheRule) {
+TEST_F(PhantomSessions, ADeviceThatIsNotThereIsToldWithItsName) {
   stub.fail("hdInitDevice", 0x0302);
   expect_refusal({"the PHANTOM \"" + settings.phantom.name + "\" does not open",
-                  "the device does not answer", "device.phantom.name", kPhantomRule});
+                  "the device does not answer", "device.phantom.name"});
 }
 
 TEST_F(PhantomSessions, ADeviceThatOpensWithAnErrorIsClosedAgainWithItsForcesOff) {

@@ -43,7 +43,7 @@ TEST(OpenDevice, ABaseThatHangsIsTurnedBetweenLoopAndDevice) {
   hanging.hand.path = {{.position_m = {0.0, 0.0, 0.05}}};
   const auto device = open_device(hanging);
   ASSERT_TRUE(device) << device.error().sentence;
-  EXPECT_EQ((*device)->info().name, "simulated delta 360 x 300 mm");
+  EXPECT_EQ((*device)->info().name, "simulated delta 360 x 300 mm, hangs") << "as the page tells";
   EXPECT_LT((*device)->info().workspace_radius_m, 0.15);
   EXPECT_TRUE(is_simulated(**device)) << "its hand can be moved";
   Sample sample;

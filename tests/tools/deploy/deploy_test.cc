@@ -8,6 +8,7 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <tuple>
 
 #include "hal/udev_rules.h"
 #include "tests/support/files.h"
@@ -149,6 +150,81 @@ TEST_F(Deploy, ADryRunOnlyTalks) {
   EXPECT_EQ(install("--dry-run --into " + folder + "/root", said), 0);
   EXPECT_NE(content(said).find("60-tact.rules"), std::string::npos);
   EXPECT_FALSE(fs::exists(folder + "/root"));
+}
+
+class DeployService : public Deploy {
+ protected:
+  /// Installs for a scene of this device; what it wrote, as far as it is asked for.
+  void install_for(const std::string& device, int status = 0) {
+    fs::create_directories(root + "/etc/tact");
+    std::ofstream(root + "/etc/tact/liver.toml") << "[contact]\nkind = \"none\"\n[device]\n"
+                                                 << device;
+    EXPECT_EQ(install("--service liver --into " + root, said), status) << content(said);
+  }
+  std::string drop_in() const {
+    return content(root + "/etc/systemd/system/tactd@liver.service.d/device.conf");
+  }
+  std::string rules() const { return content(root + "/etc/udev/rules.d/61-tactd-liver.rules"); }
+  std::string root = folder + "/root";
+};
+
+TEST_F(DeployService, WaitsForTheCanInterfaceOfItsSceneAndGoesWithIt) {
+  install_for("kind = \"can-moteus\"  # three of them\n[device.can]\ninterface = \"can-left\"\n");
+  const std::string unit = R"(sys-subsystem-net-devices-can\x2dleft.device)";
+  EXPECT_EQ(drop_in(), "[Unit]\nBindsTo=" + unit + "\nAfter=" + unit + "\n");
+  EXPECT_EQ(rules(),
+            "SUBSYSTEM==\"net\", KERNEL==\"can-left\", TAG+=\"systemd\", "
+            "ENV{SYSTEMD_WANTS}+=\"tactd@liver.service\"\n");
+  install_for("kind = \"can-odrive\"\n");
+  EXPECT_NE(rules().find("KERNEL==\"can0\""), std::string::npos) << "as the scene without the key";
+}
+
+TEST_F(DeployService, IsStartedByItsUsbDevice) {
+  const auto ids_of = [](const std::string& rule) {
+    const auto from = rule.find("ATTR{idVendor}");
+    return rule.substr(from, rule.find(", GROUP") - from);
+  };
+  for (const auto& [kind, rule, unit] :
+       {std::tuple{"falcon", tact::hal::kFalconRule, "tact-falcon.device"},
+        std::tuple{"force-dimension", tact::hal::kForceDimensionRule,
+                   "tact-forcedimension.device"}}) {
+    install_for("kind = \"" + std::string(kind) + "\"\n");
+    EXPECT_NE(rules().find(ids_of(rule)), std::string::npos) << rules();
+    EXPECT_NE(rules().find("ENV{SYSTEMD_WANTS}+=\"tactd@liver.service\""), std::string::npos);
+    EXPECT_NE(drop_in().find("BindsTo=" + std::string(unit)), std::string::npos) << drop_in();
+    EXPECT_NE(drop_in().find("After=" + std::string(unit)), std::string::npos);
+    std::string path = unit;  // the alias is the path of that unit
+    path = "/" + path.replace(path.find('-'), 1, "/").substr(0, path.find(".device"));
+    EXPECT_NE(rules().find("ENV{SYSTEMD_ALIAS}+=\"" + path + "\""), std::string::npos) << rules();
+  }
+}
+
+TEST_F(DeployService, APhantomOnFireWireIsNotWaitedFor) {
+  install_for("kind = \"phantom\"\n");
+  EXPECT_NE(rules().find("ATTR{idVendor}==\"2988\""), std::string::npos);
+  EXPECT_EQ(drop_in(), "");
+}
+
+TEST_F(DeployService, WhatIsWrittenNeverArms) {
+  for (const char* kind : {"can-odrive", "falcon", "force-dimension", "phantom"}) {
+    install_for("kind = \"" + std::string(kind) + "\"\n");
+    for (const std::string& text : {drop_in(), rules()}) {
+      EXPECT_EQ(text.find("arm"), std::string::npos) << text;
+      EXPECT_EQ(text.find("Exec"), std::string::npos) << text;
+      EXPECT_EQ(text.find("RUN"), std::string::npos) << text;
+    }
+  }
+}
+
+TEST_F(DeployService, NeedsASceneThatNamesItsDevice) {
+  install_for("kind = \"sim-delta\"\n");
+  EXPECT_NE(content(said).find("nothing to wait for"), std::string::npos);
+  EXPECT_EQ(drop_in() + rules(), "");
+  install_for("", 2);
+  EXPECT_NE(content(said).find("needs a line kind"), std::string::npos);
+  EXPECT_EQ(install("--service ../liver --into " + root, said), 2);
+  EXPECT_EQ(install("--service kidney --into " + root, said), 2);
+  EXPECT_NE(content(said).find("there is no scene"), std::string::npos);
 }
 
 TEST_F(Deploy, AnUnknownOptionIsBadUsage) {

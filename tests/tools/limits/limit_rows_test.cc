@@ -52,13 +52,40 @@ Limits larger_continuous_force(const Limits& limits) {
   return wrong;
 }
 
+Limits larger_grip_force(const Limits& limits) {
+  Limits wrong = limits;
+  wrong.grip_force_N *= 1.05;
+  return wrong;
+}
+
+TEST(LimitRows, TheFingersFeelUpToTheirLimitAndNeverMore) {
+  const LimitsReport good = plan("fingers");
+  EXPECT_EQ(good.result_words(), "PASS of 1 of 26 cases");
+  const LimitRow row = limit_rows(good).at(static_cast<std::size_t>(Bound::kGrip));
+  EXPECT_NEAR(row.largest, row.limit, 1e-9);
+  EXPECT_GT(row.limit, 0.0);
+  EXPECT_EQ(row.kept, Kept::kPass);
+  const LimitsReport wrong = plan("fingers", larger_grip_force);
+  EXPECT_EQ(wrong.result_words(), "FAIL");
+  EXPECT_EQ(limit_rows(wrong).at(static_cast<std::size_t>(Bound::kGrip)).kept, Kept::kFail);
+}
+
+TEST(LimitRows, WithoutAForceOnTheFingersTheirCaseIsNotRun) {
+  model::scene::Scene scene = tests::make_plate_scene();
+  scene.limits.grip_force_N = 0.0;
+  const auto report = run_plan(scene, {.cases = *choose_cases("fingers,ramp"), .wall = false});
+  ASSERT_TRUE(report);
+  EXPECT_EQ(report->cases.size(), 1u);
+  EXPECT_EQ(report->not_run.front().why, kNoGripForce);
+}
+
 // A wall alone once made a green page that said pass of eight limits nobody had gone near.
 TEST(LimitRows, APartOfThePlanPassesNoLimitThatItDidNotReach) {
   const Outcome out = run("--plan stiff-wall --json");
   EXPECT_EQ(out.status, 0) << out.output;
   const auto report = nlohmann::json::parse(out.output);
-  EXPECT_EQ(report.at("result"), "PASS of 1 of 25 cases");
-  EXPECT_EQ(report.at("limits").size(), 8u);
+  EXPECT_EQ(report.at("result"), "PASS of 1 of 26 cases");
+  EXPECT_EQ(report.at("limits").size(), 9u);
   const auto& wall = report.at("wall");  // README.md and tools/README.md tell these
   EXPECT_NEAR(wall.at("bounded_ratio"), 11.6, 0.1);
   EXPECT_NEAR(wall.at("rest_without_N_per_m"), 2644.0, 1.0);
@@ -67,7 +94,7 @@ TEST(LimitRows, APartOfThePlanPassesNoLimitThatItDidNotReach) {
   EXPECT_NEAR(wall.at("largest_swing_with_m"), 0.0033, 0.0001);
   for (const auto& row : report.at("limits")) EXPECT_EQ(row.at("kept"), "not reached") << row;
   const std::string page = read("limits.html");
-  EXPECT_NE(page.find("PASS of 1 of 25 cases: "), std::string::npos);
+  EXPECT_NE(page.find("PASS of 1 of 26 cases: "), std::string::npos);
   EXPECT_EQ(page.find("verdict pass"), std::string::npos) << "it is not green";
   EXPECT_EQ(page.find("in all"), std::string::npos);
   for (const char* words : {"bounded up to 75146 N/m", "2644 N/m with it: 1.0 times as stiff",
@@ -82,8 +109,8 @@ TEST(LimitRows, APartOfThePlanPassesNoLimitThatItDidNotReach) {
 TEST(LimitRows, ALimitIsPassedWhereACaseReachedItAndATighterOneIsShownAsSuch) {
   const std::vector<LimitRow> whole = limit_rows(plan("all"));
   const auto row = [&](Bound bound) { return whole.at(static_cast<std::size_t>(bound)); };
-  for (const Bound bound :
-       {Bound::kForce, Bound::kTorque, Bound::kStep, Bound::kTorqueStep, Bound::kEnergy}) {
+  for (const Bound bound : {Bound::kForce, Bound::kTorque, Bound::kStep, Bound::kTorqueStep,
+                            Bound::kEnergy, Bound::kGrip}) {
     EXPECT_EQ(row(bound).kept, Kept::kPass) << row(bound).name;
     EXPECT_GT(row(bound).largest, (bound == Bound::kEnergy ? 0.5 : 0.95) * row(bound).limit)
         << row(bound).name;
@@ -112,7 +139,8 @@ TEST(LimitRows, ALineIsTestedWhereItIsWiredAndNowhereElse) {
   model::LinesSettings wired;
   wired.chip = "lines";
   for (const Case& c : all_cases()) {
-    EXPECT_EQ(why_left_out(c, {}) != nullptr, opens_line(c) || c.hand != HandMove::kStill)
+    EXPECT_EQ(why_left_out(c, {}) != nullptr,
+              opens_line(c) || c.hand != HandMove::kStill || c.grip == Grip::kJaws)
         << c.name;
     if (opens_line(c)) EXPECT_NE(why_left_out(c, wired), nullptr) << "a chip alone is no line";
   }

@@ -43,6 +43,7 @@ model::scene::Scene plate_scene(const Case& c, const LimitsBench& bench,
   const bool turns = limits.force_N > 0.0 && limits.torque_Nm > 0.0;
   const double lever_m = turns ? 2.0 * limits.torque_Nm / limits.force_N : kLeverWithoutTorque_m;
   scene.tool.spheres = {{{0, c.grip == Grip::kLever ? lever_m : 0.0, 0}, kReach_m}};
+  if (c.grip == Grip::kJaws) scene.tool.spheres.push_back(scene.tool.spheres.front());
   scene.organ_mesh = *model::mesh::make_surface_mesh({{-kHalfPlate_m, -kHalfPlate_m, kPlate_m},
                                                       {kHalfPlate_m, -kHalfPlate_m, kPlate_m},
                                                       {kHalfPlate_m, kHalfPlate_m, kPlate_m},
@@ -75,7 +76,8 @@ model::HandSettings hand_of(const Case& c, const model::Limits& limits) {
   };
   switch (c.hand) {
     case HandMove::kStill:
-      hand.path = {{.time_s = 0.0, .position_m = {}}};
+      hand.path = {
+          {.time_s = 0.0, .position_m = {}, .grip_ratio = c.grip == Grip::kJaws ? 1.0 : 0.0}};
       break;
     case HandMove::kSideways:  // a smooth stroke is 1.875 times as fast in its middle
       path({0, -0.8 * away_m, 0}, {0, 0.8 * away_m, 0}, 1.6 * away_m / limits.speed_mps);
@@ -142,11 +144,14 @@ CaseRun::CaseRun(const Case& c, const LimitsBench& bench)
   model::contact::ContactScene contact = tissue_->contact_scene();
   contact.law = law_.get();
   const model::Limits claimed = limits_of(c, bench.limits);
+  const model::Limits claimed_gate =
+      bench.gate_limits != nullptr ? bench.gate_limits(claimed) : claimed;
   controller_ = std::make_unique<firmware::loop::Controller>(
-      contact,
-      firmware::gate::Gate(bench.gate_limits != nullptr ? bench.gate_limits(claimed) : claimed,
-                           moment_.period_s, bench.force_share),
-      bench.hard_real_time);
+      contact, firmware::gate::Gate(claimed_gate, moment_.period_s, bench.force_share),
+      bench.hard_real_time,
+      c.grip == Grip::kJaws
+          ? firmware::gate::GripGate::make(claimed_gate, moment_.period_s, bench.force_share)
+          : std::nullopt);
   loop_ = std::make_unique<firmware::loop::RtLoop>(
       firmware::loop::LoopSettings{.period_ns = model::period_ns(bench.scene.rate_Hz)}, *device_,
       *lines_, *controller_, *clock_, requests_, *ring_);
@@ -226,7 +231,9 @@ void CaseRun::keep(const firmware::loop::TickRecord& record, bool cause) {
                    .limit = out.limit,
                    .fault = out.fault,
                    .given_J = out.given_energy_J,
-                   .rms_N = out.rms_force_N});
+                   .rms_N = out.rms_force_N,
+                   .gated_grip_N = out.written_grip_N,
+                   .written_grip_N = device_->written_grip_N()});
 }
 
 }  // namespace tact::tools::limits

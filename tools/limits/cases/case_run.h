@@ -26,7 +26,8 @@ struct TickRow {
   std::uint32_t skipped_periods = 0;  // before this tick
   std::uint32_t acted = 0;            // one bit a stage
   Fault limit = Fault::kNone, fault = Fault::kNone;
-  double given_J = 0.0, rms_N = 0.0;  // as the gate reckons
+  double given_J = 0.0, rms_N = 0.0;                // as the gate reckons
+  double gated_grip_N = 0.0, written_grip_N = 0.0;  // on the fingers
 };
 
 /// What all cases share.

@@ -47,8 +47,8 @@ enum class Trouble : std::uint8_t {
 /// What the simulated hand does; on a real device such cases are not run.
 enum class HandMove : std::uint8_t { kStill, kSideways, kOutside, kUp, kPress };
 
-/// Where the force acts on the tool.
-enum class Grip : std::uint8_t { kCentre, kLever };
+/// Where the force acts on the tool; kJaws: on two jaws that are closed, and so on the fingers.
+enum class Grip : std::uint8_t { kCentre, kLever, kJaws };
 
 struct Expected {
   firmware::gate::Stage stage = firmware::gate::Stage::kMagnitude;  // must act in the case
@@ -68,8 +68,9 @@ enum class Bound : std::uint8_t {
   kEnergy,
   kRms,
   kTorqueRms,
+  kGrip,
 };
-inline constexpr std::size_t kBoundCount = 8;
+inline constexpr std::size_t kBoundCount = 9;
 
 struct Case {
   const char* name;
@@ -101,6 +102,7 @@ model::Result<std::vector<Case>> choose_cases(const std::string& names);
 /// The name of the Z-width test in --plan, and is it asked for?
 inline constexpr std::string_view kWallName = "stiff-wall";
 inline constexpr const char* kNeedsHand = "needs the simulated hand";
+inline constexpr const char* kNoGripForce = "these limits let no force on the fingers";
 bool names_wall(const std::string& names);
 
 /// True for cases in which a safety line opens.

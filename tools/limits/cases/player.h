@@ -75,12 +75,17 @@ class PlayedDevice final : public hal::Device {
     written_ = wrench;
     return device_.write(wrench);
   }
+  void set_grip_force(double opening_N) RT_SAFE override {
+    written_grip_N_ = opening_N;
+    device_.set_grip_force(opening_N);
+  }
   void between_ticks(double elapsed_s) RT_SAFE override { device_.between_ticks(elapsed_s); }
   std::string trouble() const override { return device_.trouble(); }
   void stop() override { device_.stop(); }
 
   const model::Tool& tool() const { return tool_; }
   const Wrench& written() const { return written_; }
+  double written_grip_N() const { return written_grip_N_; }
 
  private:
   const Case& case_;
@@ -89,6 +94,7 @@ class PlayedDevice final : public hal::Device {
   firmware::loop::Clock& clock_;
   model::Tool tool_;
   Wrench written_;
+  double written_grip_N_ = 0.0;
 };
 
 /// The lines of the bench: levels of the simulated ones are set; before real ones the fault is told

@@ -17,11 +17,13 @@ Values limits_in_order(const model::Limits& l, double period_s) {
           l.power_W,
           l.energy_J,
           std::min(l.continuous_force_N, l.force_N),
-          continuous_torque_Nm(l)};
+          continuous_torque_Nm(l),
+          l.grip_force_N};
 }
 
 Values largest_in_order(const Extremes& w) {
-  return {w.force_N, w.torque_Nm, w.step_N, w.step_Nm, w.power_W, w.given_J, w.rms_N, w.rms_Nm};
+  return {w.force_N, w.torque_Nm, w.step_N, w.step_Nm, w.power_W,
+          w.given_J, w.rms_N,     w.rms_Nm, w.grip_N};
 }
 
 /// A case drives to a limit when its stage had something to do.
@@ -68,7 +70,8 @@ std::vector<LimitRow> limit_rows(const LimitsReport& report) {
                              {"Power given to the hand", "limits.power_W", "W"},
                              {"Energy given to the hand since arming", "limits.energy_J", "J"},
                              {"RMS of the force", "limits.continuous_force_N", "N"},
-                             {"RMS of the torque", "limits.continuous_force_N", "N m"}};
+                             {"RMS of the torque", "limits.continuous_force_N", "N m"},
+                             {"Force on the fingers", "limits.grip_force_N", "N"}};
   const Values limits = limits_in_order(report.limits, report.period_s);
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i].limit = limits[i];
   for (const CaseResult& result : report.cases) {

@@ -6,63 +6,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/limits/verdict/energy_account.h"
+
 namespace tact::tools::limits {
 namespace {
 
 using firmware::gate::kStageCount;
 using firmware::gate::kStageName;
 
-constexpr double kMinTurn = 0.45;         // of the torque limit, where a torque must go
-constexpr double kRounding = 1.0 + 1e-9;  // for sums and products; |F| has none
-
-/// Force that was held since the last sample, and the way that the next one shows.
-class EnergyAccount {
- public:
-  explicit EnergyAccount(const model::Limits& limits) : limits_(limits) {}
-
-  void add(const TickRow& row, double period_s) {
-    const double periods = 1.0 + row.skipped_periods;
-    time_s_ += periods * period_s;
-    // The force of the write before was on the hand until now, through every period that was
-    // skipped.
-    sum_.force_N += periods * held_.force_N;
-    sum_.torque_Nm += periods * held_.torque_Nm;
-    periods_ += periods;
-    held_ = {.force_N = row.written_N, .torque_Nm = row.written_Nm};
-    // Without a sample the way is not known: the force is added up until one comes.
-    if (!row.fresh || !is_finite(row.tool)) return;
-    if (placed_) {
-      const Vec3 moved_m = row.tool.position_m - position_m_;
-      given_J_ += dot(sum_.force_N, moved_m) / periods_ + turned_J(row.tool.orientation);
-    }
-    largest_J_ = std::max(largest_J_, given_J_);
-    // The budget recovers with time, as the gate's does, but on a clock of its own.
-    const double allowed_J = limits_.energy_J + limits_.recovery_W * time_s_;
-    overdrawn_J_ = std::max(overdrawn_J_, given_J_ - allowed_J * kRounding);
-    placed_ = true;
-    position_m_ = row.tool.position_m;
-    orientation_ = row.tool.orientation;
-    sum_ = {};
-    periods_ = 0.0;
-  }
-  double largest_J() const { return largest_J_; }
-  double overdrawn_J() const { return overdrawn_J_; }
-
- private:
-  double turned_J(const model::Quat& now) const {
-    const model::Quat turn = now * conjugate(orientation_);
-    const double sign = turn.w < 0.0 ? -2.0 : 2.0;  // small turns: twice the vector part
-    return dot(sum_.torque_Nm, sign * Vec3{turn.x, turn.y, turn.z}) / periods_;
-  }
-
-  const model::Limits& limits_;
-  Wrench held_, sum_;
-  double periods_ = 0.0, time_s_ = 0.0;
-  bool placed_ = false;
-  Vec3 position_m_;
-  model::Quat orientation_;
-  double given_J_ = 0.0, largest_J_ = 0.0, overdrawn_J_ = 0.0;
-};
+constexpr double kMinTurn = 0.45;   // of the torque limit, where a torque must go
+constexpr double kMinGrip = 0.999;  // of the limit on the fingers, where it is the case
 
 bool is_outside_or_too_fast(const TickRow& row, const model::Limits& limits) {
   const Vec3& p = row.tool.position_m;
@@ -76,7 +29,9 @@ bool is_cause(const TickRow& row, const model::Limits& limits) {
          (row.cause || !is_finite(row.commanded_N) || is_outside_or_too_fast(row, limits));
 }
 
-bool is_zero(const TickRow& row) { return row.written_N == Vec3{} && row.written_Nm == Vec3{}; }
+bool is_zero(const TickRow& row) {
+  return row.written_N == Vec3{} && row.written_Nm == Vec3{} && row.written_grip_N == 0.0;
+}
 
 /// From the cause to the first zero behind which no force or torque comes while the cause stands.
 std::optional<double> time_to_zero_s(const std::vector<TickRow>& rows,
@@ -117,9 +72,11 @@ void check_silence(Checks& checks, const std::vector<TickRow>& rows) {
   checks.add(
       all([](const TickRow& r) { return is_finite(r.written_N) && is_finite(r.written_Nm); }),
       "every force written is a number");
-  checks.add(
-      all([](const TickRow& r) { return r.written_N == r.gated_N && r.written_Nm == r.gated_Nm; }),
-      "the device was handed what the gate let through, bit for bit");
+  checks.add(all([](const TickRow& r) {
+               return r.written_N == r.gated_N && r.written_Nm == r.gated_Nm &&
+                      r.written_grip_N == r.gated_grip_N;
+             }),
+             "the device was handed what the gate let through, bit for bit");
   checks.add(all([&](const TickRow& r) { return r.armed || is_zero(r); }),
              "no force while it was not armed", "a force while it was not armed");
   bool faulted = false;
@@ -148,6 +105,10 @@ void check_expected(Checks& checks, const CaseVerdict& v) {
     checks.add(v.worst.force_N >= e.least_peak_ratio * v.limits.force_N,
                fmt::format("the test had force: {:.4g} N, at least {:.4g} N asked", v.worst.force_N,
                            e.least_peak_ratio * v.limits.force_N));
+  if (v.subject.grip == Grip::kJaws)
+    checks.add(v.worst.grip_N >= kMinGrip * v.limits.grip_force_N && v.worst.grip_N > 0.0,
+               fmt::format("the test had force on the fingers: {:.4g} N, at least {:.4g} N asked",
+                           v.worst.grip_N, kMinGrip * v.limits.grip_force_N));
   // Cases that end in zero must have had a torque to lose, where they are on a lever.
   if (!e.zero_within_s) return;
   const double least_Nm = kMinTurn * v.limits.torque_Nm;
@@ -189,24 +150,27 @@ std::vector<Check> check_bounds(const Extremes& worst, const model::Limits& limi
              fmt::format("largest torque {:.4g} N m, limit {:.4g} N m", worst.torque_Nm,
                          limits.torque_Nm));
   checks.add(
-      worst.step_N <= step_N * kRounding,
+      worst.step_N <= step_N * kRounding_ratio,
       fmt::format("largest change in a tick {:.4g} N, limit {:.4g} N", worst.step_N, step_N));
   const double step_Nm = torque_step_Nm(limits, period_s);
-  checks.add(worst.step_Nm <= step_Nm * kRounding,
+  checks.add(worst.step_Nm <= step_Nm * kRounding_ratio,
              fmt::format("largest change of torque in a tick {:.4g} N m, limit {:.4g} N m",
                          worst.step_Nm, step_Nm));
-  checks.add(worst.power_W <= limits.power_W * kRounding,
+  checks.add(worst.power_W <= limits.power_W * kRounding_ratio,
              fmt::format("largest power {:.4g} W, limit {:.4g} W", worst.power_W, limits.power_W));
   checks.add(worst.overdrawn_J <= 0.0,
              fmt::format("energy given {:.4g} J, budget {:.4g} J and {:.4g} W", worst.given_J,
                          limits.energy_J, limits.recovery_W));
-  checks.add(worst.rms_N <= limits.continuous_force_N * kRounding,
+  checks.add(worst.rms_N <= limits.continuous_force_N * kRounding_ratio,
              fmt::format("largest RMS {:.4g} N, limit {:.4g} N", worst.rms_N,
                          std::min(limits.continuous_force_N, limits.force_N)));
   const double continuous_Nm = continuous_torque_Nm(limits);
-  checks.add(worst.rms_Nm <= continuous_Nm * kRounding,
+  checks.add(worst.rms_Nm <= continuous_Nm * kRounding_ratio,
              fmt::format("largest RMS of the torque {:.4g} N m, limit {:.4g} N m", worst.rms_Nm,
                          continuous_Nm));
+  checks.add(worst.grip_N <= limits.grip_force_N * kRounding_ratio,
+             fmt::format("largest force on the fingers {:.4g} N, limit {:.4g} N", worst.grip_N,
+                         limits.grip_force_N));
   return checks.list();
 }
 
@@ -234,6 +198,7 @@ Extremes extremes_of(const std::vector<TickRow>& rows, const model::Limits& limi
     const auto larger = [](double& most, double value) { most = std::max(most, value); };
     larger(worst.force_N, norm(row.written_N));
     larger(worst.torque_Nm, norm(row.written_Nm));
+    larger(worst.grip_N, std::abs(row.written_grip_N));
     if (is_finite(row.commanded_N)) larger(worst.commanded_N, norm(row.commanded_N));
     const bool stopped = !row.armed || latches(row.fault);  // then it goes to zero at once
     const double periods = 1.0 + row.skipped_periods;       // since the write before

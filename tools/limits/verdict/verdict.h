@@ -32,6 +32,7 @@ struct Extremes {
   double given_J = 0.0;                // largest since arming
   double overdrawn_J = 0.0;            // above budget and recovery; 0: never
   double rms_N = 0.0, rms_Nm = 0.0;
+  double grip_N = 0.0;  // on the fingers
   // From the cause to zero force and torque, which stay zero while it stands; none: no cause, or
   // never zero.
   std::optional<double> zero_s{};

@@ -9,7 +9,8 @@
 namespace tact::rig {
 namespace {
 
-constexpr int kMotorDriverFault = 33, kMotorNotConfigured = 36, kPositionInvalid = 43;
+constexpr int kMotorDriverFault = 33, kMotorNotConfigured = 36, kUnderVoltage = 40;
+constexpr int kPositionInvalid = 43;
 constexpr double kSupply_V = 24.0, kBoard_C = 31.0;
 constexpr std::uint32_t kReplyWanted = 0x8000, kEverybody = 0x7F;
 
@@ -89,6 +90,7 @@ void MoteusDrive::tick(std::int64_t now_ns) {
     if (!settings_.is_calibrated) trip(kMotorNotConfigured);
     if (!settings_.knows_position) trip(kPositionInvalid);
   }
+  if (is_low_ && (mode_ == kPreparing || mode_ == kPosition)) trip(kUnderVoltage);
   const double dt_s = 1e-9 * static_cast<double>(now_ns - std::exchange(ticked_ns_, now_ns));
   const double error_turns = command_.position_turns - motor_.position_turns;
   if (mode_ != kPosition || std::isnan(error_turns)) {

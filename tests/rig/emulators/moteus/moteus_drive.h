@@ -55,6 +55,8 @@ class MoteusDrive final : public Drive, public MoteusRegisters {
   int mode() const { return mode_; }
   /// Its encoder is gone, and it has not noticed.
   void lose_position() { settings_.knows_position = false; }
+  /// Its supply falls below what its power stage needs, while its logic lives on; or is back.
+  void sag(bool low) { is_low_ = low; }
 
  private:
   static constexpr int kStopped = 0, kFault = 1, kPreparing = 3, kPosition = 10, kTimeout = 11;
@@ -80,7 +82,7 @@ class MoteusDrive final : public Drive, public MoteusRegisters {
   Command written_{};  // of the frame that is served
   double integral_Nm_ = 0.0;
   std::int64_t ticked_ns_ = 0;
-  bool has_written_ = false, has_tripped_ = false;
+  bool has_written_ = false, has_tripped_ = false, is_low_ = false;
   std::int64_t commanded_ns_ = 0, prepared_ns_ = 0;
 };
 

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hal/permission.h"
+
+#include <fmt/format.h>
+#include <grp.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "hal/udev_rules.h"
+#include "model/io/input_file.h"
+
+namespace tact::hal {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string first_line(const fs::path& file) {
+  const auto text = model::io::read_file(file.string());
+  return text ? text->substr(0, text->find('\n')) : std::string();
+}
+
+}  // namespace
+
+std::optional<gid_t> haptics_group() {
+  const group* const found = getgrnam("haptics");
+  return found != nullptr ? std::optional(found->gr_gid) : std::nullopt;
+}
+
+Refusal why_refused(const std::string& node, const char* rule, std::optional<gid_t> group) {
+  struct stat facts{};
+  constexpr mode_t kOfGroup = S_IRGRP | S_IWGRP;
+  const bool given = group && stat(node.c_str(), &facts) == 0 && facts.st_gid == *group &&
+                     (facts.st_mode & kOfGroup) == kOfGroup;
+  if (!given)
+    return {fmt::format("{} may not be opened; its udev rule is missing: {}", node, rule),
+            kRuleCure};
+  return {fmt::format("{} may not be opened: it is of the group haptics, and whoever runs this is "
+                      "not in it",
+                      node),
+          "sudo adduser $USER haptics, and log in again"};
+}
+
+int access_error(const std::string& node) {
+  return access(node.c_str(), R_OK | W_OK) == 0 ? 0 : errno;
+}
+
+std::optional<Refusal> refused_usb_device(const char* vendor, const char* product, const char* rule,
+                                          const std::string& sys_root,
+                                          const std::string& dev_root) {
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(sys_root + "/bus/usb/devices", none)) {
+    const fs::path& device = entry.path();
+    if (first_line(device / "idVendor") != vendor) continue;
+    if (product != nullptr && first_line(device / "idProduct") != product) continue;
+    const auto number = [&](const char* file) {
+      return std::strtoul(first_line(device / file).c_str(), nullptr, 10);
+    };
+    const std::string node =
+        fmt::format("{}/bus/usb/{:03}/{:03}", dev_root, number("busnum"), number("devnum"));
+    if (open_when_permitted([&] { return access_error(node); }) == EACCES)
+      return why_refused(node, rule);
+  }
+  return std::nullopt;
+}
+
+}  // namespace tact::hal

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// permission.h - a device node that may not be opened: for a moment, or for lack of what.
+//
+// When a device is plugged in its node is root's alone, until udev has given it to the group: a
+// refusal counts once it has lasted 200 ms. Its group then tells whether the rule is missing, or
+// the member. Set-up code, which waits.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cerrno>
+#include <chrono>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "model/result.h"
+
+namespace tact::hal {
+
+/// `open` gives 0, EACCES when it is refused, or another error. The last that it gave.
+template <class Open>
+int open_when_permitted(Open open) {
+  constexpr auto kPause = std::chrono::milliseconds(20);
+  constexpr int kMaxTries = 11;  // 200 ms
+  int error = open();
+  for (int i = 1; i < kMaxTries && error == EACCES; ++i) {
+    std::this_thread::sleep_for(kPause);
+    error = open();
+  }
+  return error;
+}
+
+/// Why a node may not be opened, and the cure.
+struct Refusal {
+  std::string lacking, cure;
+  model::Error error() const { return {lacking + "; " + cure}; }
+};
+
+/// The group of the udev rules; none where it does not exist.
+std::optional<gid_t> haptics_group();
+/// Of a node that was refused; `rule` is of udev_rules.h.
+Refusal why_refused(const std::string& node, const char* rule,
+                    std::optional<gid_t> group = haptics_group());
+
+/// 0, or the errno of opening a node for reading and writing; asked, so nobody is disturbed.
+int access_error(const std::string& node);
+
+/// Of the first USB device of this vendor and product (null: any) whose node is refused; nothing
+/// where all may be opened, or none is there. For libraries that look for devices by themselves.
+std::optional<Refusal> refused_usb_device(const char* vendor, const char* product, const char* rule,
+                                          const std::string& sys_root = "/sys",
+                                          const std::string& dev_root = "/dev");
+
+}  // namespace tact::hal

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hal/permission.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "hal/udev_rules.h"
+
+namespace tact::hal::permission_test {
+
+constexpr uid_t kNobody = 65534;
+
+TEST(Permission, ARefusalThatUdevEndsWithin200MsIsNone) {
+  int opens = 0;
+  EXPECT_EQ(open_when_permitted([&] { return ++opens < 8 ? EACCES : 0; }), 0);
+  EXPECT_EQ(opens, 8);
+}
+
+TEST(Permission, ARefusalThatLastsIsOneAndAnotherErrorIsToldAtOnce) {
+  int opens = 0;
+  EXPECT_EQ(open_when_permitted([&] { return ++opens, EACCES; }), EACCES);
+  EXPECT_EQ(opens, 11);
+  opens = 0;
+  EXPECT_EQ(open_when_permitted([&] { return ++opens, ENODEV; }), ENODEV);
+  EXPECT_EQ(opens, 1);
+}
+
+class PermissionOfNode : public testing::Test {
+ protected:
+  PermissionOfNode() {
+    std::filesystem::create_directories(root + "/sys/bus/usb/devices/1-2");
+    std::filesystem::create_directories(root + "/dev/bus/usb/001");
+    std::ofstream node_file(node);
+    chmod(node.c_str(), 0660);
+    for (const auto& [file, word] :
+         {std::pair{"idVendor", "1451"}, {"idProduct", "0402"}, {"busnum", "1"}, {"devnum", "7"}})
+      std::ofstream(root + "/sys/bus/usb/devices/1-2/" + file) << word << '\n';
+  }
+  ~PermissionOfNode() override { std::filesystem::remove_all(root); }
+
+  std::string root = testing::TempDir() + "tact-permission-" + std::to_string(getpid());
+  std::string node = root + "/dev/bus/usb/001/007";
+};
+
+TEST_F(PermissionOfNode, TheRuleIsMissingUnlessTheNodeIsOfTheGroup) {
+  const gid_t own = getegid();
+  const Refusal of_root = why_refused(node, kGpioRule, own + 1);
+  EXPECT_NE(of_root.lacking.find(kGpioRule), std::string::npos) << of_root.lacking;
+  EXPECT_EQ(of_root.cure, kRuleCure);
+  const Refusal of_group = why_refused(node, kGpioRule, own);
+  EXPECT_EQ(of_group.lacking.find("rule"), std::string::npos) << of_group.lacking;
+  EXPECT_NE(of_group.lacking.find("group haptics"), std::string::npos);
+  EXPECT_EQ(of_group.cure, "sudo adduser $USER haptics, and log in again");
+  EXPECT_NE(why_refused(node, kGpioRule, std::nullopt).lacking.find("rule"), std::string::npos);
+  chmod(node.c_str(), 0640);
+  EXPECT_NE(why_refused(node, kGpioRule, own).lacking.find("rule is missing"), std::string::npos);
+}
+
+TEST_F(PermissionOfNode, AUsbDeviceThatALibraryLooksForIsRefusedByItsNodeAlone) {
+  const auto ask = [&](const char* vendor, const char* product) {
+    return refused_usb_device(vendor, product, kForceDimensionRule, root + "/sys", root + "/dev");
+  };
+  EXPECT_FALSE(ask("1451", nullptr)) << "it may be opened";
+  EXPECT_FALSE(ask("2988", nullptr)) << "it is not there";
+  const auto see_refusal = [&] {
+    chmod(node.c_str(), 0);
+    if (geteuid() == 0 && setreuid(kNobody, kNobody) != 0) _exit(2);  // root may open any node
+    const auto refusal = ask("1451", "0402");
+    const bool told = refusal && refusal->lacking.starts_with(node + " may not be opened");
+    _exit(told && !ask("1451", "0403") ? 7 : 8);
+  };
+  EXPECT_EXIT(see_refusal(), testing::ExitedWithCode(7), "");
+}
+
+}  // namespace tact::hal::permission_test

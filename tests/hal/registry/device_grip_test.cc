@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// How the hand closes the jaws on each device of the registry.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <type_traits>
+
+#include "hal/falcon/falcon_device.h"
+#include "hal/odrive/odrive_delta.h"
+#include "hal/registry/open_device.h"
+#include "tests/hal/emulated/cia402_emulated_bench.h"
+#include "tests/hal/moteus/moteus_bench.h"
+#include "tests/rig/emulators/odrive/odrive_drive.h"
+#include "tests/support/stub_dhd/stub_client.h"
+#include "tests/support/stub_hd/hd_client.h"
+
+namespace tact::hal::registry::device_grip_test {
+
+// A back end that says nothing of its grip does not compile.
+static_assert(!std::is_default_constructible_v<DeviceGrip>);
+static_assert(!std::is_default_constructible_v<DeviceInfo>);
+
+struct SilentPipe final : falcon::FalconPipe {
+  bool submit(const falcon::FalconPacket&) RT_SAFE override { return true; }
+  bool newest(falcon::FalconReply&) RT_SAFE override { return false; }
+  falcon::FalconPipeHealth health() const RT_SAFE override { return {}; }
+  void stop(const falcon::FalconPacket&) override {}
+};
+
+GripKind grip_of_opened(const model::scene::Scene& scene) {
+  const auto device = open_device(scene);
+  EXPECT_TRUE(device) << device.error().sentence;
+  return device ? (*device)->info().grip.kind : GripKind::kNone;
+}
+
+template <class Bench>
+GripKind grip_of_bench(Bench&& bench) {
+  EXPECT_EQ(bench.open(), "");
+  return bench.device ? bench.device->info().grip.kind : GripKind::kForce;
+}
+
+struct OdriveDrives : tests::EmulatedDrives {
+  OdriveDrives() : EmulatedDrives(32) {}
+};
+struct OdriveBench : tests::CanBench<OdriveDrives> {
+  OdriveBench() : CanBench(tests::jig_settings(tests::published_pose())) {
+    drives.install<rig::OdriveDrive>(rig::OdriveSettings{});
+  }
+  std::string open() { return CanBench::open(&odrive::start_odrive_delta); }
+};
+
+std::map<std::string, GripKind> grip_of_each_kind() {
+  model::scene::Scene simulated;
+  simulated.device = {.kind = "sim-delta",
+                      .sim = {.counts_per_turn = 100'000.0, .observer_bandwidth_Hz = 40.0}};
+  simulated.hand.path = {{}};
+  const tests::StubDhd dhd;
+  const tests::StubHd hd;
+  return {
+      {"sim-delta", grip_of_opened(simulated)},
+      {"can-odrive", grip_of_bench(OdriveBench())},
+      {"can-cia402", grip_of_bench(emulated::Cia402Bench())},
+      {"can-moteus", grip_of_bench(tests::MoteusBench())},
+      {"falcon", falcon::FalconDevice({}, std::make_unique<SilentPipe>()).info().grip.kind},
+      {"force-dimension", grip_of_opened(tests::stub_scene())},
+      {"phantom", grip_of_opened(tests::phantom_scene())},
+  };
+}
+
+/// Of the words that refuse an unknown one.
+std::vector<std::string> kinds_of_registry() {
+  model::scene::Scene unknown;
+  unknown.device.kind = "?";
+  const std::string said = open_device(unknown).error().sentence;
+  std::vector<std::string> kinds;
+  for (auto at = said.find("use ") + 4; at < said.size();) {
+    const auto from = said.find('"', at) + 1, to = said.find('"', from);
+    kinds.push_back(said.substr(from, to - from));
+    at = to + 1;
+  }
+  return kinds;
+}
+
+TEST(DeviceGrip, EveryBackEndOfTheRegistrySaysHowItGrips) {
+  const std::map<std::string, GripKind> expected{
+      {"sim-delta", GripKind::kForce}, {"can-odrive", GripKind::kNone},
+      {"can-cia402", GripKind::kNone}, {"can-moteus", GripKind::kNone},
+      {"falcon", GripKind::kButton},   {"force-dimension", GripKind::kButton},
+      {"phantom", GripKind::kButton}};
+  const auto told = grip_of_each_kind();
+  const auto kinds = kinds_of_registry();
+  EXPECT_EQ(kinds.size(), expected.size()) << "a new back end has a row in this test";
+  for (const std::string& kind : kinds) {
+    ASSERT_TRUE(told.contains(kind)) << kind << " has no row in this test";
+    EXPECT_EQ(told.at(kind), expected.at(kind)) << kind;
+  }
+}
+
+}  // namespace tact::hal::registry::device_grip_test
