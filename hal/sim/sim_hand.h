@@ -21,8 +21,8 @@ class SimHand {
   /// The path has at least one waypoint.
   explicit SimHand(model::HandSettings settings);
 
-  /// A person wants the hand here; holds for one second. NaN is ignored.
-  void steer(const Vec3& position_m, double grip_ratio) RT_SAFE;
+  /// A person wants the hand here, and the tool turned so; holds for one second. NaN is ignored.
+  void steer(const model::HandWaypoint& wanted) RT_SAFE;
   void step(double dt_s) RT_SAFE;
 
   const model::HandSettings& settings() const RT_SAFE { return settings_; }

@@ -133,7 +133,7 @@ TEST_P(EveryScene, TheSameRunGivesTheSameBits) {
 }
 
 INSTANTIATE_TEST_SUITE_P(ClosedLoop, EveryScene,
-                         testing::Values("liver", "heart", "skin", "gum", "maintenance"),
+                         testing::Values("liver", "liver_twist", "heart", "skin", "gum", "maintenance"),
                          [](const auto& one) { return std::string(one.param); });
 
 }  // namespace tact::firmware::run::closed_loop_test
