@@ -17,6 +17,7 @@ namespace tact::firmware::telemetry {
 struct HelloFacts {
   hal::DeviceInfo device;
   double force_limit_N = 0.0;
+  double torque_limit_Nm = 0.0;
   double continuous_force_N = 0.0;
   double energy_budget_J = 0.0;
   std::string limits_checksum;

@@ -211,11 +211,7 @@ int show_live(const Options& options) {
   TelemetryClient client(io, options.socket,
                          show_and_record(view, recorder, inputs, figure, picker), *trust);
   server::ViewerServer server(
-      io, view,
-      [&client](const double (&position_m)[3], double grip_ratio) {
-        client.move_hand(position_m, grip_ratio);
-      },
-      warn);
+      io, view, [&client](const server::HandWish& wish) { client.move_hand(wish); }, warn);
   if (picker)
     server.let_choose([&picker](const server::SceneWish& wish) { picker->ask(wish); }, scenes);
   const int status = serve(options, io, server, [&] {
