@@ -4,7 +4,7 @@
 //     p(t) + R(t) c = p0 + R0 c + (p1 + R1 c - p0 - R0 c) u,   r(t) = r0 + (r1 - r0) u
 //     u = 10 s^3 - 15 s^4 + 6 s^5,   s = (t - t0) / (t1 - t0)
 //
-//     p, r  position and rotation vector, R the rotation;  c  the point of the tool that goes straight
+//     p, r  position and rotation vector, R the rotation;  c  the point that goes straight
 //
 // [T. Flash, N. Hogan, J. Neurosci. 5 (1985) 1688]: zero speed and acceleration at each waypoint.
 #pragma once

@@ -20,7 +20,7 @@
 namespace tact::hal::gpio {
 
 inline constexpr std::size_t kMaxRequestLines = 4;  // estop_a, estop_b, dead_man, grip
-using Levels = std::array<int, kMaxRequestLines>;  // by place in the request; 1: high
+using Levels = std::array<int, kMaxRequestLines>;   // by place in the request; 1: high
 
 enum class LineUse { kInput, kOutput, kEdges };  // outputs begin low
 

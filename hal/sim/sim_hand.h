@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// sim_hand.h - where the simulated hand pulls the handle: along its script, or after a mouse.
+// sim_hand.h - where the simulated hand pulls and turns the handle: by its script or a mouse.
 //
 //     F = k (x_h - x) + b (v_h - v)        x_h, v_h from here; x, v of the handle, W
 //

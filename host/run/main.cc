@@ -211,7 +211,11 @@ int show_live(const Options& options) {
   TelemetryClient client(io, options.socket,
                          show_and_record(view, recorder, inputs, figure, picker), *trust);
   server::ViewerServer server(
-      io, view, [&client](const server::HandWish& wish) { client.move_hand(wish); }, warn);
+      io, view,
+      [&client](const server::HandWish& wish) {
+        client.move_hand(wish.position_m, wish.rotation_rad, wish.grip_ratio);
+      },
+      warn);
   if (picker)
     server.let_choose([&picker](const server::SceneWish& wish) { picker->ask(wish); }, scenes);
   const int status = serve(options, io, server, [&] {

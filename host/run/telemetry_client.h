@@ -20,10 +20,6 @@
 #include "model/io/socket_file.h"
 #include "model/result.h"
 
-namespace tact::host::server {
-struct HandWish;
-}
-
 namespace tact::host::run {
 
 /// $XDG_RUNTIME_DIR/tact/telemetry.sock, or /tmp/tact-<uid>/telemetry.sock.
@@ -50,7 +46,7 @@ class TelemetryClient {
   void stop();
 
   /// Where a simulated hand shall go, W. Dropped when the device is hardware or nobody listens.
-  void move_hand(const server::HandWish& wish);
+  void move_hand(const double (&position_m)[3], const double (&rotation_rad)[3], double grip_ratio);
 
  private:
   void connect();

@@ -127,8 +127,7 @@ void LiveSession::take(const std::string& text) {
   if (steer_)
     if (const std::optional<ReplayWish> wish = parse_replay(text)) steer_(*wish);
   if (!move_hand_) return;
-  if (const std::optional<HandWish> hand = parse_hand(text))
-    move_hand_(*hand);
+  if (const std::optional<HandWish> hand = parse_hand(text)) move_hand_(*hand);
   // Behind the hand's right: who may not move it chooses no scene.
   if (ask_scene_)
     if (const std::optional<SceneWish> wish = parse_scene_wish(text)) ask_scene_(*wish);

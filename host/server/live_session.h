@@ -6,8 +6,9 @@
 // kMaxUnseen may be on the way, and of those that wait only the newest is kept. So a slow browser
 // sees fewer frames, never older ones, and holds up nobody. A page may send
 // {"hand":{"x_m":..,"y_m":..,"z_m":..,"turn_x_rad":..,"turn_y_rad":..,"turn_z_rad":..,
-// "grip_ratio":..}} for a simulated device, and to a replay what replay_wish.h says. Where the scene of a simulation may be chosen (scene_picker.h) it may
-// also send what scene_wish.h says. Nothing else is heard: no page arms, stops or resets a device.
+// "grip_ratio":..}} for a simulated device, and to a replay what replay_wish.h says. Where the
+// scene of a simulation may be chosen (scene_picker.h) it may also send what scene_wish.h says.
+// Nothing else is heard: no page arms, stops or resets a device.
 #pragma once
 
 #include <boost/beast/core/flat_buffer.hpp>

@@ -8,7 +8,8 @@
 //     inward  unit direction into the tissue, W;  R: how the tool is turned
 //     slid    sum of the slides since the last release, and of what turns moved the origin along
 //
-// A way point is where the hand wants the handle: p + R handle. A turn leaves tip or handle in place.
+// A way point is where the hand wants the handle: p + R handle. A turn leaves tip or handle in
+// place.
 // The hand holds the tool by a spring: what it reaches is less than what it wants. Set-up code
 // only.
 #pragma once

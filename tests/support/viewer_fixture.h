@@ -48,7 +48,9 @@ class Viewer : public ::testing::Test {
                  .silent = [this](double seconds) { silences_s_.push_back(seconds); }}),
         server_(
             io_, view_,
-            [this](const host::server::HandWish& wish) { client_.move_hand(wish); },
+            [this](const host::server::HandWish& wish) {
+              client_.move_hand(wish.position_m, wish.rotation_rad, wish.grip_ratio);
+            },
             [this](const std::string& sentence) { warnings_.push_back(sentence); }) {
     fs::create_directories(folder_);
     std::ofstream(folder_ / "index.html") << "<html>page";

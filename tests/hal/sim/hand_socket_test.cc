@@ -43,7 +43,9 @@ bool wait_for(LatestSlot<HandTarget>& slot, HandTarget& target) {
   }
   return false;
 }
-HandTarget at(double x_m) { return {.position_m = {x_m, 0.02, -0.03}, .rotation_rad = {0.1, 0.0, -0.2}, .grip_ratio = 0.5}; }
+HandTarget at(double x_m) {
+  return {.position_m = {x_m, 0.02, -0.03}, .rotation_rad = {0.1, 0.0, -0.2}, .grip_ratio = 0.5};
+}
 
 TEST(HandSocket, PassesTheNewestTarget) {
   const std::string path = fresh_path("pass");

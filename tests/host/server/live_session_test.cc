@@ -28,9 +28,8 @@ TEST(LiveSession, KeepsTheGripBetweenOpenAndClosed) {
 TEST(LiveSession, RefusesEverythingElse) {
   for (const char* text :
        {"", "{", "[]", "null", "7", R"({"hand":7})", R"({"hand":{}})", R"({"hand":[0,0,0,0]})",
-        R"({"hand":{"x_m":0,"y_m":0,"z_m":0,"grip_ratio":0}})", R"({"force_N":[1,2,3]})"}) {
+        R"({"hand":{"x_m":0,"y_m":0,"z_m":0,"grip_ratio":0}})", R"({"force_N":[1,2,3]})"})
     EXPECT_FALSE(parse_hand(text)) << text;
-  }
   const auto parses = [](const std::string& x_m, const std::string& turn_x_rad, const char* rest) {
     return parse_hand("{\"hand\":{\"x_m\":" + x_m + ",\"y_m\":0,\"z_m\":0,\"turn_x_rad\":" +
                       turn_x_rad + ",\"turn_y_rad\":0,\"turn_z_rad\":0" + rest + "}}")

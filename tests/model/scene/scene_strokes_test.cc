@@ -158,11 +158,12 @@ TEST(Strokes, TurnsAreCountedFromRestAndAReleaseTurnsBack) {
 }
 
 TEST(Strokes, PullAfterATurnGoesUpWhereTheTipIsWithItsReach) {
-  // The handle 0.3 rad aside: the jaw's centre 4 mm above the origin no longer stands upright.
-  const Written w = write({press(0.0, 1.0), kGrip, turn({0, 1, 0}, 0.3), pull(0.008)}, false, kJaw);
-  const Vec3 centre_m = point_W_m(w.path[3], kJaw.offset_m);
+  // The handle goes aside, and the jaw's centre no longer stands upright above the tool's origin.
+  const Written w =
+      write({press(0.0, 1.0), kGrip, turn({0, 1, 0}, 0.3), pull(0.008)}, false, kJaw, kHandle_m);
+  const Vec3 centre_m = point_W_m(w.path[3], kTip_m);
   EXPECT_LT(norm(centre_m - (kSite_m + Vec3{0, 0, 0.004})), 1e-15);
-  EXPECT_LT(norm(point_W_m(w.path[4], kJaw.offset_m) - centre_m - Vec3{0, 0, 0.008}), 1e-15);
+  EXPECT_LT(norm(point_W_m(w.path[4], kTip_m) - centre_m - Vec3{0, 0, 0.008}), 1e-15);
 }
 
 TEST(Strokes, RefuseAHandleOutsideTheWorkspace) {
