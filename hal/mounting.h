@@ -34,6 +34,9 @@ struct Mounting {
   Vec3 velocity_W(const Vec3& in_base_mps) const RT_SAFE {
     return scale * rotate(turn, in_base_mps);
   }
+  Vec3 velocity_in_base(const Vec3& v_W) const RT_SAFE {
+    return rotate(conjugate(turn), v_W) / scale;
+  }
   Vec3 force_in_base(const Vec3& f_W) const RT_SAFE { return scale * rotate(conjugate(turn), f_W); }
   /// A direction without a size in m or N: an axis, an angular velocity, a torque.
   Vec3 direction_W(const Vec3& in_base) const RT_SAFE { return rotate(turn, in_base); }

@@ -86,6 +86,7 @@ class Gate {
   /// How often each stage acted.
   const std::array<std::uint64_t, kStageCount>& counters() const RT_SAFE { return counter_; }
   double force_limit_N() const RT_SAFE { return force_limit_N_; }
+  double torque_limit_Nm() const RT_SAFE { return torque_limit_Nm_; }
   double continuous_force_N() const RT_SAFE { return warm_force_.continuous(); }
   double energy_budget_J() const RT_SAFE { return limits_.energy_J; }
   /// Since arming, more than was taken; below zero: more was taken.

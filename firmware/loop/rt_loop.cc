@@ -140,6 +140,8 @@ void RtLoop::write() RT_SAFE {
 // The record is dropped when nobody has read the last ones.
 void RtLoop::tell() RT_SAFE {
   statistics_.max_force_N = std::max(statistics_.max_force_N, norm(record_.output.written.force_N));
+  statistics_.max_torque_Nm =
+      std::max(statistics_.max_torque_Nm, norm(record_.output.written.torque_Nm));
   statistics_.max_grip_force_N =
       std::max(statistics_.max_grip_force_N, std::abs(record_.output.written_grip_N));
   statistics_.max_rms_force_N = std::max(statistics_.max_rms_force_N, record_.output.rms_force_N);

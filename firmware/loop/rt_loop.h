@@ -33,6 +33,7 @@ struct LoopStatistics {
   std::uint32_t clutches = 0;       // times that the clutch has opened
   std::uint64_t inside_ticks = 0;   // a sphere was inside the organ and felt nothing
   double max_force_N = 0.0;         // written
+  double max_torque_Nm = 0.0;       // written
   double max_grip_force_N = 0.0;    // written, on the fingers
   double max_rms_force_N = 0.0;     // written, over limits.thermal_time_s
   double max_given_energy_J = 0.0;  // since arming, more than was taken

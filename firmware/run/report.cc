@@ -109,6 +109,7 @@ std::string make_report(const RunFacts& facts, const loop::LoopStatistics& loop,
                        {"phases", phases(loop)},
                        {"force_max_N", loop.max_force_N},
                        {"force_limit_N", facts.force_limit_N},
+                       {"torque_max_Nm", loop.max_torque_Nm},
                        {"grip_force_max_N", loop.max_grip_force_N},
                        {"limits_checksum", facts.limits_checksum},
                        {"force_rms_max_N", loop.max_rms_force_N},
@@ -146,6 +147,8 @@ std::string make_summary(const RunFacts& facts, const loop::LoopStatistics& loop
   out += fmt::format("  force         max {:.3f} N of {:.2f} N allowed, limits {}, state {}",
                      loop.max_force_N, facts.force_limit_N, facts.limits_checksum,
                      name_of(facts.state));
+  if (loop.max_torque_Nm > 0.0)
+    out += fmt::format(", torque max {:.1f} mN m", 1e3 * loop.max_torque_Nm);
   if (facts.costs.heap_calls_known)
     out += fmt::format(", {} allocations, {} page faults", facts.costs.heap_calls,
                        facts.costs.minor_faults + facts.costs.major_faults);

@@ -31,6 +31,7 @@ telemetry::Hello hello_of(const RunSetup& run, const std::string& hand_path) {
   const telemetry::HelloFacts facts{
       .device = run.parts.device->info(),
       .force_limit_N = gate.force_limit_N(),
+      .torque_limit_Nm = gate.torque_limit_Nm(),
       .continuous_force_N = gate.continuous_force_N(),
       .energy_budget_J = gate.energy_budget_J(),
       .limits_checksum = run.parts.limits_checksum,

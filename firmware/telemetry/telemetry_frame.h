@@ -17,12 +17,13 @@ namespace tact::firmware::telemetry {
 struct HelloFacts {
   hal::DeviceInfo device;
   double force_limit_N = 0.0;
+  double torque_limit_Nm = 0.0;
   double continuous_force_N = 0.0;
   double energy_budget_J = 0.0;
-  std::string limits_checksum;
+  std::string limits_checksum{};
   bool non_rt = false;
   bool cannot_grip = false;
-  std::string hand_socket;  // empty: the device is not simulated
+  std::string hand_socket{};  // empty: the device is not simulated
 };
 
 Hello make_hello(const model::scene::Scene& scene, const model::scene::Tissue& tissue,

@@ -52,7 +52,8 @@ struct Hello {
   float sphere_offset_m[kMaxSites][3] = {};  // tool frame
   std::uint8_t non_rt = 0;                   // 1: this PC gives no hard real time, force is capped
   std::uint8_t simulated = 0;                // 1: the device is simulated, the hand may be moved
-  char scene_name[52] = {};
+  char scene_name[50] = {};
+  std::uint16_t torque_limit_mNm = 0;  // in use; 0: the device has no torque
   std::uint8_t cannot_grip = 0;  // 1: the scene grips, and the device has nothing to close the jaws
   char limits_checksum[9] = {};  // of the limits in use (model/io/limits_checksum.h)
   char device_name[64] = {};
@@ -120,6 +121,6 @@ static_assert(sizeof(FramePatch) == 16 + kMaxPatchVertices * 10 + kMaxCutsTold *
 static_assert(sizeof(Frame) ==
               48 + 25 * sizeof(float) + 8 + 4 + kMaxSites * sizeof(FrameSite) + sizeof(FramePatch));
 static_assert(sizeof(Frame) <= 4096);
-static_assert(sizeof(Hello) == 122 + 52 + 1 + 9 + 64 + 64 + 108 + 24 + 4 + 48);
+static_assert(sizeof(Hello) == 122 + 50 + 2 + 1 + 9 + 64 + 64 + 108 + 24 + 4 + 48);
 
 }  // namespace tact::firmware::telemetry

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace tact::hal::sim {
@@ -21,6 +22,8 @@ bool is_sound(const HandTarget& target) RT_SAFE {
   if (target.magic != kHandTargetMagic || target.version != kHandTargetVersion) return false;
   for (const double x : target.position_m)
     if (!(std::abs(x) <= kFarthest_m)) return false;
+  for (const double x : target.rotation_rad)
+    if (!(std::abs(x) <= std::numbers::pi)) return false;
   return std::isfinite(target.grip_ratio);
 }
 

@@ -19,7 +19,7 @@
 
 namespace tact::hal::sim {
 
-/// Magic, version, finite position within a metre, finite grip.
+/// Magic, version, finite position within a metre, a turn of at most pi, finite grip.
 bool is_sound(const HandTarget& target) RT_SAFE;
 
 class HandSocket {

@@ -35,13 +35,6 @@ double counted_rad(double angle_rad, double counts_per_turn) RT_SAFE {
   return std::floor(angle_rad / rad_per_count + 0.5) * rad_per_count;
 }
 
-/// The way of the hand as its base sees it. How it turns the handle stays as the scene says.
-model::HandSettings hand_of_base(model::HandSettings hand, const Mounting& mounting) {
-  for (model::HandWaypoint& point : hand.path)
-    point.position_m = mounting.point_in_base(point.position_m);
-  return hand;
-}
-
 /// The nearest point of the workspace cylinder.
 Vec3 inside_workspace_m(const Vec3& p_W) RT_SAFE {
   const double radius_m = std::hypot(p_W.y, p_W.z);
@@ -58,10 +51,11 @@ SimDelta::SimDelta(const model::SimDeviceSettings& device, const model::HandSett
       mounting_(mounting),
       gravity_D_mps2_(direction_D(mounting.gravity_in_base_mps2())),
       delta_(kGeometry),
-      hand_(hand_of_base(hand, mounting)),
+      hand_(hand),
       plant_({.coulomb_Nm = device.joint_friction_Nm,
               .viscous_Nms_per_rad = device.joint_damping_Nms_per_rad},
-             point_D(inside_workspace_m(hand_.position_W_m())), gravity_D_mps2_),
+             point_D(inside_workspace_m(mounting.point_in_base(hand_.position_W_m()))),
+             gravity_D_mps2_),
       wrist_(wrist_angles_rad(hand_.rotation_rad())),
       velocity_(device.observer_bandwidth_Hz, kJump_m),
       angular_velocity_(device.observer_bandwidth_Hz, kJump_rad),
@@ -172,8 +166,11 @@ void SimDelta::between_ticks(double elapsed_s) RT_SAFE {
 void SimDelta::steer_hand() RT_SAFE {
   HandTarget target;
   if (!hand_targets_.read(target)) return;
-  const double* p = target.position_m;
-  hand_.steer(inside_workspace_m(mounting_.point_in_base({p[0], p[1], p[2]})), target.grip_ratio);
+  const auto vector = [](const double (&v)[3]) { return Vec3{v[0], v[1], v[2]}; };
+  const Vec3 in_base_m = inside_workspace_m(mounting_.point_in_base(vector(target.position_m)));
+  hand_.steer({.position_m = mounting_.point_W(in_base_m),
+               .rotation_rad = vector(target.rotation_rad),
+               .grip_ratio = target.grip_ratio});
 }
 
 void SimDelta::step_physics(double dt_s) RT_SAFE {
@@ -185,8 +182,8 @@ void SimDelta::step_physics(double dt_s) RT_SAFE {
               {.mass_kg = hand.mass_kg,
                .stiffness_N_per_m = hand.stiffness_N_per_m,
                .damping_Ns_per_m = hand.damping_Ns_per_m,
-               .aim_m = point_D(hand_.position_W_m()),
-               .aim_velocity_mps = direction_D(hand_.velocity_mps())});
+               .aim_m = point_D(mounting_.point_in_base(hand_.position_W_m())),
+               .aim_velocity_mps = direction_D(mounting_.velocity_in_base(hand_.velocity_mps()))});
   // A hand that holds the handle at a distance r turns it through the same spring: k r^2.
   const double square_m2 = kGripHalfWidth_m * kGripHalfWidth_m;
   wrist_.step(dt_s, wrist_Nm_,

@@ -36,7 +36,8 @@ struct SimFaults {
 class SimDelta final : public Device {
  public:
   /// Settings as checked by make_sim_delta().
-  /// The hand is led in W; its base stands as mounted, and MountedDevice turns what it tells.
+  /// The hand is led in W. Its base stands as mounted, and MountedDevice turns what it tells; how
+  /// the handle is turned stays as the scene says.
   SimDelta(const model::SimDeviceSettings& device, const model::HandSettings& hand,
            const Mounting& mounting = {});
 

@@ -40,11 +40,12 @@ SimHand::SimHand(model::HandSettings settings)
 
 bool SimHand::is_steered() const RT_SAFE { return unsteered_s_ < kSteeringHolds_s; }
 
-void SimHand::steer(const Vec3& position_m, double grip_ratio) RT_SAFE {
-  if (!is_finite(position_m) || !std::isfinite(grip_ratio)) return;
-  steered_ = at_;  // a mouse has no rotation: the handle keeps the one it has
-  steered_.position_m = position_m;
-  steered_.grip_ratio = std::clamp(grip_ratio, 0.0, 1.0);
+void SimHand::steer(const HandWaypoint& wanted) RT_SAFE {
+  if (!is_finite(wanted.position_m) || !is_finite(wanted.rotation_rad) ||
+      !std::isfinite(wanted.grip_ratio))
+    return;
+  steered_ = wanted;
+  steered_.grip_ratio = std::clamp(wanted.grip_ratio, 0.0, 1.0);
   unsteered_s_ = 0.0;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// sim_hand.h - where the simulated hand pulls the handle: along its script, or after a mouse.
+// sim_hand.h - where the simulated hand pulls and turns the handle: by its script or a mouse.
 //
 //     F = k (x_h - x) + b (v_h - v)        x_h, v_h from here; x, v of the handle, W
 //
@@ -21,8 +21,8 @@ class SimHand {
   /// The path has at least one waypoint.
   explicit SimHand(model::HandSettings settings);
 
-  /// A person wants the hand here; holds for one second. NaN is ignored.
-  void steer(const Vec3& position_m, double grip_ratio) RT_SAFE;
+  /// A person wants the hand here, and the tool turned so; holds for one second. NaN is ignored.
+  void steer(const model::HandWaypoint& wanted) RT_SAFE;
   void step(double dt_s) RT_SAFE;
 
   const model::HandSettings& settings() const RT_SAFE { return settings_; }

@@ -212,8 +212,8 @@ int show_live(const Options& options) {
                          show_and_record(view, recorder, inputs, figure, picker), *trust);
   server::ViewerServer server(
       io, view,
-      [&client](const double (&position_m)[3], double grip_ratio) {
-        client.move_hand(position_m, grip_ratio);
+      [&client](const server::HandWish& wish) {
+        client.move_hand(wish.position_m, wish.rotation_rad, wish.grip_ratio);
       },
       warn);
   if (picker)

@@ -240,13 +240,15 @@ std::optional<Error> TelemetryClient::take_frame(std::span<const std::byte> mess
   return std::nullopt;
 }
 
-void TelemetryClient::move_hand(const double (&position_m)[3], double grip_ratio) {
+void TelemetryClient::move_hand(const double (&position_m)[3], const double (&rotation_rad)[3],
+                                double grip_ratio) {
   // Never to hardware: a real hand is where it is.
   if (!has_hello_ || hello_.simulated == 0) return;
   const auto address = model::io::socket_address(std::string(record::text_of(hello_.hand_socket)));
   if (!address) return;
   hal::sim::HandTarget target;
   std::copy(std::begin(position_m), std::end(position_m), target.position_m);
+  std::copy(std::begin(rotation_rad), std::end(rotation_rad), target.rotation_rad);
   target.grip_ratio = grip_ratio;
   // A full or missing socket drops the target: the next one is 16 ms away.
   (void)::sendto(hand_socket_, &target, sizeof target, MSG_DONTWAIT | MSG_NOSIGNAL,

@@ -46,7 +46,7 @@ class TelemetryClient {
   void stop();
 
   /// Where a simulated hand shall go, W. Dropped when the device is hardware or nobody listens.
-  void move_hand(const double (&position_m)[3], double grip_ratio);
+  void move_hand(const double (&position_m)[3], const double (&rotation_rad)[3], double grip_ratio);
 
  private:
   void connect();

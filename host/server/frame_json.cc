@@ -146,6 +146,7 @@ std::string scene_json(const record::Hello& hello) {
       {"rate_Hz", hello.rate_Hz},
       {"frame_rate_Hz", hello.frame_rate_Hz},
       {"force_limit_N", hello.force_limit_N},
+      {"torque_limit_Nm", 1e-3 * hello.torque_limit_mNm},
       {"continuous_force_N", hello.continuous_force_N},
       {"energy_budget_J", hello.energy_budget_J},
       {"limits_checksum", record::text_of(hello.limits_checksum)},

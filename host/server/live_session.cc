@@ -6,6 +6,7 @@
 #include <boost/beast/core/buffers_to_string.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "host/server/page_message.h"
 #include "model/io/json.h"
@@ -30,18 +31,21 @@ nlohmann::json parse(const std::string& text) {
 std::optional<HandWish> parse_hand(const std::string& text) {
   const nlohmann::json hand = object_in(text, "hand");
   if (hand.is_null()) return std::nullopt;
-  double value[4];
-  constexpr const char* kKeys[4] = {"x_m", "y_m", "z_m", "grip_ratio"};
-  for (int i = 0; i < 4; ++i) {
+  double value[7];
+  constexpr const char* kKeys[7] = {"x_m",        "y_m",        "z_m",       "turn_x_rad",
+                                    "turn_y_rad", "turn_z_rad", "grip_ratio"};
+  for (int i = 0; i < 7; ++i) {
     const auto found = hand.find(kKeys[i]);
     if (found == hand.end() || !found->is_number()) return std::nullopt;
     value[i] = found->get<double>();
     if (!std::isfinite(value[i])) return std::nullopt;
     // The simulator clamps to its workspace; this keeps nonsense off its socket.
-    if (i < 3 && std::abs(value[i]) > kFarthestHand_m) return std::nullopt;
+    if (i < 6 && std::abs(value[i]) > (i < 3 ? kFarthestHand_m : std::numbers::pi))
+      return std::nullopt;
   }
   return HandWish{.position_m = {value[0], value[1], value[2]},
-                  .grip_ratio = std::clamp(value[3], 0.0, 1.0)};
+                  .rotation_rad = {value[3], value[4], value[5]},
+                  .grip_ratio = std::clamp(value[6], 0.0, 1.0)};
 }
 
 LiveSession::LiveSession(beast::tcp_stream stream, Seat seat, LiveView& view,
@@ -123,8 +127,7 @@ void LiveSession::take(const std::string& text) {
   if (steer_)
     if (const std::optional<ReplayWish> wish = parse_replay(text)) steer_(*wish);
   if (!move_hand_) return;
-  if (const std::optional<HandWish> hand = parse_hand(text))
-    move_hand_(hand->position_m, hand->grip_ratio);
+  if (const std::optional<HandWish> hand = parse_hand(text)) move_hand_(*hand);
   // Behind the hand's right: who may not move it chooses no scene.
   if (ask_scene_)
     if (const std::optional<SceneWish> wish = parse_scene_wish(text)) ask_scene_(*wish);

@@ -5,9 +5,10 @@
 // that follows. The page answers {"seen": n} with the number of frames it took so far; at most
 // kMaxUnseen may be on the way, and of those that wait only the newest is kept. So a slow browser
 // sees fewer frames, never older ones, and holds up nobody. A page may send
-// {"hand":{"x_m":..,"y_m":..,"z_m":..,"grip_ratio":..}} for a simulated device, and to a replay
-// what replay_wish.h says. Where the scene of a simulation may be chosen (scene_picker.h) it may
-// also send what scene_wish.h says. Nothing else is heard: no page arms, stops or resets a device.
+// {"hand":{"x_m":..,"y_m":..,"z_m":..,"turn_x_rad":..,"turn_y_rad":..,"turn_z_rad":..,
+// "grip_ratio":..}} for a simulated device, and to a replay what replay_wish.h says. Where the
+// scene of a simulation may be chosen (scene_picker.h) it may also send what scene_wish.h says.
+// Nothing else is heard: no page arms, stops or resets a device.
 #pragma once
 
 #include <boost/beast/core/flat_buffer.hpp>
@@ -27,13 +28,13 @@
 
 namespace tact::host::server {
 
-using MoveHand = std::function<void(const double (&position_m)[3], double grip_ratio)>;
-
 /// Where a page wants the simulated hand, W.
 struct HandWish {
   double position_m[3] = {};
-  double grip_ratio = 0.0;  // 0 open, 1 closed
+  double rotation_rad[3] = {};  // of the tool against its rest orientation, rotation vector
+  double grip_ratio = 0.0;      // 0 open, 1 closed
 };
+using MoveHand = std::function<void(const HandWish&)>;
 
 /// The hand target in a page's message; none if it has none, or a number is not sensible.
 std::optional<HandWish> parse_hand(const std::string& text);

@@ -57,7 +57,7 @@ std::optional<Error> load_meshes(const SceneText& text, Scene& scene) {
   return std::nullopt;
 }
 
-/// The device holds the tool there: force and torque are taken at this point. The hand leads it.
+/// The device holds the tool there: force and torque are taken at this point.
 void put_origin_at(const Vec3& handle_m, Scene& scene) {
   for (contact::ProbeSphere& sphere : scene.tool.spheres) sphere.offset_m -= handle_m;
   if (scene.tool.blade) {
@@ -65,7 +65,6 @@ void put_origin_at(const Vec3& handle_m, Scene& scene) {
     scene.tool.blade->b_m -= handle_m;
   }
   mesh::shift(scene.tool_mesh, -handle_m);
-  for (HandWaypoint& point : scene.hand.path) point.position_m += handle_m;
 }
 
 /// Would another map give other forces?
@@ -135,12 +134,11 @@ Result<Scene> load_scene(const std::string& path, const std::vector<std::string>
   if (!firmware.empty()) firmware = absolute_path(path, firmware);
   scene.hand_site_m = text.script.site_m;
   scene.hand_inward = normalized(text.script.inward);
-  const double tool_reach_m = reach_m(scene.tool.spheres, scene.hand_inward);
   // Strokes before meshes: what is wrong in the text is told before files are read that take long.
-  scene.hand.path = way_points(text.script, tool_reach_m, scene.limits, visit);
+  scene.hand.path = way_points(text.script, scene.tool.spheres, scene.limits, visit);
   if (auto problem = visit.problem()) return *problem;
   if (auto failed = load_meshes(text, scene)) return *failed;
-  put_origin_at(text.tool_handle_m, scene);
+  put_origin_at(text.script.handle_m, scene);
   vary_on_the_own_organ_only(scene);
   scene.hash = whole_hash(document->hash, scene);
   return std::move(scene);

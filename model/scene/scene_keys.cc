@@ -28,7 +28,7 @@ void visit_mesh(reader::Keys& k, MeshText& mesh) {
 void visit_tool(reader::Keys& k, SceneText& out) {
   visit_mesh(k, out.tool_mesh);
   k.vector("handle_m", {-0.3, 0.3}, "its point at the device's reference point, tool frame",
-           out.tool_handle_m, reader::Need::kOptional);
+           out.script.handle_m, reader::Need::kOptional);
   k.entries("sphere", {1, contact::kMaxSpheres}, "what touches the organ",
             [&](reader::Keys& sphere) {
               contact::ProbeSphere& probe = out.scene.tool.spheres.emplace_back();

@@ -35,7 +35,6 @@ struct SceneText {
   reader::TextPlace vertex_colors_place;
   Vec3 organ_orientation_deg;  // axis times angle, about the mesh's origin
   MeshText tool_mesh;
-  Vec3 tool_handle_m{};  // where the device holds the tool, tool frame of the file
   FileText compliance_map;
   HandScript script;
 };

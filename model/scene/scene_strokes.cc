@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 
 #include "model/result.h"
@@ -24,16 +25,23 @@ constexpr std::array kActions{
     reader::Choice{"grip", "close the grip"},
     reader::Choice{"pull", "move outward to height_m above the surface, with the grip closed"},
     reader::Choice{"tear", "pull so far that the tear force is passed and the tissue lets go"},
+    reader::Choice{"turn", "turn the tool; a release turns it back"},
 };
 constexpr std::array kActionOf{Action::kPress, Action::kHold, Action::kSlide, Action::kRelease,
-                               Action::kGrip,  Action::kPull, Action::kTear};
+                               Action::kGrip,  Action::kPull, Action::kTear,  Action::kTurn};
 static_assert(kActions.size() == kActionOf.size());
+
+constexpr std::array kPivots{
+    reader::Choice{"tip", "the middle of the probe spheres"},
+    reader::Choice{"handle", "tool.handle_m"},
+};
 
 // A grip that opened on the way home would pull at the tissue before it lets go.
 constexpr double kOpeningRatio = 0.25;
 
 constexpr reader::Range kDurations_s{0.05, 60.0};
 constexpr reader::Range kHeights_m{0.0, 0.1};
+constexpr reader::Range kAngles_deg{-20.0, 20.0};  // of the simulated wrist (hal/sim/sim_wrist.h)
 
 /// Error: the hand cannot be there.
 std::optional<Error> check_place(const Vec3& p, const Limits& limits) {
@@ -48,15 +56,16 @@ std::optional<Error> check_place(const Vec3& p, const Limits& limits) {
 /// Where the hand is while the strokes are written down one after the other.
 class Writer {
  public:
-  Writer(const HandScript& script, double reach_m)
-      : script_(script), reach_m_(reach_m), inward_(normalized(script.inward)) {
+  Writer(const HandScript& script, std::span<const contact::ProbeSphere> spheres)
+      : script_(script), spheres_(spheres), inward_(normalized(script.inward)) {
     // The first way point is home, at rest, with an open grip.
-    path_.push_back({.time_s = 0.0, .position_m = script.home_m});
+    path_.push_back({.time_s = 0.0, .position_m = script.home_m + script.handle_m});
   }
 
   void write(const Stroke& stroke) {
     HandWaypoint next = path_.back();
     next.time_s += stroke.duration_s;
+    next.straight_m = {};
     switch (stroke.action) {
       case Action::kHold:
         break;
@@ -78,8 +87,12 @@ class Writer {
       case Action::kRelease:
         if (is_closed()) open(kOpeningRatio * stroke.duration_s);
         next.grip_ratio = 0.0;
-        next.position_m = script_.home_m;
+        next.position_m = script_.home_m + script_.handle_m;
+        next.rotation_rad = {};
         slid_m_ = {};
+        break;
+      case Action::kTurn:
+        turn(stroke, next);
         break;
     }
     path_.push_back(next);
@@ -90,9 +103,27 @@ class Writer {
   std::vector<HandWaypoint> take() { return std::move(path_); }
 
  private:
-  // p(d) = site + slid - inward (reach - d)
+  // p(d) = site + slid - inward (reach - d), here with R handle
   Vec3 at_depth(double depth_m) const {
-    return script_.site_m + slid_m_ - inward_ * (reach_m_ - depth_m);
+    const Quat r = quat_from_rotation_vector(path_.back().rotation_rad);
+    // R offset . inward = offset . R^-1 inward
+    const double reach = reach_m(spheres_, rotate(conjugate(r), inward_));
+    return script_.site_m + slid_m_ - inward_ * (reach - depth_m) + rotate(r, script_.handle_m);
+  }
+
+  void turn(const Stroke& stroke, HandWaypoint& next) {
+    if (!stroke.about_handle) {
+      for (const contact::ProbeSphere& sphere : spheres_)
+        next.straight_m += sphere.offset_m / static_cast<double>(spheres_.size());
+      next.straight_m -= script_.handle_m;
+    }
+    const Quat before = quat_from_rotation_vector(next.rotation_rad);
+    next.rotation_rad = stroke.angle_rad * normalized(stroke.axis);
+    const Quat after = quat_from_rotation_vector(next.rotation_rad);
+    const auto moved = [&](const Vec3& c) { return rotate(before, c) - rotate(after, c); };
+    next.position_m += moved(next.straight_m);
+    // For the strokes that follow: a pull goes up from where the tool's origin now is.
+    slid_m_ += tangential(moved(next.straight_m + script_.handle_m), inward_);
   }
 
   void open(double after_s) {
@@ -103,11 +134,24 @@ class Writer {
   }
 
   const HandScript& script_;
-  double reach_m_;
+  std::span<const contact::ProbeSphere> spheres_;
   Vec3 inward_;
   Vec3 slid_m_;
   std::vector<HandWaypoint> path_;
 };
+
+void visit_turn(reader::Keys& keys, Stroke& stroke) {
+  keys.vector("axis", {-1.0, 1.0}, "in W, any length but 0", stroke.axis);
+  if (!(norm(stroke.axis) > 0.0))
+    keys.refuse({"axis"}, "the axis of a turn has no direction; allowed: any length but 0");
+  double angle_deg = 0.0;
+  keys.number("angle_deg", kAngles_deg, "about it, from how the tool rests; 0 turns it back",
+              angle_deg);
+  stroke.angle_rad = angle_deg * std::numbers::pi / 180.0;
+  std::size_t pivot = 0;
+  keys.choice("about", kPivots, "what stays where it is", pivot, reader::Need::kOptional);
+  stroke.about_handle = pivot == 1;
+}
 
 }  // namespace
 
@@ -128,6 +172,9 @@ void visit_stroke(reader::Keys& keys, Stroke& stroke) {
         keys.number("height_m", kHeights_m, "of the lowest probe sphere above the surface",
                     stroke.height_m);
         break;
+      case Action::kTurn:
+        visit_turn(keys, stroke);
+        break;
       default:
         break;
     }
@@ -144,14 +191,15 @@ double reach_m(std::span<const contact::ProbeSphere> spheres, const Vec3& inward
   return reach_m;
 }
 
-std::vector<HandWaypoint> way_points(const HandScript& script, double reach_m, const Limits& limits,
-                                     reader::SceneVisit& visit) {
+std::vector<HandWaypoint> way_points(const HandScript& script,
+                                     std::span<const contact::ProbeSphere> spheres,
+                                     const Limits& limits, reader::SceneVisit& visit) {
   const auto refuse = [&](const reader::TextPlace& place, const std::string& why) {
     visit.note(reader::ProblemKind::kConflict, place, why);
   };
-  if (const std::optional<Error> error = check_place(script.home_m, limits))
+  if (const std::optional<Error> error = check_place(script.home_m + script.handle_m, limits))
     refuse(script.home_place, "hand.home_m is " + error->sentence);
-  Writer writer(script, reach_m);
+  Writer writer(script, spheres);
   for (std::size_t i = 0; i < script.strokes.size(); ++i) {
     const Stroke& stroke = script.strokes[i];
     const std::string name = fmt::format("hand.stroke.{}", i);

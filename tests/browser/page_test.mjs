@@ -167,6 +167,15 @@ async function check_hand(page) {
   const held = await numbers(page);
   await page.waitForTimeout(500);
   check("leaves the hand where the mouse left it", distance(held.tool_m, (await numbers(page)).tool_m) < 0.003);
+  await page.keyboard.press("d");
+  check("twists the tool with a key", await waits(page, () => window.tact.turn[3] > 0.8 * Math.sin(Math.PI / 72)));
+  await page.keyboard.down("Control");
+  await page.mouse.move(640, 300);
+  await page.mouse.down();
+  await page.mouse.move(740, 300, { steps: 5 });
+  await page.mouse.up();
+  await page.keyboard.up("Control");
+  check("turns the tool with Ctrl and the mouse", await waits(page, () => Math.hypot(...window.tact.turn.slice(1)) > 0.15));
   await page.keyboard.press("g");
   check(
     "closes the grip",
@@ -263,6 +272,12 @@ async function run() {
     "heart",
     "shows the heart dented by a finger",
     () => window.tact.most_m > 0.003 && window.tact.vertex_count === 10026,
+  );
+  await check_scene(
+    browser,
+    "liver_twist",
+    "shows the torque of forceps that tilt, as a number and as an arc",
+    () => window.tact.arc_share > 0.05 && /^[1-9][0-9.]+ of [0-9.]+ mN m$/.test(document.getElementById("torque").textContent),
   );
   await check_scene(browser, "skin", "shows the skin dented by an injector", () => window.tact.most_m > 0.003);
   await check_scene(

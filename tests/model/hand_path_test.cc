@@ -41,6 +41,21 @@ TEST(HandPath, MatchesPenAndPaper) {
   EXPECT_NEAR(hand_target(kPath, false, 1.0).rotation_rad.x, 0.1, 1e-15);
 }
 
+TEST(HandPath, ThePointThatShallGoStraightDoes) {
+  const Vec3 tip_m{0, 0, -93_mm};
+  const std::vector<HandWaypoint> tilt{
+      {.time_s = 0.0, .position_m = {0, 0, 93_mm}},
+      {.time_s = 1.0,
+       .position_m = rotate(quat_from_rotation_vector({0.35, 0, 0}), -tip_m),
+       .rotation_rad = {0.35, 0, 0},
+       .straight_m = tip_m}};
+  for (double t = 0.0; t <= 1.0; t += 0.0625) {
+    const HandWaypoint at = hand_target(tilt, false, t);
+    const Vec3 tip_W_m = at.position_m + rotate(quat_from_rotation_vector(at.rotation_rad), tip_m);
+    EXPECT_LT(norm(tip_W_m), 1e-15) << t;
+  }
+}
+
 TEST(HandPath, RestsAtEveryWaypoint) {
   for (const double time_s : {2.0, 3.0}) {
     EXPECT_NEAR(speed_mps(time_s), 0.0, 1e-9);

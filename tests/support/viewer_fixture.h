@@ -48,8 +48,8 @@ class Viewer : public ::testing::Test {
                  .silent = [this](double seconds) { silences_s_.push_back(seconds); }}),
         server_(
             io_, view_,
-            [this](const double (&position_m)[3], double grip_ratio) {
-              client_.move_hand(position_m, grip_ratio);
+            [this](const host::server::HandWish& wish) {
+              client_.move_hand(wish.position_m, wish.rotation_rad, wish.grip_ratio);
             },
             [this](const std::string& sentence) { warnings_.push_back(sentence); }) {
     fs::create_directories(folder_);

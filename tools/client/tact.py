@@ -49,9 +49,9 @@ HELLO = np.dtype([
     ("tool_triangles", "<u4"), ("site_count", "<u4"), ("ring_count", "<u4"), ("ring_pitch_m", "<f4"), ("rate_Hz", "<f4"),
     ("frame_rate_Hz", "<f4"), ("force_limit_N", "<f4"), ("continuous_force_N", "<f4"), ("energy_budget_J", "<f4"),
     ("sphere_radius_m", "<f4", 4), ("sphere_offset_m", "<f4", (4, 3)), ("non_rt", "u1"), ("simulated", "u1"),
-    ("scene_name", "S52"), ("cannot_grip", "u1"), ("limits_checksum", "S9"), ("device_name", "S64"), ("law_name", "S64"),
-    ("hand_socket", "S108"), ("organ_material", "S12"), ("tool_material", "S12"), ("piece_count", "<u4"),
-    ("piece_color_ratio", "<f4", (4, 3))])
+    ("scene_name", "S50"), ("torque_limit_mNm", "<u2"), ("cannot_grip", "u1"), ("limits_checksum", "S9"),
+    ("device_name", "S64"), ("law_name", "S64"), ("hand_socket", "S108"), ("organ_material", "S12"),
+    ("tool_material", "S12"), ("piece_count", "<u4"), ("piece_color_ratio", "<f4", (4, 3))])
 FRAME_SITE = np.dtype([
     ("surface_point_m", "<f4", 3), ("normal", "<f4", 3), ("shift_m", "<f4", 3), ("depth_m", "<f4"),
     ("profile_m", "<f4", 32), ("tilt", "<f4", 3), ("state", "u1"), ("pad", "u1", 3)])

@@ -88,8 +88,8 @@ const picker = new ScenePicker(
   (wish) => connection.choose(wish),
   () => connection.offered(),
 );
-const hand = new HandControl(canvas, stage, may_move_hand, (position_m, grip_ratio) =>
-  connection.move_hand(position_m, grip_ratio),
+const hand = new HandControl(canvas, stage, may_move_hand, (position_m, rotation_rad, grip_ratio) =>
+  connection.move_hand(position_m, rotation_rad, grip_ratio),
 );
 window.addEventListener("hashchange", () => {
   const next = take_token();
@@ -206,6 +206,8 @@ function freeze(on: boolean): void {
   hud.pressed("pause", on);
 }
 
+const kTwist_rad = (5 * Math.PI) / 180; // for a press of a key
+
 const actions: Record<string, () => unknown> = {
   p: () => {
     if (status?.link === "replay") return timeline.toggle();
@@ -235,6 +237,8 @@ const actions: Record<string, () => unknown> = {
   },
   x: () => headset?.toggle(),
   g: () => hand.toggle_grip(),
+  a: () => hand.twist(-kTwist_rad),
+  d: () => hand.twist(kTwist_rad),
   grip: () => hand.grip(1),
   "let go": () => hand.grip(0),
   s: () => void save_picture(),
@@ -262,6 +266,8 @@ const numbers = {
   get most_m() { return organ?.deformed.most_m ?? 0; },
   get most_ever_m() { return most_ever_m; },
   get tool_m() { return shown ? [...shown.tool_m] : null; },
+  get turn() { return shown ? [...shown.turn] : null; },
+  get arc_share() { return tool?.arc_share ?? 0; },
   get force_N() { return shown ? [...shown.force_N] : null; },
   get tick() { return shown?.tick ?? 0; },
   get state() { return shown?.state ?? 0; },

@@ -23,7 +23,7 @@ TEST(OpenOrganNote, AClosedOrganNeedsNone) {
 }
 
 TEST(OpenOrganNote, OfTheShippedScenesOnlyTheHeartIsOpen) {
-  for (const std::string name : {"gum", "heart", "liver", "maintenance", "skin"}) {
+  for (const std::string name : {"gum", "heart", "liver", "liver_twist", "maintenance", "skin"}) {
     const auto scene =
         model::scene::load_scene(TACT_SOURCE_DIR "/model/scenes/" + name + ".toml", {});
     ASSERT_TRUE(scene) << scene.error().sentence;

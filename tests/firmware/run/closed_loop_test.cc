@@ -104,6 +104,15 @@ TEST(ClosedLoop, SixtySecondsOfLiverStayWithinBoundsOnBothSides) {
   EXPECT_EQ(s.heap_calls, 0u);
 }
 
+TEST(ClosedLoop, ForcepsHeldFarFromTheirJawsAreFeltAsATorque) {
+  const model::scene::Scene scene = tests::shipped_scene("liver_twist");
+  const Summary s = run(scene, 10.0);
+  EXPECT_EQ(s.fault, model::Fault::kNone);
+  // 0.21 N across a lever of 93 mm; jaws 8 mm apart would give less than 2 mN m.
+  EXPECT_GT(s.max_torque_Nm, 0.018);
+  EXPECT_LT(s.max_torque_Nm, 0.025);
+}
+
 class EveryScene : public testing::TestWithParam<const char*> {};
 
 TEST_P(EveryScene, IsTouchedWithinItsLimitsAndLeavesTheHeapAlone) {
@@ -133,7 +142,8 @@ TEST_P(EveryScene, TheSameRunGivesTheSameBits) {
 }
 
 INSTANTIATE_TEST_SUITE_P(ClosedLoop, EveryScene,
-                         testing::Values("liver", "heart", "skin", "gum", "maintenance"),
+                         testing::Values("liver", "liver_twist", "heart", "skin", "gum",
+                                         "maintenance"),
                          [](const auto& one) { return std::string(one.param); });
 
 }  // namespace tact::firmware::run::closed_loop_test

@@ -22,6 +22,17 @@ TEST(Report, IsJsonWhateverBytesADeviceHasForItsName) {
   EXPECT_EQ(report.at("device"), "Touch \uFFFD\uFFFD");
 }
 
+TEST(Report, TellsTheLargestTorqueWhereThereWasOne) {
+  const gate::Gate gate(model::Limits{.force_N = 1.0, .slew_N_per_s = 500.0, .ramp_s = 0.5}, 1e-3,
+                        1.0);
+  loop::LoopStatistics loop;
+  EXPECT_EQ(make_summary(RunFacts{}, loop).find("torque"), std::string::npos);
+  loop.max_torque_Nm = 0.0279;
+  const auto report = nlohmann::json::parse(make_report(RunFacts{}, loop, gate, pc::Environment{}));
+  EXPECT_EQ(report.at("torque_max_Nm"), 0.0279);
+  EXPECT_NE(make_summary(RunFacts{}, loop).find(", torque max 27.9 mN m"), std::string::npos);
+}
+
 TEST(Report, TellsLossesOfContactTicksInsideTheOrganAndClutches) {
   const gate::Gate gate(model::Limits{.force_N = 1.0, .slew_N_per_s = 500.0, .ramp_s = 0.5}, 1e-3,
                         1.0);

@@ -49,6 +49,7 @@ const std::map<std::string, Layout> kStructs{
       FIELD(Hello, non_rt),
       FIELD(Hello, simulated),
       FIELD(Hello, scene_name),
+      FIELD(Hello, torque_limit_mNm),
       FIELD(Hello, cannot_grip),
       FIELD(Hello, limits_checksum),
       FIELD(Hello, device_name),
@@ -156,7 +157,8 @@ const std::map<std::string, Layout> kStructs{
     {"HandTarget",
      {row("HandTarget", 0, sizeof(hal::sim::HandTarget)), FIELD(hal::sim::HandTarget, magic),
       FIELD(hal::sim::HandTarget, version), FIELD(hal::sim::HandTarget, pad),
-      FIELD(hal::sim::HandTarget, position_m), FIELD(hal::sim::HandTarget, grip_ratio)}},
+      FIELD(hal::sim::HandTarget, position_m), FIELD(hal::sim::HandTarget, rotation_rad),
+      FIELD(hal::sim::HandTarget, grip_ratio)}},
 };
 
 #undef FIELD

@@ -100,8 +100,8 @@ class WholeController {
 
  private:
   std::optional<TelemetrySocket> open(const std::string& path) {
-    const Hello hello = make_hello(
-        scene_, *tissue_, {.device = device_->info(), .limits_checksum = "", .hand_socket = ""});
+    const Hello hello =
+        make_hello(scene_, *tissue_, {.device = device_->info(), .torque_limit_Nm = 0.05});
     return std::move(*TelemetrySocket::open(path, hello, *make_mesh_file(scene_)));
   }
 
@@ -131,6 +131,7 @@ TEST(Telemetry, GreetsAViewerWithTheMeshesAndFramesFollow) {
   EXPECT_EQ(hello.organ_vertices, run.scene().organ_mesh.vertex_m.size());
   EXPECT_EQ(hello.ring_count, 24u);
   EXPECT_STREQ(hello.scene_name, "plate");
+  EXPECT_EQ(hello.torque_limit_mNm, 50);
   EXPECT_STREQ(hello.organ_material, "skin");
   EXPECT_STREQ(hello.tool_material, "steel");
   ASSERT_EQ(hello.piece_count, 1u);

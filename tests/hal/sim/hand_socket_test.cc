@@ -43,7 +43,9 @@ bool wait_for(LatestSlot<HandTarget>& slot, HandTarget& target) {
   }
   return false;
 }
-HandTarget at(double x_m) { return {.position_m = {x_m, 0.02, -0.03}, .grip_ratio = 0.5}; }
+HandTarget at(double x_m) {
+  return {.position_m = {x_m, 0.02, -0.03}, .rotation_rad = {0.1, 0.0, -0.2}, .grip_ratio = 0.5};
+}
 
 TEST(HandSocket, PassesTheNewestTarget) {
   const std::string path = fresh_path("pass");
@@ -76,11 +78,13 @@ TEST(HandSocket, IgnoresGarbage) {
   auto listener = HandSocket::start(path, slot);
   ASSERT_TRUE(listener) << listener.error().sentence;
   HandTarget magic = at(0.1), version = at(0.1), far = at(50.0), nan = at(0.1), grip = at(0.1);
+  HandTarget turn = at(0.1);
   magic.magic = 1;
-  version.version = 2;
+  version.version = 1;
   nan.position_m[2] = std::numeric_limits<double>::quiet_NaN();
+  turn.rotation_rad[1] = 4.0;
   grip.grip_ratio = std::numeric_limits<double>::infinity();
-  for (const HandTarget& bad : {magic, version, far, nan, grip}) {
+  for (const HandTarget& bad : {magic, version, far, nan, turn, grip}) {
     EXPECT_FALSE(is_sound(bad));
     send_bytes(path, &bad, sizeof bad);
   }

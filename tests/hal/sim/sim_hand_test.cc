@@ -51,13 +51,14 @@ TEST(SimHand, WalksToTheMouseAtHalfAMetrePerSecond) {
   const Vec3 goal{-0.1, 0.1, 0.05};
   double longest_m = 0.0;
   for (int i = 0; i < 20; ++i) {  // 20 messages a second
-    hand.steer(goal, 0.7);
+    hand.steer({.position_m = goal, .rotation_rad = {0.0, 0.0, 0.3}, .grip_ratio = 0.7});
     longest_m = std::max(longest_m, run(hand, 0.05));
   }
   EXPECT_LE(longest_m, 0.5 * kStep_s * 1.0001);
   EXPECT_GE(longest_m, 0.4 * kStep_s);
   EXPECT_LT(norm(hand.position_W_m() - goal), 1e-3);
   EXPECT_NEAR(hand.grip_ratio(), 0.7, 1e-9);
+  EXPECT_LT(norm(hand.rotation_rad() - Vec3{0.0, 0.0, 0.3}), 1e-9);
   EXPECT_TRUE(hand.is_steered());
 }
 
@@ -65,7 +66,7 @@ TEST(SimHand, TheScriptWaitsForThePersonAndGoesOnWithoutAJump) {
   SimHand hand(script(false)), undisturbed(script(false));
   run(hand, 0.3);
   run(undisturbed, 0.3);
-  hand.steer({0.1, -0.05, 0.1}, 1.0);
+  hand.steer({.position_m = {0.1, -0.05, 0.1}, .grip_ratio = 1.0});
   EXPECT_LE(run(hand, 0.9), 0.5 * kStep_s * 1.0001);
   EXPECT_TRUE(hand.is_steered());
   EXPECT_LE(run(hand, 3.0), 0.5 * kStep_s * 1.0001);
@@ -89,10 +90,10 @@ TEST(SimHand, ARepeatedScriptThatJumpsIsJoinedByAWalk) {
 
 TEST(SimHand, NeverExceedsItsAcceleration) {
   SimHand hand(script(false));
-  hand.steer({-0.1, 0.1, 0.1}, 0.0);
+  hand.steer({.position_m = {-0.1, 0.1, 0.1}});
   Vec3 last = hand.velocity_mps();
   for (double t = 0.0; t < 0.9; t += kStep_s) {
-    if (t > 0.4) hand.steer({0.1, -0.1, 0.0}, 0.0);
+    if (t > 0.4) hand.steer({.position_m = {0.1, -0.1, 0.0}});
     hand.step(kStep_s);
     EXPECT_LE(norm(hand.velocity_mps() - last), 5.0 * kStep_s * 1.0001);
     last = hand.velocity_mps();
@@ -102,8 +103,9 @@ TEST(SimHand, NeverExceedsItsAcceleration) {
 TEST(SimHand, IgnoresNanAndNothing) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   SimHand hand(script(false));
-  hand.steer({nan, 0.0, 0.0}, 0.0);
-  hand.steer({0.0, 0.0, 0.0}, nan);
+  hand.steer({.position_m = {nan, 0.0, 0.0}});
+  hand.steer({.position_m = {}, .rotation_rad = {0.0, nan, 0.0}});
+  hand.steer({.position_m = {}, .grip_ratio = nan});
   hand.step(0.0);
   hand.step(nan);
   EXPECT_FALSE(hand.is_steered());
@@ -114,7 +116,7 @@ TEST(SimHand, LeavesTheHeapAlone) {
   SimHand hand(script(true));
   tests::NoAlloc guard;
   hand.step(kStep_s);
-  hand.steer({}, 0.0);
+  hand.steer({});
   hand.step(kStep_s);
   EXPECT_EQ(guard.calls(), 0u);
 }

@@ -103,6 +103,9 @@ TEST(SceneJson, SaysWhatTheHelloSays) {
   EXPECT_EQ(json["simulated"], true);
   EXPECT_EQ(json["non_rt"], false);
   EXPECT_EQ(json["cannot_grip"], false);
+  EXPECT_EQ(json["torque_limit_Nm"], 0.0);
+  hello.torque_limit_mNm = 50;
+  EXPECT_EQ(nlohmann::json::parse(scene_json(hello))["torque_limit_Nm"], 0.05);
   hello.cannot_grip = 1;
   EXPECT_EQ(nlohmann::json::parse(scene_json(hello))["cannot_grip"], true);
 }

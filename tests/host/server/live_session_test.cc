@@ -6,16 +6,21 @@
 namespace tact::host::server::live_session_test {
 
 TEST(LiveSession, TakesAHandTargetFromThePage) {
-  const auto hand = parse_hand(R"({"hand":{"x_m":0.01,"y_m":-0.02,"z_m":0.03,"grip_ratio":1}})");
+  const auto hand = parse_hand(
+      R"({"hand":{"x_m":0.01,"y_m":-0.02,"z_m":0.03,"turn_x_rad":0.1,"turn_y_rad":0.2,"turn_z_rad":-0.3,"grip_ratio":1}})");
   ASSERT_TRUE(hand);
   EXPECT_EQ(hand->position_m[0], 0.01);
   EXPECT_EQ(hand->position_m[1], -0.02);
   EXPECT_EQ(hand->position_m[2], 0.03);
+  EXPECT_EQ(hand->rotation_rad[0], 0.1);
+  EXPECT_EQ(hand->rotation_rad[1], 0.2);
+  EXPECT_EQ(hand->rotation_rad[2], -0.3);
   EXPECT_EQ(hand->grip_ratio, 1.0);
 }
 
 TEST(LiveSession, KeepsTheGripBetweenOpenAndClosed) {
-  const auto hand = parse_hand(R"({"hand":{"x_m":0,"y_m":0,"z_m":0,"grip_ratio":-0.5}})");
+  const auto hand = parse_hand(
+      R"({"hand":{"x_m":0,"y_m":0,"z_m":0,"turn_x_rad":0.1,"turn_y_rad":0.2,"turn_z_rad":-0.3,"grip_ratio":-0.5}})");
   ASSERT_TRUE(hand);
   EXPECT_EQ(hand->grip_ratio, 0.0);
 }
@@ -23,14 +28,21 @@ TEST(LiveSession, KeepsTheGripBetweenOpenAndClosed) {
 TEST(LiveSession, RefusesEverythingElse) {
   for (const char* text :
        {"", "{", "[]", "null", "7", R"({"hand":7})", R"({"hand":{}})", R"({"hand":[0,0,0,0]})",
-        R"({"hand":{"x_m":0,"y_m":0,"z_m":0}})",
-        R"({"hand":{"x_m":"0","y_m":0,"z_m":0,"grip_ratio":0}})",
-        R"({"hand":{"x_m":null,"y_m":0,"z_m":0,"grip_ratio":0}})",
-        R"({"hand":{"x_m":1e99,"y_m":0,"z_m":0,"grip_ratio":0}})",
-        R"({"hand":{"x_m":NaN,"y_m":0,"z_m":0,"grip_ratio":0}})",
-        R"({"hand":{"x_m":1.5,"y_m":0,"z_m":0,"grip_ratio":0}})", R"({"force_N":[1,2,3]})"}) {
+        R"({"hand":{"x_m":0,"y_m":0,"z_m":0,"grip_ratio":0}})", R"({"force_N":[1,2,3]})"})
     EXPECT_FALSE(parse_hand(text)) << text;
+  const auto parses = [](const std::string& x_m, const std::string& turn_x_rad, const char* rest) {
+    return parse_hand("{\"hand\":{\"x_m\":" + x_m + ",\"y_m\":0,\"z_m\":0,\"turn_x_rad\":" +
+                      turn_x_rad + ",\"turn_y_rad\":0,\"turn_z_rad\":0" + rest + "}}")
+        .has_value();
+  };
+  constexpr const char* kGrip = ",\"grip_ratio\":0";
+  EXPECT_TRUE(parses("0", "0", kGrip));
+  EXPECT_FALSE(parses("0", "0", ""));
+  for (const char* bad : {"\"0\"", "null", "1e99", "NaN", "3.2"}) {
+    EXPECT_FALSE(parses(bad, "0", kGrip)) << bad;
+    EXPECT_FALSE(parses("0", bad, kGrip)) << bad;
   }
+  EXPECT_FALSE(parses("1.5", "0", kGrip));
 }
 
 }  // namespace tact::host::server::live_session_test

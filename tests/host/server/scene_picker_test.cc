@@ -122,7 +122,7 @@ class Chooser : public Viewer {
 };
 
 TEST_F(Chooser, IsHeardWhereTheHandMayBeMoved) {
-  EXPECT_TRUE(is_heard([](const double (&)[3], double) {}));
+  EXPECT_TRUE(is_heard([](const host::server::HandWish&) {}));
 }
 
 TEST_F(Chooser, IsNotHeardWhereNoHandMayBeMoved) { EXPECT_FALSE(is_heard(nullptr)); }

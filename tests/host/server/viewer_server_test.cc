@@ -213,11 +213,13 @@ TEST_F(Viewer, SendsAHandTargetAndNothingElse) {
   ASSERT_FALSE(open_live(socket, "http://localhost:1"));
   socket.write(boost::asio::buffer(std::string(R"({"force_N":[9,9,9]})")));
   socket.write(boost::asio::buffer(
-      std::string(R"({"hand":{"x_m":0.01,"y_m":0.02,"z_m":0.03,"grip_ratio":0.5}})")));
+      std::string(R"({"hand":{"x_m":0.01,"y_m":0.02,"z_m":0.03,"turn_x_rad":0,"turn_y_rad":0,)"
+                  R"("turn_z_rad":0.1,"grip_ratio":0.5}})")));
   hal::sim::HandTarget target;
   ASSERT_EQ(::recv(hand, &target, sizeof target, 0), static_cast<ssize_t>(sizeof target));
   EXPECT_EQ(target.magic, hal::sim::kHandTargetMagic);
   EXPECT_EQ(target.position_m[2], 0.03);
+  EXPECT_EQ(target.rotation_rad[2], 0.1);
   EXPECT_EQ(target.grip_ratio, 0.5);
   ::close(hand);
 }

@@ -10,7 +10,7 @@
 
 namespace tact::model::scene::scene_strokes_test {
 
-constexpr double kReach_m = 0.005;
+constexpr contact::ProbeSphere kSphere{.offset_m = {}, .radius_m = 0.005};  // reaches 5 mm
 constexpr Vec3 kHome_m{0.0, 0.0, 0.06};
 constexpr Vec3 kSite_m{0.01, 0.02, 0.03};
 constexpr Limits kLimits{.workspace_radius_m = 0.18, .workspace_half_length_m = 0.15};
@@ -20,15 +20,16 @@ struct Written {
   std::optional<Error> problem;
 };
 
-Written write(std::vector<Stroke> strokes, bool repeat = false) {
+Written write(std::vector<Stroke> strokes, bool repeat = false,
+              const contact::ProbeSphere& sphere = kSphere, const Vec3& handle_m = {}) {
   const reader::SceneDocument document;
   reader::SceneVisit visit(&document);
   for (std::size_t i = 0; i < strokes.size(); ++i) {
     const auto line = static_cast<std::uint32_t>(i + 1);
     strokes[i].place = {"s:" + std::to_string(line), line};
   }
-  const HandScript script{kHome_m, kSite_m, {0, 0, -2}, repeat, strokes, {}};
-  auto path = way_points(script, kReach_m, kLimits, visit);
+  const HandScript script{kHome_m, kSite_m, {0, 0, -2}, handle_m, repeat, strokes, {}};
+  auto path = way_points(script, std::span(&sphere, 1), kLimits, visit);
   return {path, visit.problem()};
 }
 
@@ -44,6 +45,18 @@ Stroke pull(double height_m) {
 const Stroke kHold{.action = Action::kHold, .duration_s = 2.0};
 const Stroke kGrip{.action = Action::kGrip, .duration_s = 0.5};
 const Stroke kRelease{.action = Action::kRelease, .duration_s = 2.0};
+
+Stroke turn(const Vec3& axis, double angle_rad, bool about_handle = false) {
+  return {.action = Action::kTurn,
+          .duration_s = 1.0,
+          .axis = axis,
+          .angle_rad = angle_rad,
+          .about_handle = about_handle};
+}
+/// Where a point of the tool is, in the tool's frame with the handle as its origin.
+Vec3 point_W_m(const HandWaypoint& at, const Vec3& p) {
+  return at.position_m + rotate(quat_from_rotation_vector(at.rotation_rad), p);
+}
 
 void expect_at(const HandWaypoint& p, double time_s, const Vec3& position_m, double grip_ratio) {
   EXPECT_NEAR(p.time_s, time_s, 1e-12);
@@ -112,6 +125,52 @@ TEST(Strokes, ReleaseOpensTheGripBeforeItMoves) {
   expect_at(w.path[3], 2.0, kSite_m + Vec3{0, 0, 0.005}, 0.0);  // a quarter of 2 s after the grip
   expect_at(w.path[4], 3.5, kHome_m, 0.0);
   EXPECT_EQ(write({press(0.0, 1.0), kRelease}).path.size(), 3u) << "an open grip just leaves";
+}
+
+// A tool of 93 mm: its tip is below the point that the hand holds.
+constexpr contact::ProbeSphere kJaw{.offset_m = {0, 0, 0.004}, .radius_m = 0.004};
+constexpr Vec3 kHandle_m{0, 0, 0.093};
+constexpr Vec3 kTip_m{0, 0, 0.004 - 0.093};  // from the handle
+
+TEST(Strokes, TurnAboutTheTipLeavesItInPlaceOnTheWholeWay) {
+  const Written w = write({press(0.01, 1.0), turn({0, 3, 0}, 0.3)}, false, kJaw, kHandle_m);
+  ASSERT_FALSE(w.problem) << w.problem->sentence;
+  const Vec3 tip_m = point_W_m(w.path[1], kTip_m);
+  EXPECT_LT(norm(tip_m - (kSite_m + Vec3{0, 0, 0.004 - 0.01})), 1e-15);
+  for (double t = 1.0; t <= 2.0; t += 0.125)
+    EXPECT_LT(norm(point_W_m(hand_target(w.path, false, t), kTip_m) - tip_m), 1e-15) << t;
+  EXPECT_LT(norm(w.path[2].rotation_rad - Vec3{0, 0.3, 0}), 1e-15);
+  EXPECT_NEAR(w.path[2].position_m.x, tip_m.x + 0.089 * std::sin(0.3), 1e-12) << "the handle goes";
+}
+
+TEST(Strokes, TurnAboutTheHandleLeavesItInPlace) {
+  const Written w = write({press(0.01, 1.0), turn({0, 1, 0}, 0.3, true)}, false, kJaw, kHandle_m);
+  EXPECT_LT(norm(hand_target(w.path, false, 1.5).position_m - w.path[1].position_m), 1e-15);
+  EXPECT_NEAR(point_W_m(w.path[2], kTip_m).x, kSite_m.x - 0.089 * std::sin(0.3), 1e-12);
+}
+
+TEST(Strokes, TurnsAreCountedFromRestAndAReleaseTurnsBack) {
+  const Written w = write({turn({0, 0, 1}, 0.2), turn({1, 0, 0}, 0.1), kHold, kRelease}, true);
+  EXPECT_EQ(w.path[2].rotation_rad, (Vec3{0.1, 0, 0}));
+  EXPECT_EQ(w.path[3].rotation_rad, (Vec3{0.1, 0, 0}));
+  expect_at(w.path[4], 6.0, kHome_m, 0.0);
+  EXPECT_FALSE(w.problem) << w.problem->sentence;
+}
+
+TEST(Strokes, PullAfterATurnGoesUpWhereTheTipIsWithItsReach) {
+  // The handle goes aside, and the jaw's centre no longer stands upright above the tool's origin.
+  const Written w =
+      write({press(0.0, 1.0), kGrip, turn({0, 1, 0}, 0.3), pull(0.008)}, false, kJaw, kHandle_m);
+  const Vec3 centre_m = point_W_m(w.path[3], kTip_m);
+  EXPECT_LT(norm(centre_m - (kSite_m + Vec3{0, 0, 0.004})), 1e-15);
+  EXPECT_LT(norm(point_W_m(w.path[4], kTip_m) - centre_m - Vec3{0, 0, 0.008}), 1e-15);
+}
+
+TEST(Strokes, RefuseAHandleOutsideTheWorkspace) {
+  const Written w = write({press(0.0, 1.0)}, false, kJaw, {0, 0.17, -0.05});
+  ASSERT_TRUE(w.problem);
+  EXPECT_NE(w.problem->sentence.find("(0.0100, 0.1900, -0.0200) m, outside"), std::string::npos)
+      << w.problem->sentence;
 }
 
 TEST(Strokes, TimesAlwaysAscend) {

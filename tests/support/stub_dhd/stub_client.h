@@ -23,6 +23,7 @@ class StubDhd : public StubLibrary {
     find("stub_dhd_set_pose_answer", set_pose_answer);
     find("stub_dhd_hold", hold);
     find("stub_dhd_spin", spin);
+    find("stub_dhd_turn", turn);
     find("stub_dhd_grip", grip);
     find("stub_dhd_set_delay_us", set_delay_us);
     find("stub_dhd_ignore_watchdog", ignore_watchdog);
@@ -45,6 +46,7 @@ class StubDhd : public StubLibrary {
   decltype(&stub_dhd_set_pose_answer) set_pose_answer = nullptr;
   decltype(&stub_dhd_hold) hold = nullptr;
   decltype(&stub_dhd_spin) spin = nullptr;
+  decltype(&stub_dhd_turn) turn = nullptr;
   decltype(&stub_dhd_grip) grip = nullptr;
   decltype(&stub_dhd_set_delay_us) set_delay_us = nullptr;
   decltype(&stub_dhd_ignore_watchdog) ignore_watchdog = nullptr;

@@ -131,7 +131,8 @@ int dhdGetPositionAndOrientationFrame(double* x_m, double* y_m, double* z_m, dou
   const double angle_rad = state.spin_radps * (monotonic_s() - state.handle.begin_s);
   const double c = std::cos(angle_rad), s = std::sin(angle_rad);
   const double frame[3][3] = {{c, -s, 0.0}, {s, c, 0.0}, {0.0, 0.0, 1.0}};
-  std::copy(&frame[0][0], &frame[0][0] + 9, &r[0][0]);
+  const auto& shown = state.spin_radps != 0.0 ? frame : state.turn;
+  std::copy(&shown[0][0], &shown[0][0] + 9, &r[0][0]);
   return state.pose_answer;
 }
 

@@ -20,6 +20,8 @@ void stub_dhd_set_pose_answer(int answer);
 void stub_dhd_hold(double x_m, double y_m, double z_m);
 /// Turns the wrist at this rate about z.
 void stub_dhd_spin(double radps);
+/// Turns the wrist so from now on, by the rotation matrix, row by row.
+void stub_dhd_turn(const double r[3][3]);
 /// The gripper's angle and the mask of the buttons.
 void stub_dhd_grip(double gripper_rad, unsigned buttons);
 /// dhdGetPositionAndOrientationFrame takes so long.

@@ -22,6 +22,7 @@ struct State {
   int pose_answer = 0, delay_us = 0;
   int watchdog = 0, time_guard = -1, gravity = 0;
   double force[7] = {};
+  double turn[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   LedHandle handle;
   double fed_s = monotonic_s();
   double spin_radps = 0.0, strongest_N = 0.0, gripper_rad = 0.5236;

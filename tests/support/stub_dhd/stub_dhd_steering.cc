@@ -41,6 +41,10 @@ void stub_dhd_spin(double radps) {
   const Locked locked;
   state.spin_radps = radps;
 }
+void stub_dhd_turn(const double r[3][3]) {
+  const Locked locked;
+  std::copy(&r[0][0], &r[0][0] + 9, &state.turn[0][0]);
+}
 void stub_dhd_grip(double gripper_rad, unsigned buttons) {
   const Locked locked;
   state.gripper_rad = gripper_rad, state.buttons = buttons;

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // hand_control.ts - the mouse as the hand of a simulated device: drag moves it in the picture's
-// plane, the wheel or two fingers into the picture, G closes the grip. Only a wish is sent; forces stay in tactd.
+// plane, the wheel or two fingers into the picture, Ctrl and drag turn the tool, G closes the grip.
+// Only a wish is sent; forces stay in tactd.
 // The wish is repeated until a few seconds after the last move, or as long as the mode is on.
 
 import * as THREE from "three";
 import type { Stage } from "../scene/stage";
 import type { Frame, Vec } from "../link/protocol";
+import { rotation_rad, turned_on } from "./tool_turn";
 
 const kMinGap_ms = 1000 / 60;
 const kWheel_m = 0.00002; // per wheel unit: a notch of 100 is 2 mm
+const kTurn_rad = 0.004; // per pixel
 const kRepeat_ms = 250; // tactd forgets a target after a second
 const kForget_ms = 4000; // after the last move the hand goes back to its script
 
@@ -17,6 +20,7 @@ export class HandControl {
   target: THREE.Vector3 | null = null;
   mode = false; // the mouse moves the hand without Shift
   private grip_ratio = 0;
+  private turn = new THREE.Quaternion(); // of the tool against its rest
   private tool_m: Vec | null = null;
   private readonly fingers = new Map<number, [number, number]>(); // or the mouse; where they are, px
   private sent_ms = -Infinity;
@@ -27,7 +31,7 @@ export class HandControl {
     private readonly canvas: HTMLCanvasElement,
     private readonly stage: Stage,
     private readonly allowed: () => boolean,
-    private readonly send: (position_m: Vec, grip_ratio: number) => void,
+    private readonly send: (position_m: Vec, rotation_rad: Vec, grip_ratio: number) => void,
   ) {
     // Before the orbit controls, which listen on the same canvas.
     const first = { capture: true };
@@ -41,7 +45,11 @@ export class HandControl {
   /** The tool is where the next move starts. */
   frame(frame: Frame, now_ms: number): void {
     this.tool_m = frame.tool_m;
-    if (!this.target) this.grip_ratio = frame.grip_ratio ?? 0;
+    if (!this.target) {
+      this.grip_ratio = frame.grip_ratio ?? 0;
+      const [w, x, y, z] = frame.turn;
+      this.turn.set(x, y, z, w).normalize();
+    }
     const holds = this.mode || this.fingers.size > 0 || now_ms - this.touched_ms < kForget_ms;
     if (!holds || !this.allowed()) this.target = null;
     else if (now_ms - this.sent_ms > kRepeat_ms) this.send_now();
@@ -58,12 +66,22 @@ export class HandControl {
     this.move(new THREE.Vector3());
   }
 
+  /** About the tool's own axis. */
+  twist(by_rad: number): void {
+    if (this.allowed()) this.turn_on(new THREE.Vector3(0, 0, 1).applyQuaternion(this.turn), by_rad);
+  }
+
+  private turn_on(axis: THREE.Vector3, by_rad: number): void {
+    this.turn = turned_on(this.turn, axis, by_rad);
+    this.move(new THREE.Vector3());
+  }
+
   private wanted(event: MouseEvent): boolean {
     return this.allowed() && (this.mode || event.shiftKey);
   }
 
   private begin(event: PointerEvent): void {
-    if (event.button !== 0 || !this.wanted(event)) return;
+    if (event.button !== 0 || !(this.wanted(event) || (event.ctrlKey && this.allowed()))) return;
     event.stopImmediatePropagation();
     this.canvas.setPointerCapture(event.pointerId);
     this.fingers.set(event.pointerId, [event.clientX, event.clientY]);
@@ -77,6 +95,13 @@ export class HandControl {
     const up_px = from[1] - event.clientY;
     this.fingers.set(event.pointerId, [event.clientX, event.clientY]);
     const camera = this.stage.camera;
+    const right = new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 0);
+    const up = new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 1);
+    if (event.ctrlKey) {
+      // As a ball under the mouse would turn: what is nearest follows it.
+      const axis = up.multiplyScalar(right_px).addScaledVector(right, -up_px);
+      return this.turn_on(axis.normalize(), kTurn_rad * Math.hypot(right_px, up_px));
+    }
     const at = this.target ?? (this.tool_m ? new THREE.Vector3(...this.tool_m) : null);
     if (!at) return;
     // One pixel at the tool's distance: 2 d tan(fov / 2) / height
@@ -87,8 +112,6 @@ export class HandControl {
       const into = camera.getWorldDirection(new THREE.Vector3());
       return this.move(into.multiplyScalar((up_px * per_pixel_m) / this.fingers.size));
     }
-    const right = new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 0);
-    const up = new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 1);
     this.move(right.multiplyScalar(right_px * per_pixel_m).addScaledVector(up, up_px * per_pixel_m));
   }
 
@@ -123,6 +146,6 @@ export class HandControl {
   private send_now(): void {
     if (!this.target) return;
     this.sent_ms = performance.now();
-    this.send(this.target.toArray() as Vec, this.grip_ratio);
+    this.send(this.target.toArray() as Vec, rotation_rad(this.turn), this.grip_ratio);
   }
 }

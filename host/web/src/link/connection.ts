@@ -48,9 +48,10 @@ export class Connection {
   }
 
   /** Where a simulated hand shall go. Dropped when nobody listens. */
-  move_hand(position_m: Vec, grip_ratio: number): void {
+  move_hand(position_m: Vec, rotation_rad: Vec, grip_ratio: number): void {
     const [x_m, y_m, z_m] = position_m;
-    this.send({ hand: { x_m, y_m, z_m, grip_ratio } });
+    const [turn_x_rad, turn_y_rad, turn_z_rad] = rotation_rad;
+    this.send({ hand: { x_m, y_m, z_m, turn_x_rad, turn_y_rad, turn_z_rad, grip_ratio } });
   }
 
   /** To a tact-view that replays; another one hears nothing of it. */

@@ -20,6 +20,7 @@ export interface Scene {
   rate_Hz: number;
   frame_rate_Hz: number;
   force_limit_N: number;
+  torque_limit_Nm: number; // 0: the device has no torque
   continuous_force_N: number;
   energy_budget_J: number;
   limits_checksum: string;

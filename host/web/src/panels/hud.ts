@@ -58,6 +58,7 @@ export class Hud {
     write("device", `${scene.device} · ${Math.round(scene.rate_Hz)} Hz`);
     by_id("open_organ").hidden = boundary_edges === 0;
     write("boundary_edges", `open organ, ${boundary_edges} boundary edges`);
+    document.body.classList.toggle("has_torque", scene.torque_limit_Nm > 0);
     write("limits", scene.limits_checksum);
     write("force_of", `of ${Number(scene.force_limit_N.toPrecision(3))} N`);
     this.tell_kind();
@@ -130,6 +131,8 @@ export class Hud {
     const bar = by_id("force_bar");
     bar.style.transform = `scaleX(${share.toFixed(3)})`;
     bar.dataset.tone = share > 0.95 ? "bad" : share > 0.5 ? "wait" : "good";
+    const most_mNm = 1e3 * (this.scene_known?.torque_limit_Nm ?? 0);
+    write("torque", `${(1e3 * length_of(frame.torque_Nm)).toFixed(1)} of ${most_mNm.toPrecision(3)} mN m`);
     write("depth", Hud.depth(frame));
     write("grip", Hud.grip(frame));
     write("rms", `${(frame.rms_N ?? 0).toFixed(2)} of ${this.continuous_force_N.toPrecision(2)} N`);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// tool_view.ts - the instrument, its probe spheres, the force on the hand, and the mark of the hand.
+// tool_view.ts - the instrument, its probe spheres, force and torque on the hand, and the mark of the hand.
 
 import * as THREE from "three";
 import { toCreasedNormals } from "three/addons/utils/BufferGeometryUtils.js";
 import { look_material, paint } from "./look";
 import { kMaterials, tool_material } from "./material";
 import type { Target } from "./outside";
-import { dot, kSiteInside, length_of, type Frame, type Mesh, type Scene, type Vec } from "../link/protocol";
+import { dot, kSiteInside, length_of, type Frame, type Mesh, type Scene, type Sphere, type Vec } from "../link/protocol";
 
 const kTouch = new THREE.Color("#7fd1c7");
 const kHeld = new THREE.Color("#f2b04e");
@@ -16,6 +16,12 @@ const kStrong = new THREE.Color("#f2b04e");
 const kLimit = new THREE.Color("#ff5d52");
 const kTip_m = 0.01; // what is to be seen of a tool that is in the picture
 const kArrow_m = 0.08; // length at the force limit
+
+function color_of(share: number, material: THREE.MeshLambertMaterial): void {
+  if (share < 0.5) material.color.lerpColors(kCalm, kStrong, 2 * share);
+  else material.color.lerpColors(kStrong, kLimit, Math.min(1, 2 * share - 1));
+  material.emissive.copy(material.color).multiplyScalar(0.45);
+}
 
 /** Unit cylinder and cone along +y, scaled by set(). */
 class Arrow {
@@ -48,9 +54,35 @@ class Arrow {
     this.direction.set(...force_N).normalize();
     this.object.position.copy(at_m).addScaledVector(this.direction, into_tissue ? -length_m : 0);
     this.object.quaternion.setFromUnitVectors(THREE.Object3D.DEFAULT_UP, this.direction);
-    if (share < 0.5) this.material.color.lerpColors(kCalm, kStrong, 2 * share);
-    else this.material.color.lerpColors(kStrong, kLimit, Math.min(1, 2 * share - 1));
-    this.material.emissive.copy(this.material.color).multiplyScalar(0.45);
+    color_of(share, this.material);
+  }
+}
+
+const kArc_m = 0.02; // radius
+
+/** Three quarters of a circle about a torque, with a head that says which way. */
+class Arc {
+  readonly object = new THREE.Group();
+  private readonly material = new THREE.MeshLambertMaterial();
+
+  constructor() {
+    const ring = new THREE.Mesh(new THREE.TorusGeometry(kArc_m, 0.0011, 10, 48, 1.5 * Math.PI), this.material);
+    const head = new THREE.Mesh(new THREE.ConeGeometry(0.0032, 0.011, 20), this.material);
+    // The ring goes anticlockwise about +z from +x to -y; there +x is onwards.
+    head.position.set(0, -kArc_m, 0);
+    head.rotation.z = -0.5 * Math.PI;
+    this.object.add(ring, head);
+    this.object.visible = false;
+  }
+
+  /** Colour and size say its share of the limit, as of the arrow. */
+  set(at_m: THREE.Vector3, torque_Nm: Vec, share: number): void {
+    this.object.visible = share > 0.002;
+    if (!this.object.visible) return;
+    this.object.position.copy(at_m);
+    this.object.quaternion.setFromUnitVectors(new THREE.Vector3(0, 0, 1), new THREE.Vector3(...torque_Nm).normalize());
+    this.object.scale.setScalar(Math.sqrt(Math.min(1, share)));
+    color_of(share, this.material);
   }
 }
 
@@ -58,10 +90,10 @@ export class ToolView {
   readonly object = new THREE.Group();
   private readonly tool = new THREE.Group();
   private readonly arrow = new Arrow();
+  private readonly arc = new Arc();
   private readonly mark: THREE.Mesh; // where the mouse wants the hand to be
   private readonly spheres: THREE.Mesh<THREE.SphereGeometry, THREE.MeshBasicMaterial>[] = [];
   private readonly picture: THREE.Texture | null = null; // of its own
-  private readonly from_m = new THREE.Vector3();
 
   constructor(
     mesh: Mesh,
@@ -86,7 +118,7 @@ export class ToolView {
       new THREE.MeshBasicMaterial({ color: "#f2b04e", transparent: true, opacity: 0.45 }),
     );
     this.mark.visible = false;
-    this.object.add(this.tool, this.arrow.object, this.mark);
+    this.object.add(this.tool, this.arrow.object, this.arc.object, this.mark);
   }
 
   show(frame: Frame): void {
@@ -100,17 +132,27 @@ export class ToolView {
     });
     const share = length_of(frame.force_N) / (this.scene.force_limit_N || 1);
     const into_tissue = frame.sites.some((site) => dot(site.normal, frame.force_N) < 0);
-    this.arrow.set(this.contact_middle(frame), frame.force_N, share, into_tissue);
+    const in_contact = frame.sites.flatMap((site) => this.scene.spheres[site.site] ?? []);
+    const at_m = this.middle_m(in_contact); // where eyes are; the hand may hold the tool outside the picture
+    this.arrow.set(at_m, frame.force_N, share, into_tissue);
+    const most_Nm = this.scene.torque_limit_Nm;
+    this.arc.set(at_m, frame.torque_Nm, most_Nm > 0 ? length_of(frame.torque_Nm) / most_Nm : 0);
   }
 
   /** Its tip. */
   get target(): Target {
-    return { at_m: this.tool.position, radius_m: kTip_m };
+    return { at_m: this.middle_m(this.scene.spheres), radius_m: kTip_m };
   }
 
   /** Until the next frame. */
   hide_force(): void {
     this.arrow.object.visible = false;
+    this.arc.object.visible = false;
+  }
+
+  /** Share of the torque's limit that the arc shows; 0: none is drawn. */
+  get arc_share(): number {
+    return this.arc.object.visible ? this.arc.object.scale.x ** 2 : 0;
   }
 
   /** A place in the tool's own axes, where it is drawn. */
@@ -143,17 +185,10 @@ export class ToolView {
     this.tool.add(sphere);
   }
 
-  /** The force acts where the spheres touch; without contact, at the tool's origin. */
-  private contact_middle(frame: Frame): THREE.Vector3 {
-    this.from_m.set(0, 0, 0);
-    let count = 0;
-    for (const site of frame.sites) {
-      const offset_m = this.scene.spheres[site.site]?.offset_m;
-      if (!offset_m) continue;
-      this.from_m.add(new THREE.Vector3(...offset_m));
-      ++count;
-    }
-    if (count > 0) this.from_m.divideScalar(count);
-    return this.from_m.applyQuaternion(this.tool.quaternion).add(this.tool.position);
+  /** Of these spheres; of none, the tool's origin. */
+  private middle_m(spheres: Sphere[]): THREE.Vector3 {
+    const middle_m = new THREE.Vector3();
+    for (const sphere of spheres) middle_m.addScaledVector(new THREE.Vector3(...sphere.offset_m), 1 / spheres.length);
+    return middle_m.applyQuaternion(this.tool.quaternion).add(this.tool.position);
   }
 }

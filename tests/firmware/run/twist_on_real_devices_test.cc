@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+// Press, grip, twist, pull and tear of liver_twist on the stand-in for Force Dimension's library:
+// its handle goes exactly as the scene's hand wants, three times as fast.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <deque>
+#include <memory>
+#include <utility>
+
+#include "firmware/admission/torque_note.h"
+#include "firmware/gate/limits_for.h"
+#include "firmware/loop/rt_loop.h"
+#include "hal/mounting.h"
+#include "hal/registry/open_device.h"
+#include "model/scene/tissue.h"
+#include "model/time_ns.h"
+#include "model/units.h"
+#include "tests/support/scene_loop.h"
+#include "tests/support/sentence.h"
+#include "tests/support/stub_dhd/stub_client.h"
+
+namespace tact::firmware::run::twist_on_real_devices_test {
+
+using model::Vec3;
+using model::operator""_deg;
+
+constexpr double kStrokes_s = 3e-3;  // of the scene in a tick of 1 ms
+
+struct RealDevice {
+  const char* name;
+  int type;
+  bool has_torque;
+  const char* base_orientation_deg = "[0, 0, 0]";
+
+  friend void PrintTo(const RealDevice& one, std::ostream* out) { *out << one.name; }
+};
+
+const RealDevice kDevices[] = {{"delta.6", 64, true},
+                               {"omega.7", 35, false},
+                               {"sigma.7", 104, true},
+                               {"lambda.7, hanging", 108, true, "[0, 90, 0]"},
+                               {"delta.6, turned", 64, true, "[0, 0, 90]"}};
+
+/// What the hand felt, from the first tick to the last.
+struct Felt {
+  double press_N = 0.0, pull_N = 0.0, twist_rad = 0.0, torque_Nm = 0.0;
+  bool held = false, torn = false;
+  int arrived = 0, others = 0;  // forces of the stub with a torque that the loop wrote, or not
+  model::Fault fault = model::Fault::kNone;
+};
+
+class TwistOnRealDevices : public testing::TestWithParam<RealDevice> {
+ protected:
+  void SetUp() override {
+    stub_.set_type(GetParam().type);
+    const std::string orientation = GetParam().base_orientation_deg;
+    // The liver 93 mm lower: the handle, not the jaws, is in the middle of a small workspace.
+    auto loaded = model::scene::load_scene(
+        TACT_SOURCE_DIR "/model/scenes/liver_twist.toml",
+        {"device.kind=\"force-dimension\"",
+         "device.force_dimension.library=\"" + tests::kStubLibrary + "\"",
+         "device.base_orientation_deg=" + orientation, "organ.position_m=[0, 0, -0.123]",
+         "hand.site_m=[0, 0, -0.093]", "hand.home_m=[0, 0, -0.073]"});
+    ASSERT_EQ(tests::sentence_of(loaded), "");
+    scene_ = std::move(*loaded);
+    scene_.device.trust_library = true;
+    mounting_ = hal::mounting_of(scene_.device);
+    lead(scene_.hand.path.front());
+    auto tissue = model::scene::make_tissue(scene_);
+    ASSERT_EQ(tests::sentence_of(tissue), "");
+    tissue_ = std::move(*tissue);
+    auto device = hal::registry::open_device(scene_);
+    ASSERT_EQ(tests::sentence_of(device), "");
+    device_ = std::move(*device);
+    controller_ = std::make_unique<loop::Controller>(
+        tissue_->contact_scene(),
+        gate::Gate(gate::limits_for(scene_.limits, device_->info()), 1.0 / scene_.rate_Hz, 1.0),
+        /*hard_real_time=*/false);
+    loop_ = std::make_unique<loop::RtLoop>(loop::LoopSettings{}, *device_, lines_, *controller_,
+                                           clock_, requests_, *ring_);
+    requests_.arm_at_start.store(true);
+  }
+  void TearDown() override {
+    if (loop_) loop_->release_device();
+  }
+
+  void lead(const model::HandWaypoint& at) {
+    const model::Quat turn =
+        conjugate(mounting_.turn) * model::quat_from_rotation_vector(at.rotation_rad);
+    const Vec3 p = mounting_.point_in_base(at.position_m);
+    std::array<Vec3, 3> column{rotate(turn, {1, 0, 0}), rotate(turn, {0, 1, 0}),
+                               rotate(turn, {0, 0, 1})};
+    const double r[3][3] = {{column[0].x, column[1].x, column[2].x},
+                            {column[0].y, column[1].y, column[2].y},
+                            {column[0].z, column[1].z, column[2].z}};
+    stub_.hold(p.x, p.y, p.z);
+    stub_.turn(r);
+    stub_.grip(0.5236 * (1.0 - at.grip_ratio), at.grip_ratio > 0.7 ? 1 : 0);
+  }
+
+  loop::TickRecord step(Felt& felt) {
+    loop_->step();
+    loop::TickRecord record;
+    EXPECT_TRUE(ring_->pop(record));
+    const model::Wrench& w = record.output.written;
+    written_.push_back(
+        {mounting_.force_in_base(w.force_N), mounting_.direction_in_base(w.torque_Nm)});
+    if (written_.size() > 1000) written_.pop_front();
+    const model::Quat& q = record.input.sample.tool.orientation;
+    const bool held = tests::any_in(record, model::contact::TouchState::kHeld);
+    felt.held |= held;
+    felt.fault = std::max(felt.fault, record.output.fault);
+    felt.torque_Nm = std::max(felt.torque_Nm, norm(w.torque_Nm));
+    if (held) felt.twist_rad = std::max(felt.twist_rad, 2.0 * std::asin(std::abs(q.z)));
+    if (held) felt.pull_N = std::max(felt.pull_N, -w.force_N.z);
+    if (!felt.held) felt.press_N = std::max(felt.press_N, w.force_N.z);
+    if (felt.pull_N > 0.0 && !held && record.input.sample.tool.grip_ratio == 1.0) felt.torn = true;
+    compare(felt);
+    return record;
+  }
+
+  /// What the library was given last is a wrench that the loop wrote, to the last digit.
+  void compare(Felt& felt) {
+    double f[6] = {};
+    stub_.last_force(f);
+    const Vec3 force_N{f[0], f[1], f[2]}, torque_Nm{f[3], f[4], f[5]};
+    if (norm(force_N) == 0.0) return;
+    const bool known = std::any_of(written_.begin(), written_.end(), [&](const model::Wrench& w) {
+      return w.force_N == force_N && w.torque_Nm == torque_Nm;
+    });
+    ++(known ? felt.arrived : felt.others);
+  }
+
+  Felt feel() {
+    Felt felt;
+    for (int i = 0; i < 2000 && step(felt).output.state != loop::State::kArmed; ++i) continue;
+    const double end_s = scene_.hand.path.back().time_s;
+    for (double t = 0.0; t < end_s; t += kStrokes_s) {
+      lead(hand_target(scene_.hand.path, false, t));
+      step(felt);
+    }
+    return felt;
+  }
+
+  tests::StubDhd stub_;
+  model::scene::Scene scene_;
+  hal::Mounting mounting_;
+  std::unique_ptr<model::scene::Tissue> tissue_;
+  hal::registry::OpenDevice device_;
+  hal::NoSafetyLines lines_;
+  loop::MonotonicClock clock_;
+  loop::Requests requests_;
+  std::unique_ptr<loop::TickRing> ring_ = std::make_unique<loop::TickRing>();
+  std::unique_ptr<loop::Controller> controller_;
+  std::unique_ptr<loop::RtLoop> loop_;
+  std::deque<model::Wrench> written_;
+};
+
+TEST_P(TwistOnRealDevices, PressGripTwistPullAndTearAreFelt) {
+  const Felt felt = feel();
+  EXPECT_EQ(felt.fault, model::Fault::kNone) << model::describe(felt.fault).name;
+  EXPECT_GT(felt.press_N, 0.1);
+  EXPECT_TRUE(felt.held);
+  EXPECT_GT(felt.twist_rad, 19_deg);
+  EXPECT_GT(felt.pull_N, 0.3);
+  EXPECT_TRUE(felt.torn);
+  EXPECT_GT(felt.arrived, 500);
+  EXPECT_EQ(felt.others, 0);
+  const bool lost = !admission::torque_note(scene_, device_->info()).empty();
+  EXPECT_NE(lost, GetParam().has_torque);
+  if (GetParam().has_torque)
+    EXPECT_GT(felt.torque_Nm, 0.015) << "of 0.2 N m";
+  else
+    EXPECT_EQ(felt.torque_Nm, 0.0);
+  EXPECT_LT(felt.torque_Nm, 0.06);
+}
+
+INSTANTIATE_TEST_SUITE_P(Types, TwistOnRealDevices, testing::ValuesIn(kDevices),
+                         [](const auto& one) {
+                           std::string name = one.param.name;
+                           std::erase_if(name, [](char c) { return !std::isalnum(c); });
+                           return name;
+                         });
+
+}  // namespace tact::firmware::run::twist_on_real_devices_test
