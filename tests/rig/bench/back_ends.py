@@ -39,6 +39,12 @@ SIM_DELTA_LINES = BackEnd("sim-delta with lines", settings=('device.kind="sim-de
                           programs=("tact-rig-lines",), system_calls=SLEEP | {("tact-loop", "sys_ioctl"): 2})
 
 
+# A foot switch and a clutch besides, which close when their line is pulled up
+SWITCHES = ('device.lines.grip=5', 'device.lines.clutch=6')
+GRIP, CLUTCH = 5, 6
+SWITCHES_UP = "for i in 5 6; do line[$i]=$(gpio_sim path $i); done"
+
+
 # A scope line that is wired back to an input. Gum's tick lasts some ten looks of the wire while it is
 # pressed, which is soon and for long.
 SCOPE, BACK = 5, 6
@@ -57,6 +63,13 @@ def with_lines(back_end):
     return dataclasses.replace(back_end, name=f"{back_end.name} with lines",
                                settings=(*back_end.settings, *LINES), setup=f"{LINES_UP}\n{back_end.setup}",
                                programs=(*back_end.programs, "tact-rig-lines"))
+
+
+def with_switches(back_end):
+    """The same device beside safety lines, a foot switch and a clutch."""
+    lines = back_end if back_end is SIM_DELTA_LINES else with_lines(back_end)
+    return dataclasses.replace(lines, name=f"{back_end.name} with switches", settings=(*lines.settings, *SWITCHES),
+                               setup=f"{lines.setup}\n{SWITCHES_UP}")
 
 
 def drives(protocol, options=""):

@@ -170,6 +170,21 @@ def proved(*words):
 MOST_TO_TAKE_APART_ms = 100.0
 
 
+def pulled(run):
+    """The foot switch closed the jaws for a while, and what they held pulled down as the hand lifted."""
+    gripped, pull_N = run.ticks.get("gripped_ticks", 0), run.ticks.get("most_pull_N", 0.0)
+    return [] if gripped > 100 and pull_N > 0.05 else [
+        f"{gripped} ticks with closed jaws, at most {pull_N:.3f} N downwards: more than 100 and 0.05 N are due"]
+
+
+def clutched(run):
+    """One clutch, no contact lost; released inside the organ, the tool has no force until it has been outside."""
+    wrong = [] if run.report.get("clutches") == 1 else [f"{run.report.get('clutches')} clutches, not 1"]
+    wrong += [] if run.report.get("inside_ticks", 0) > 0 else ["the tool was never inside the organ"]
+    zero = run.ticks.get("zero")
+    return wrong + ([] if zero else ["the force came again after the clutch, or never went"])
+
+
 def device_gone(run):
     """The kernel itself could take the device apart within 100 ms: no thread of ours starved it."""
     pulled_ns = (run.emulator.get("faults") or [{}])[0].get("injected_ns")

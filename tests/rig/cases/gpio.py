@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Safety lines on the kernel's simulated GPIO chip, beside the simulated delta."""
 from bench import checks, estop_times
-from bench.back_ends import CIA402, FALCON_USBFS, MOTEUS, ODRIVE06, SIM_DELTA_LINES, with_lines
+from bench.back_ends import (CIA402, CLUTCH, FALCON_USBFS, GRIP, MOTEUS, ODRIVE06, SIM_DELTA_LINES, with_lines,
+                             with_switches)
 from bench.case import Case
-from bench.faults import Latches, attempt
+from bench.faults import Latches, RidesThrough, attempt
 
 REAL_TIME = (checks.hard_real_time, checks.no_late_tick)
 PRESSING = "control $SECONDS_OF_RUN\nsleep 3.2\n"  # 10 mm deep, enabled since 0.1 s
@@ -74,6 +75,13 @@ CASES = [
          f"pull {A} up; pull {B} up; sleep .1\nkill -USR2 $tactd; sleep .1\n"
          "kill -USR1 $tactd; sleep .3; kill -USR2 $tactd\nfinish",
          (checks.hard_real_time, checks.armed_again), seconds=4),
+    Case("lines-clutch", "a clutch in a press takes the force away, and what is released inside the organ has none",
+         with_switches(SIM_DELTA_LINES),
+         f"{PRESSING}inject pull {CLUTCH} up; sleep .3; pull {CLUTCH} down; sleep .2\nfinish",
+         (*REAL_TIME, checks.no_fault, checks.clutched), fault=RidesThrough(), seconds=3.9),
+    *(Case(f"{back_end.name}-foot-switch", "a foot switch closes the jaws of a delta on CAN: what they hold pulls",
+           with_switches(back_end), f"control $SECONDS_OF_RUN\nsleep 3.2\npull {GRIP} up; sleep 1.6; pull {GRIP} down\nfinish",
+           (checks.hard_real_time, checks.no_fault, checks.pulled), seconds=5.2, long_only=back_end is not ODRIVE06) for back_end in (ODRIVE06, CIA402, MOTEUS)),
     estop_at_any_phase(SIM_DELTA_LINES, pressing_s=3.2, seconds=3.4),
     # The emulated drives run below the loop on its core: they have a frame when its tick is over.
     estop_at_any_phase(with_lines(ODRIVE06), pressing_s=1.1, seconds=1.3, bus_us=50.0, emulator="--hand-tempo 2.5"),

@@ -51,6 +51,10 @@ class FaultStory {
     skipped_ += tick.input.skipped_periods;
     most_skipped_ = std::max(most_skipped_, tick.input.skipped_periods);
     last_ = tick;
+    if (tick.input.sample.tool.grip_ratio >= 1.0) {
+      ++gripped_;
+      most_pull_N_ = std::max(most_pull_N_, -tick.output.written.force_N.z);
+    }
     const bool after = injected_ns_ != 0 && woke_ns(tick) >= injected_ns_;
     if (!after) {
       if (pushes(tick)) pushed_before_ = true;
@@ -79,7 +83,9 @@ class FaultStory {
              {"force_before_N", force_before_N_},
              {"pushed_before", pushed_before_},
              {"moved_after_N", moved_after_N_},
-             {"armed_ticks_after", armed_after_}};
+             {"armed_ticks_after", armed_after_},
+             {"gripped_ticks", gripped_},
+             {"most_pull_N", most_pull_N_}};
     out["pauses"] = pauses_;
     tell(out, "first_tick_after", first_after_);
     tell(out, "missed", missed_);
@@ -130,9 +136,10 @@ class FaultStory {
   std::int64_t injected_ns_;
   json pauses_ = json::array();  // the first ones
   json before_last_N_ = json::array({0.0, 0.0, 0.0});
-  std::uint64_t ticks_ = 0, skipped_ = 0, armed_after_ = 0;
+  std::uint64_t ticks_ = 0, skipped_ = 0, armed_after_ = 0, gripped_ = 0;
   std::uint32_t most_skipped_ = 0;
   double force_before_N_ = 0.0, moved_after_N_ = 0.0;
+  double most_pull_N_ = 0.0;  // downwards, with closed jaws
   bool pushed_before_ = false;
   std::optional<LoggedTick> first_after_, missed_, detected_, zero_, first_zero_, last_push_, last_;
 };
