@@ -117,7 +117,7 @@ TEST(Override, ThatIsWrongIsToldAsItWasTyped) {
        "grip_close_ratio"},
       {"hand.stroke.0.action=stab",
        "hand.stroke.0.action = \"stab\" is unknown; allowed: \"press\", \"hold\", \"slide\", "
-       "\"release\", \"grip\", \"pull\", \"tear\""},
+       "\"release\", \"grip\", \"pull\", \"tear\", \"turn\""},
   };
   for (const Case& c : cases)
     EXPECT_EQ(complaint({c.text}), c.said.empty() ? "" : "--set " + c.text + ": " + c.said);
