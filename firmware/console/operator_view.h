@@ -20,6 +20,8 @@ class OperatorView {
   /// A few times a second, with the newest frame. Faults go to standard error. True: it has just
   /// told that the device is ready, and may be armed from now on.
   bool show(const telemetry::Frame& newest);
+  /// It has been disarmed, and does not arm itself any more.
+  void wait_for_person() { arms_itself_ = false; }
   /// Empty where the person may ask for it, by what was told last.
   std::string why_not_arm() const;
   std::string why_not_reset() const;
