@@ -44,7 +44,7 @@ class OperatorView {
   bool terminal_, arms_itself_, told_ready_ = false;
   bool inside_ = false;  // the tool, in the organ, without force
   telemetry::Frame before_;
-  std::string waits_for_;
+  std::string waits_for_, notice_;
 };
 
 /// The cause of a fault as its own part words it; lines and device know more of their own faults.
