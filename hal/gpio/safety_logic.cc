@@ -12,8 +12,7 @@ const char* words(LinesCause cause) {
     case LinesCause::kClutchFlaps:
       return "the clutch line changes faster than a foot can press, and counts as pressed: a wire "
              "is loose or the switch is broken; mend it (device.lines.clutch), then it counts "
-             "again "
-             "after a second";
+             "again after a second";
     case LinesCause::kGripFlaps:
       return "the grip line changes faster than a foot can press: a wire is loose or the switch is "
              "broken; mend it (device.lines.grip), then reset and arm";
