@@ -58,7 +58,8 @@ void RtLoop::hear_requests() RT_SAFE {
   // One that is seen a tick later is a request made a tick later.
   const Commands before = record_.input.commands;
   const std::uint32_t asked = requests_.asked.load(std::memory_order_relaxed);
-  // The supervisor acts on an edge: between two requests there is a tick without one.
+  // By number alone: one that a tick has taken cannot be taken back. The supervisor acts on an
+  // edge: between two requests there is a tick without one.
   answers_ = (asked ^ heard_) > 3U && !before.arm && !before.reset && !before.disarm;
   if (answers_) heard_ = asked;
   const auto request = answers_ ? static_cast<Request>(asked & 3U) : Request::kNone;
