@@ -53,6 +53,9 @@ class SafetyLines {
   /// What lies behind the fault of the lines, for a person: which channel, why, the cure. Empty
   /// when there is no more to say than the fault's own words. Any thread, at any time.
   virtual std::string trouble() const { return {}; }
+  /// What is wrong with a line without being a fault, and takes the force all the same; empty when
+  /// nothing is. Any thread, at any time.
+  virtual std::string notice() const { return {}; }
   /// Everything to its safe level; may block.
   virtual void stop() = 0;
 };

@@ -14,7 +14,7 @@ namespace tact::firmware::console {
 namespace {
 
 constexpr const char* kTooEarly = "the request came before it was ready";
-constexpr int kMaxPauses = 1000;  // of 1 ms; at the lowest rate a tick is 10 ms
+constexpr int kMaxPauses = 200;  // of 1 ms; at the lowest rate a tick is 10 ms
 
 }  // namespace
 
@@ -77,19 +77,29 @@ Answer OperatorDesk::reset(bool too_early) {
 Answer OperatorDesk::disarm() {
   const auto off = ask_loop(loop::Request::kDisarm);
   if (off != true) return not_done("disarmed", off, "it is armed again");
-  return {.done = true,
-          .sentence = view_.device() + ": no force; arm it again when it shall have one"};
+  view_.wait_for_person();
+  const bool stopped = newest_().state == loop::State::kStopped;
+  return {
+      .done = true,
+      .sentence = view_.device() + (stopped ? ": no force; it has stopped: reset it, then arm it"
+                                            : ": no force; arm it again when it shall have one")};
 }
 
-// Waits for the echo of its number, at most kMaxPauses. A loop that does not tick by then shall not
-// do it later: the request is taken back.
+// A loop that does not tick by then shall not do it later: the request is taken back. What a tick
+// had taken by then may be done all the same.
 std::optional<bool> OperatorDesk::ask_loop(loop::Request request) {
   const std::uint32_t number = requests_.ask(request);
+  if (const auto answer = wait_for(number)) return answer;
+  requests_.take_back();
+  return wait_for(number) == true ? std::optional(true) : std::nullopt;
+}
+
+// For the echo of a request, at most kMaxPauses.
+std::optional<bool> OperatorDesk::wait_for(std::uint32_t number) {
   for (int i = 0; i < kMaxPauses; ++i) {
     if (const auto answer = requests_.answer(number)) return answer;
     pause_();
   }
-  requests_.ask(loop::Request::kNone);
   return std::nullopt;
 }
 

@@ -46,6 +46,7 @@ class OperatorDesk {
   Answer disarm();
   Answer stop();
   std::optional<bool> ask_loop(loop::Request request);
+  std::optional<bool> wait_for(std::uint32_t number);
   Answer not_done(const char* what, const std::optional<bool>& answer, const char* why) const;
   Answer refuse(const char* what, const std::string& why) const;
 

@@ -61,6 +61,8 @@ bool OperatorView::show(const telemetry::Frame& newest) {
         scene_path_, getpid()));
   }
   tell_inside(newest);
+  const std::string noticed = std::exchange(notice_, lines_.notice());
+  if (!notice_.empty() && notice_ != noticed) tell(notice_);
   if (terminal_) say(stdout, "\r\033[K{}", status_line(newest, before_));
   // A live line has no line end that would send it.
   std::fflush(stdout);
@@ -116,6 +118,7 @@ std::string OperatorView::status() const {
     out += fmt::format(", fault {}, {}", before_.fault,
                        model::describe(static_cast<Fault>(before_.fault)).name);
   if (inside_) out += ", inside the organ: take the tool out";
+  if (!notice_.empty()) out += ", " + notice_;
   if (before_.contact_losses > 0)
     out += fmt::format(", contact lost {} times", before_.contact_losses);
   if (before_.state <= loop::State::kReady && !waits_for_.empty()) out += ": " + waits_for_;

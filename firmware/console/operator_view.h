@@ -20,6 +20,8 @@ class OperatorView {
   /// A few times a second, with the newest frame. Faults go to standard error. True: it has just
   /// told that the device is ready, and may be armed from now on.
   bool show(const telemetry::Frame& newest);
+  /// It has been disarmed, and does not arm itself any more.
+  void wait_for_person() { arms_itself_ = false; }
   /// Empty where the person may ask for it, by what was told last.
   std::string why_not_arm() const;
   std::string why_not_reset() const;
@@ -42,7 +44,7 @@ class OperatorView {
   bool terminal_, arms_itself_, told_ready_ = false;
   bool inside_ = false;  // the tool, in the organ, without force
   telemetry::Frame before_;
-  std::string waits_for_;
+  std::string waits_for_, notice_;
 };
 
 /// The cause of a fault as its own part words it; lines and device know more of their own faults.

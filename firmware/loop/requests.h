@@ -31,6 +31,8 @@ struct Requests {
     asked.store(number << 2 | static_cast<std::uint32_t>(request), std::memory_order_relaxed);
     return number;
   }
+  /// Not done from now on, unless a tick has taken it: its answer says which.
+  void take_back() { asked.fetch_and(~3U, std::memory_order_relaxed); }
   /// What came of it: done, refused, or not answered yet.
   std::optional<bool> answer(std::uint32_t number) const {
     const std::uint32_t echo = echoed.load(std::memory_order_relaxed);

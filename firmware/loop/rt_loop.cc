@@ -58,10 +58,12 @@ void RtLoop::hear_requests() RT_SAFE {
   // One that is seen a tick later is a request made a tick later.
   const Commands before = record_.input.commands;
   const std::uint32_t asked = requests_.asked.load(std::memory_order_relaxed);
-  // The supervisor acts on an edge: between two requests there is a tick without one.
-  answers_ = asked != heard_ && !before.arm && !before.reset && !before.disarm;
+  // By number alone: one that a tick has taken cannot be taken back. The supervisor acts on an
+  // edge: between two requests there is a tick without one.
+  answers_ = (asked ^ heard_) > 3U && !before.arm && !before.reset && !before.disarm;
   if (answers_) heard_ = asked;
   const auto request = answers_ ? static_cast<Request>(asked & 3U) : Request::kNone;
+  if (request == Request::kDisarm) requests_.arm_at_start.store(false, std::memory_order_relaxed);
   record_.input.commands = {.arm = request == Request::kArm || arms_at_start(),
                             .stop = requests_.stop.load(std::memory_order_relaxed),
                             .reset = request == Request::kReset,
@@ -72,11 +74,14 @@ void RtLoop::hear_requests() RT_SAFE {
 void RtLoop::answer_requests() RT_SAFE {
   const State state = record_.output.state;
   if (answers_) {
-    const Commands& commands = record_.input.commands;
-    const bool done = commands.arm     ? state == State::kArmed
-                      : commands.reset ? state == State::kReady
-                                       : commands.disarm && state != State::kArmed;
-    if (commands.arm && !done) requests_.refused.fetch_add(1, std::memory_order_relaxed);
+    // Not by the commands: the loop's own request to arm may stand beside a person's.
+    const auto request = static_cast<Request>(heard_ & 3U);
+    const bool done = request == Request::kArm ? state == State::kArmed
+                      : request == Request::kReset
+                          ? state == State::kReady
+                          : request == Request::kDisarm && state != State::kArmed;
+    if (request == Request::kArm && !done)
+      requests_.refused.fetch_add(1, std::memory_order_relaxed);
     requests_.echo(heard_, done);
   }
   if (state == State::kArmed || state == State::kStopped)

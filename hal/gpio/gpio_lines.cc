@@ -92,6 +92,7 @@ class GpioLines final : public SafetyLines {
     if (!is_lost() && !lines_.scope.empty()) lines_.scope.set({up ? 1 : 0});
   }
 
+  std::string notice() const override { return logic_.notice(); }
   std::string trouble() const override {
     return words(is_lost() ? LinesCause::kChipLost : logic_.cause());
   }

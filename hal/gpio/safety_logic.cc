@@ -9,6 +9,10 @@ const char* words(LinesCause cause) {
   switch (cause) {
     case LinesCause::kNone:
       break;
+    case LinesCause::kClutchFlaps:
+      return "the clutch line changes faster than a foot can press, and counts as pressed: a wire "
+             "is loose or the switch is broken; mend it (device.lines.clutch), then it counts "
+             "again after a second";
     case LinesCause::kGripFlaps:
       return "the grip line changes faster than a foot can press: a wire is loose or the switch is "
              "broken; mend it (device.lines.grip), then reset and arm";
@@ -73,7 +77,10 @@ Fault SafetyLogic::judge(const SafetyLevels& levels, std::int64_t now_ns) RT_SAF
       cause = LinesCause::kGripFlaps;
     }
   }
-  if (wiring_.clutch) clutch_.step(levels.clutch, now_ns);
+  if (wiring_.clutch) {
+    clutch_.step(levels.clutch, now_ns);
+    clutch_flaps_.store(clutch_.flaps(), std::memory_order_relaxed);
+  }
   if (wiring_.dead_man && !levels.dead_man) {
     fault_ = Fault::kDeadManReleased;
     cause = LinesCause::kDeadManOpen;

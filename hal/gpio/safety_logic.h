@@ -7,7 +7,8 @@
 //                                             only then a contact that sticks is mended
 //   dead-man low                           -> kDeadManReleased, at once
 //   grip switch flaps (grip_switch.h)      -> kGripFlaps, until it has been quiet for a second
-//   clutch      counts after 10 ms, as the grip switch; one that flaps takes the force, no fault
+//   clutch      counts after 10 ms, as the grip switch; one that flaps counts as pressed: no force,
+//               and no fault, until it has been quiet for a second
 //   heartbeat   toggles after every healthy tick; the relay beside it drops some 10 ms without
 //   enable      100 ms after the heartbeat has begun; gone in the tick of a fault, or when the
 //               heartbeat has paused for more than 10 ms: lines need well over 100 ticks a second
@@ -50,6 +51,7 @@ struct SafetyOutputs {
 /// Why the lines stop the force. Ascending: the more telling cause replaces the one before.
 enum class LinesCause : std::uint8_t {
   kNone,
+  kClutchFlaps,  // no fault
   kGripFlaps,
   kDeadManOpen,
   kOneOpen,  // for now: a channel of a good switch opens a little before the other
@@ -78,7 +80,12 @@ class SafetyLogic {
     return wiring_.grip ? std::optional(grip_.pressed()) : std::nullopt;
   }
   std::optional<bool> clutch() const RT_SAFE {
-    return wiring_.clutch ? std::optional(clutch_.pressed()) : std::nullopt;
+    return wiring_.clutch ? std::optional(clutch_.pressed() || clutch_.flaps()) : std::nullopt;
+  }
+  /// One sentence for a person while the clutch flaps, else empty. Any thread.
+  const char* notice() const {
+    return words(clutch_flaps_.load(std::memory_order_relaxed) ? LinesCause::kClutchFlaps
+                                                               : LinesCause::kNone);
   }
   bool enabled() const RT_SAFE { return outputs_.enable && fault_ == model::Fault::kNone; }
   /// The most telling cause of the fault that stands, or of the last one. Any thread.
@@ -90,6 +97,7 @@ class SafetyLogic {
   SafetyWiring wiring_;
   model::Fault fault_ = model::Fault::kNone;
   std::atomic<LinesCause> cause_{LinesCause::kNone};
+  std::atomic<bool> clutch_flaps_{false};
   GripSwitch grip_, clutch_;
   SafetyOutputs outputs_;
   std::int64_t now_ns_ = 0;

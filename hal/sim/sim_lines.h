@@ -44,6 +44,7 @@ class SimLines final : public SafetyLines {
   bool enabled() const RT_SAFE override { return !lost_ && !dropped_ && logic_.enabled(); }
   void drop() RT_SAFE override { dropped_ = true; }
   void scope(bool) RT_SAFE override {}
+  std::string notice() const override { return logic_.notice(); }
   std::string trouble() const override {
     return words(lost_ ? gpio::LinesCause::kChipLost : logic_.cause());
   }

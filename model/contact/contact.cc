@@ -110,7 +110,7 @@ ContactResponse Contact::feel(const Tool& tool, bool blade_may_cut) RT_SAFE {
   felt.is_lost = is_lost_;
   if (was_unsettled_) felt.is_unsettled = true;
   // The force of this tick is that of the tissue before the cut; the cut is felt from the next on.
-  use_blade(tool, blade_may_cut);
+  use_blade(tool, blade_may_cut && !felt.is_inside);
   return felt;
 }
 

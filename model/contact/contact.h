@@ -58,7 +58,7 @@ class Contact {
   /// followed, is lost: its contact ends, and it is found anew.
   void touch(const Tool& tool, std::uint32_t periods = 1, double reach_m = kAnywhere_m) RT_SAFE;
   /// What the tool feels there: states, laws, forces. Call after touch. A blade cuts only if it
-  /// may.
+  /// may, and no sphere is inside: nobody would feel it.
   ContactResponse feel(const Tool& tool, bool blade_may_cut) RT_SAFE;
   /// Forget every site, as at the start.
   void reset() RT_SAFE;

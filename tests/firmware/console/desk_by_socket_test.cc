@@ -103,6 +103,26 @@ TEST_F(DeskBySocket, DisarmsAtAnyTime) {
   EXPECT_EQ(edges, (std::vector<std::string>{"disarm", "disarm"}));
 }
 
+TEST_F(DeskBySocket, AStopThatIsDisarmedStillHasToBeReset) {
+  show(State::kStopped);
+  EXPECT_EQ(ask("disarm").sentence, "puppet: no force; it has stopped: reset it, then arm it");
+}
+
+TEST_F(DeskBySocket, WhatWouldArmItselfWaitsForAPersonOnceItIsDisarmed) {
+  OperatorView itself(device, lines, true);
+  desk = std::make_unique<OperatorDesk>(
+      signals, requests, itself, [this] { return frame; }, control.get(), tick);
+  show(State::kReady);
+  EXPECT_EQ(ask("arm").sentence, "puppet: not armed: it arms itself as soon as it has power");
+  stands = true;
+  EXPECT_FALSE(ask("disarm").done);
+  EXPECT_FALSE(ask("arm").done);
+  stands = false;
+  EXPECT_TRUE(ask("disarm").done);
+  show(State::kReady);  // and the words are told
+  EXPECT_TRUE(ask("arm").done);
+}
+
 TEST_F(DeskBySocket, StopsAtAnyTimeEvenInTheMomentOfTheWords) {
   const int fd = say("stop");
   show(State::kReady);

@@ -85,6 +85,28 @@ TEST_F(Desk, ALoopThatDoesNotAnswerIsNotAskedLater) {
   EXPECT_EQ(requests.asked.load() & 3U, 0U) << "taken back";
 }
 
+TEST_F(Desk, ARequestThatWasDoneBeforeItWasTakenBackIsToldAsDone) {
+  std::uint32_t taken = 0;  // by a tick that ends after the desk has given up
+  OperatorDesk other(
+      signals, requests, view, [this] { return frame; }, nullptr,
+      [&] {
+        const std::uint32_t asked = requests.asked.load();
+        if ((asked & 3U) != 0) taken = asked;
+        if ((asked & 3U) == 0) requests.echo(taken, true);
+      });
+  show(State::kReady);
+  raise(SIGUSR2);
+  EXPECT_EQ(told([&] { other.obey(1'000'000'000); }), "");
+  EXPECT_EQ(requests.asked.load() & 3U, 0U);
+}
+
+TEST_F(Desk, ALoopThatHangsHoldsTheMainThreadForLessThanHalfASecond) {
+  stands = true;
+  show(State::kReady);
+  ask(SIGUSR2);
+  EXPECT_LT(pauses, 500) << "of 1 ms; five requests in a row stay below WatchdogSec";
+}
+
 TEST_F(Desk, ADeviceThatArmsItselfAtTheStartWaitsForAPersonAfterAStop) {
   OperatorView itself(device, lines, true);
   OperatorDesk other(signals, requests, itself, [this] { return frame; }, nullptr, tick);

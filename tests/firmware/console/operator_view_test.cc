@@ -22,6 +22,8 @@ class WordyLines final : public hal::SafetyLines {
   void scope(bool) RT_SAFE override {}
   void stop() override {}
   std::string trouble() const override { return "channel B sticks"; }
+  std::string notice() const override { return words; }
+  std::string words;
 };
 
 class View : public testing::Test {
@@ -49,6 +51,20 @@ TEST_F(View, AFaultIsToldOnceWithWhatLiesBehindIt) {
   EXPECT_NE(first.find("fault 113, drive fault"), std::string::npos) << first;
   EXPECT_NE(first.find("axis 2 (node 2): over-current"), std::string::npos) << first;
   EXPECT_EQ(told(frame(loop::State::kStopped, model::Fault::kDriveFault)), "");
+}
+
+TEST_F(View, ALineThatTakesTheForceWithoutAFaultIsToldOnceEachTime) {
+  const telemetry::Frame armed = frame(loop::State::kArmed, model::Fault::kNone);
+  EXPECT_EQ(told(armed), "");
+  lines.words = "the clutch line flaps";
+  EXPECT_EQ(told(armed), "tactd: the clutch line flaps\n");
+  EXPECT_EQ(told(armed), "");
+  EXPECT_NE(view.status().find("the clutch line flaps"), std::string::npos) << view.status();
+  lines.words.clear();
+  EXPECT_EQ(told(armed), "");
+  EXPECT_EQ(view.status().find("flaps"), std::string::npos);
+  lines.words = "the clutch line flaps";
+  EXPECT_NE(told(armed), "");
 }
 
 TEST_F(View, FaultsOfTheLinesAreWordedByTheLines) {

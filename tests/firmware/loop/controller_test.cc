@@ -269,6 +269,18 @@ TEST_F(ControllerTest, BladeOfALostToolCutsNothing) {
   EXPECT_EQ(law.cuts, cuts + 1);
 }
 
+TEST_F(ControllerTest, ABladeThatIsInsideWithoutAForceCutsNothing) {
+  press();
+  input.clutch = ClutchState::kOpen;
+  tick();
+  input.clutch = ClutchState::kCoupled;
+  const int cuts = law.cuts;
+  for (int i = 0; i < 10; ++i) ASSERT_EQ(tick().limit, Fault::kToolInside);
+  EXPECT_EQ(law.cuts, cuts);
+  for (; depth_m > -0.002; depth_m -= 5e-5) tick();
+  EXPECT_GT(law.cuts, cuts) << "it was outside";
+}
+
 TEST_F(ControllerTest, ABladeCutsOnlyWhileArmed) {
   for (int i = 0; i < 10; ++i) tick();
   EXPECT_EQ(law.cuts, 0);

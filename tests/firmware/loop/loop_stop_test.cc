@@ -44,7 +44,7 @@ TEST_F(LoopStop, ARequestThatIsTakenBackIsNotDoneLater) {
   device.height_m = 0.006;
   run_ticks(5);
   requests.ask(Request::kArm);
-  requests.ask(Request::kNone);  // the loop stood in between
+  requests.take_back();  // the loop stood in between
   run_ticks(5);
   EXPECT_EQ(newest().output.state, State::kReady);
   EXPECT_EQ(requests.refused.load(), 0u);
@@ -123,6 +123,45 @@ TEST_F(LoopStop, ADeviceWithoutPowerTellsWhereItIsAndIsNotArmed) {
   device.can_push = true;
   run_ticks(2);
   EXPECT_EQ(newest().output.state, State::kArmed);
+}
+
+TEST_F(LoopStop, DisarmingEndsTheArmingByItself) {
+  device.can_push = false;
+  device.height_m = 0.006;
+  requests.arm_at_start.store(true);
+  run_ticks(20);
+  EXPECT_EQ(answer_to(Request::kDisarm), true);
+  EXPECT_EQ(requests.refused.load(), 0u);
+  device.can_push = true;
+  run_ticks(20);
+  EXPECT_EQ(newest().output.state, State::kReady);
+  EXPECT_EQ(answer_to(Request::kArm), true) << "by a person, from now on";
+}
+
+TEST_F(LoopStop, DisarmingBeforeTheFirstSampleEndsTheArmingByItself) {
+  device.silent = true;
+  device.height_m = 0.006;
+  requests.arm_at_start.store(true);
+  run_ticks(5);
+  EXPECT_EQ(answer_to(Request::kDisarm), true);
+  device.silent = false;
+  run_ticks(20);
+  EXPECT_EQ(newest().output.state, State::kReady);
+}
+
+TEST_F(LoopStop, ARequestThatIsTakenBackIsAnsweredByWhatWasDone) {
+  device.height_m = 0.006;
+  run_ticks(5);
+  const std::uint32_t early = requests.ask(Request::kArm);
+  requests.take_back();
+  run_ticks(2);
+  EXPECT_EQ(requests.answer(early), false) << "not done, and never will be";
+  const std::uint32_t late = requests.ask(Request::kArm);
+  run_ticks(1);
+  requests.take_back();
+  run_ticks(5);
+  EXPECT_EQ(newest().output.state, State::kArmed);
+  EXPECT_EQ(requests.answer(late), true);
 }
 
 TEST_F(LoopStop, APersonsRequestThatFindsNoPowerIsRefusedAndNotKept) {

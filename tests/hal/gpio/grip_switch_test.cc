@@ -98,6 +98,28 @@ TEST(GripSwitch, TheLinesTellItAsTheirFaultBehindTheEmergencyStop) {
   EXPECT_EQ(logic.cause(), LinesCause::kBothOpen);
 }
 
+TEST(ClutchSwitch, OneThatFlapsCountsAsPressedUntilItWasQuietForASecondAndIsTold) {
+  SafetyLogic logic{{.clutch = true}};
+  std::int64_t now_ns = 0;
+  const auto ticks = [&](int n, bool pressed) {
+    for (int i = 0; i < n; ++i)
+      EXPECT_EQ(logic.judge({.clutch = pressed}, now_ns += kMs), Fault::kNone);
+  };
+  ticks(20, false);
+  EXPECT_EQ(logic.clutch(), false);
+  for (int i = 0; i < 60; ++i) ticks(1, true), ticks(1, false);
+  EXPECT_EQ(logic.clutch(), true) << "it does not settle";
+  EXPECT_TRUE(std::string(logic.notice()).starts_with("the clutch line changes faster"));
+  ticks(20, false);
+  EXPECT_EQ(logic.clutch(), false);
+  EXPECT_STREQ(logic.notice(), "");
+  for (int i = 0; i < 9; ++i) ticks(30, true), ticks(30, false);
+  ticks(500, false);
+  EXPECT_EQ(logic.clutch(), true) << "16 changes in half a second";
+  ticks(500, false);
+  EXPECT_EQ(logic.clutch(), false);
+}
+
 TEST(GripSwitch, WithoutAWireThereIsNoGrip) {
   EXPECT_FALSE(SafetyLogic({}).grip());
   EXPECT_EQ(SafetyLogic({.grip = true}).grip(), false);
