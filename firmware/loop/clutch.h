@@ -4,6 +4,8 @@
 //
 //     p_tool = p_handle + s      s: shift, 0 at the start; both in W. The tool turns as before.
 //
+// The velocity of a sample stays the handle's, open or not: the gate holds it against its limit.
+//
 //   coupled  the tool follows the handle
 //   yields   pressed, and a force is still written: none is asked for any more
 //   open     no force is written: the tool stays, s follows the handle, contact is forgotten
@@ -32,10 +34,7 @@ class Clutch {
     }
     // A sample that is no number latches elsewhere, and must not stay in the shift.
     if (!sample.fresh || !is_finite(sample.tool)) return state_;
-    if (state_ == ClutchState::kOpen) {
-      shift_m_ = tool_m_ - sample.tool.position_m;
-      sample.tool.velocity_mps = {};
-    }
+    if (state_ == ClutchState::kOpen) shift_m_ = tool_m_ - sample.tool.position_m;
     sample.tool.position_m = sample.tool.position_m + shift_m_;
     tool_m_ = sample.tool.position_m;
     located_ = true;
