@@ -37,7 +37,7 @@ std::optional<gid_t> haptics_group() {
 }
 
 Refusal why_refused(const std::string& node, const char* rule, std::optional<gid_t> group) {
-  struct stat facts {};
+  struct stat facts{};
   constexpr mode_t kOfGroup = S_IRGRP | S_IWGRP;
   const bool given = group && stat(node.c_str(), &facts) == 0 && facts.st_gid == *group &&
                      (facts.st_mode & kOfGroup) == kOfGroup;
