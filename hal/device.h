@@ -115,6 +115,10 @@ class Device {
   /// What the gripper does to the fingers, opening positive; holds from the next write on.
   virtual void set_grip_force(double opening_N) RT_SAFE { (void)opening_N; }
 
+  /// How far a clutch has moved the tool from the handle, in W, when it may have changed. For a
+  /// simulated hand, which is told where its tool shall go.
+  virtual void shift_tool(const Vec3& shift_m) RT_SAFE { (void)shift_m; }
+
   /// What happens to a simulated device while the loop sleeps: one or more periods of physics.
   /// Hardware lives by itself and does nothing here. Not part of the tick's measured time.
   virtual void between_ticks(double elapsed_s) RT_SAFE { (void)elapsed_s; }

@@ -29,6 +29,7 @@ class MountedDevice final : public Device {
   void permit(bool powered) RT_SAFE override { device_->permit(powered); }
   void set_grip_force(double opening_N) RT_SAFE override { device_->set_grip_force(opening_N); }
   [[nodiscard]] Fault write(const Wrench& wrench) RT_SAFE override;
+  void shift_tool(const Vec3& shift_m) RT_SAFE override { device_->shift_tool(shift_m); }
   void between_ticks(double elapsed_s) RT_SAFE override { device_->between_ticks(elapsed_s); }
   std::string trouble() const override { return device_->trouble(); }
   std::vector<DeviceCount> tally() const override { return device_->tally(); }

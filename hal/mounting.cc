@@ -47,7 +47,8 @@ const Stance* stance_of(const Mounting& m) {
 /// ", hangs, motion x 3": behind the name of the device, on the page and wherever it is named.
 std::string brief_of(const Mounting& m) {
   const Stance* const stance = stance_of(m);
-  const std::string_view stands = stance != nullptr ? stance->brief : "tilted";
+  std::string_view stands = stance != nullptr ? stance->brief : "tilted";
+  if (stands.empty() && std::abs(m.turn.w) < 1.0 - 1e-9) stands = "turned";  // about its own axis
   std::string out = stands.empty() ? "" : fmt::format(", {}", stands);
   if (m.scale != 1.0) out += fmt::format(", motion x {:g}", m.scale);
   return out;

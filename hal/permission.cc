@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include <cstdlib>
-#include <filesystem>
+#include <vector>
 
 #include "hal/udev_rules.h"
 #include "model/io/input_file.h"
@@ -20,6 +20,13 @@ namespace fs = std::filesystem;
 std::string first_line(const fs::path& file) {
   const auto text = model::io::read_file(file.string());
   return text ? text->substr(0, text->find('\n')) : std::string();
+}
+
+std::vector<fs::path> entries(const fs::path& folder) {
+  std::vector<fs::path> paths;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder, none)) paths.push_back(entry.path());
+  return paths;
 }
 
 }  // namespace
@@ -47,19 +54,27 @@ int access_error(const std::string& node) {
   return access(node.c_str(), R_OK | W_OK) == 0 ? 0 : errno;
 }
 
+std::string usb_node(const fs::path& device, const SystemRoots& roots) {
+  const std::string prefix = device.filename().string() + ":";
+  for (const fs::path& interface : entries(device)) {
+    if (!interface.filename().string().starts_with(prefix)) continue;
+    std::vector<fs::path> nodes = entries(interface / "tty");
+    for (const fs::path& part : entries(interface))
+      for (const fs::path& node : entries(part / "hidraw")) nodes.push_back(node);
+    if (!nodes.empty()) return fmt::format("{}/{}", roots.dev, nodes.front().filename().string());
+  }
+  const auto number = [&](const char* file) {
+    return std::strtoul(first_line(device / file).c_str(), nullptr, 10);
+  };
+  return fmt::format("{}/bus/usb/{:03}/{:03}", roots.dev, number("busnum"), number("devnum"));
+}
+
 std::optional<Refusal> refused_usb_device(const char* vendor, const char* product, const char* rule,
-                                          const std::string& sys_root,
-                                          const std::string& dev_root) {
-  std::error_code none;
-  for (const auto& entry : fs::directory_iterator(sys_root + "/bus/usb/devices", none)) {
-    const fs::path& device = entry.path();
+                                          const SystemRoots& roots) {
+  for (const fs::path& device : entries(roots.sys + "/bus/usb/devices")) {
     if (first_line(device / "idVendor") != vendor) continue;
     if (product != nullptr && first_line(device / "idProduct") != product) continue;
-    const auto number = [&](const char* file) {
-      return std::strtoul(first_line(device / file).c_str(), nullptr, 10);
-    };
-    const std::string node =
-        fmt::format("{}/bus/usb/{:03}/{:03}", dev_root, number("busnum"), number("devnum"));
+    const std::string node = usb_node(device, roots);
     if (open_when_permitted([&] { return access_error(node); }) == EACCES)
       return why_refused(node, rule);
   }

@@ -10,6 +10,7 @@
 
 #include <cerrno>
 #include <chrono>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <thread>
@@ -46,10 +47,19 @@ Refusal why_refused(const std::string& node, const char* rule,
 /// 0, or the errno of opening a node for reading and writing; asked, so nobody is disturbed.
 int access_error(const std::string& node);
 
+/// Where the kernel shows devices; a test has others.
+struct SystemRoots {
+  std::string sys = "/sys";
+  std::string dev = "/dev";
+};
+/// By which node a USB device is opened: its serial port or HID node, else its own. `device` is its
+/// folder in sysfs.
+std::string usb_node(const std::filesystem::path& device, const SystemRoots& roots);
 /// Of the first USB device of this vendor and product (null: any) whose node is refused; nothing
-/// where all may be opened, or none is there. For libraries that look for devices by themselves.
+/// where all may be opened, or none is there. For libraries that look for devices by themselves:
+/// ask before the library, which then finds what udev has given away, and tell only when it fails,
+/// as it may open another device.
 std::optional<Refusal> refused_usb_device(const char* vendor, const char* product, const char* rule,
-                                          const std::string& sys_root = "/sys",
-                                          const std::string& dev_root = "/dev");
+                                          const SystemRoots& roots = {});
 
 }  // namespace tact::hal

@@ -122,6 +122,7 @@ void RtLoop::use_clutch(bool pressed) RT_SAFE {
   TickInput& input = record_.input;
   input.clutch = clutch_.step(pressed, has_force, input.sample);
   input.clutch_shift_m = clutch_.shift_m();
+  device_.shift_tool(input.clutch_shift_m);
   input.clutches = statistics_.clutches = clutch_.count();
 }
 

@@ -84,8 +84,9 @@ Hello make_hello(const model::scene::Scene& scene, const model::scene::Tissue& t
   hello.rate_Hz = static_cast<float>(scene.rate_Hz);
   hello.frame_rate_Hz = static_cast<float>(scene.frame_rate_Hz);
   hello.force_limit_N = static_cast<float>(facts.force_limit_N);
-  hello.torque_limit_mNm =
-      static_cast<std::uint16_t>(std::clamp(1e3 * facts.torque_limit_Nm, 0.0, 65'535.0));
+  // Rounded up, as 0 says that there is no torque; what is a whole number stays one.
+  hello.torque_limit_mNm = static_cast<std::uint16_t>(
+      std::clamp(std::ceil(1e3 * facts.torque_limit_Nm - 1e-6), 0.0, 65'535.0));
   hello.continuous_force_N = static_cast<float>(facts.continuous_force_N);
   hello.energy_budget_J = static_cast<float>(facts.energy_budget_J);
   for (std::size_t i = 0; i < scene.tool.spheres.size(); ++i) {

@@ -53,7 +53,7 @@ struct Hello {
   std::uint8_t non_rt = 0;                   // 1: this PC gives no hard real time, force is capped
   std::uint8_t simulated = 0;                // 1: the device is simulated, the hand may be moved
   char scene_name[50] = {};
-  std::uint16_t torque_limit_mNm = 0;  // in use; 0: the device has no torque
+  std::uint16_t torque_limit_mNm = 0;  // in use, rounded up; 0: the device has no torque
   std::uint8_t cannot_grip = 0;  // 1: the scene grips, and the device has nothing to close the jaws
   char limits_checksum[9] = {};  // of the limits in use (model/io/limits_checksum.h)
   char device_name[64] = {};

@@ -67,14 +67,14 @@ class Cia402s final : public can::CanDrives {
 
   void update_power(CanLoop& loop) RT_SAFE override {
     if (loop.power == CanPower::kStarting && all_enabled(loop)) loop.become_ready();
+    // Read once: an axis that waits for power starts the loop again, and hides nothing of the next.
+    const bool lost = loop.power == CanPower::kReady, late = loop.start_is_late();
     for (std::size_t i = 0; i < 3; ++i) {
       const Axis& axis = axes_[i];
-      if (loop.power == CanPower::kReady && axis.idle_ticks >= kMaxIdleTicks)
-        loop.fail(i, Cia402Cause::kNotFollowing, 0);
+      if (lost && axis.idle_ticks >= kMaxIdleTicks) loop.fail(i, Cia402Cause::kNotFollowing, 0);
       if (axis.state == Cia402State::kOperationEnabled) continue;
       const auto state = static_cast<std::uint32_t>(axis.state);
-      const bool lost = loop.power == CanPower::kReady;
-      if (!lost && !loop.start_is_late()) continue;
+      if (!lost && !late) continue;
       if (!lost && !axis.guard.on()) loop.fail(i, Cia402Cause::kUnguarded, state);
       // Before any force reached the hand the drive is asked again until it has power.
       if (loop.felt)

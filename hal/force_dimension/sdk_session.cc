@@ -9,7 +9,6 @@
 
 #include "hal/device_lock.h"
 #include "hal/force_dimension/sdk_words.h"
-#include "hal/permission.h"
 #include "hal/udev_rules.h"
 
 namespace tact::hal::force_dimension {
@@ -28,11 +27,11 @@ Error failed(const SdkFunctions& sdk, const char* what) {
                            words_of_sdk_error(sdk.error_get_last()))};
 }
 
-Result<char> open_device(const SdkFunctions& sdk, int wanted) {
-  // Missing rights look to the library like no device.
-  if (const auto refusal = refused_usb_device("1451", nullptr, kForceDimensionRule))
-    return refusal->error();
+Result<char> open_device(const SdkFunctions& sdk, int wanted,
+                         const std::optional<Refusal>& refusal) {
   const int count = sdk.device_count();
+  // Missing rights look to the library like no device.
+  if (refusal && (count <= 0 || wanted >= count)) return refusal->error();
   if (count <= 0)
     return Error{
         "no Force Dimension device is found: switch its supply on, plug in its USB cable and end "
@@ -126,10 +125,11 @@ GripKind grip_of(const SdkSession& s) {
 }
 
 Result<SdkSession> open_sdk_session(const ForceDimensionSettings& settings, bool trust_library,
-                                    const Mounting& mounting) {
+                                    const Mounting& mounting, const SystemRoots& roots) {
   const auto sdk = load_sdk(settings.library, trust_library);
   if (!sdk) return sdk.error();
-  const auto id = open_device(*sdk, settings.id);
+  const auto refusal = refused_usb_device("1451", nullptr, kForceDimensionRule, roots);
+  const auto id = open_device(*sdk, settings.id, refusal);
   if (!id) return id.error();
   SdkSession session{.sdk = *sdk, .id = *id, .type = {}};
   if (settings.gripper_open_rad > 0.0) session.gripper_open_rad = settings.gripper_open_rad;

@@ -10,6 +10,7 @@
 #include "hal/force_dimension/device_types.h"
 #include "hal/force_dimension/sdk_library.h"
 #include "hal/mounting.h"
+#include "hal/permission.h"
 #include "model/device_settings.h"
 
 namespace tact::hal::force_dimension {
@@ -28,7 +29,8 @@ GripKind grip_of(const SdkSession& session);
 
 /// Leaves nothing open when it fails.
 model::Result<SdkSession> open_sdk_session(const model::ForceDimensionSettings& settings,
-                                           bool trust_library, const Mounting& mounting = {});
+                                           bool trust_library, const Mounting& mounting = {},
+                                           const SystemRoots& roots = {});
 
 /// Zero force, forces off, closed. May block.
 void close_sdk_session(const SdkSession& session);

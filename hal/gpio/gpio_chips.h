@@ -13,15 +13,12 @@
 #include <string>
 #include <vector>
 
+#include "hal/permission.h"
 #include "model/result.h"
 
 namespace tact::hal::gpio {
 
-/// Where the kernel shows itself; other folders in tests.
-struct SystemRoots {
-  std::string sys = "/sys";
-  std::string dev = "/dev";
-};
+using hal::SystemRoots;
 
 struct GpioChip {
   std::string name;   // gpiochip0

@@ -130,21 +130,6 @@ constexpr UsbKind kUsbKinds[] = {
     {PartKind::kPhantom, "2988", nullptr, "PHANTOM", kPhantomRule},
     {PartKind::kPhantom, "0301", "2988", "PHANTOM", kOldPhantomRule}};
 
-/// The serial port or the HID node of a USB device, else the node of the device itself.
-std::string node_of(const PartProbes& probes, const fs::path& device) {
-  const std::string prefix = device.filename().string() + ":";
-  for (const fs::path& interface : entries(device.string())) {
-    if (!interface.filename().string().starts_with(prefix)) continue;
-    std::vector<fs::path> nodes = entries((interface / "tty").string());
-    for (const fs::path& part : entries(interface.string()))
-      for (const fs::path& node : entries((part / "hidraw").string())) nodes.push_back(node);
-    if (!nodes.empty())
-      return fmt::format("{}/{}", probes.roots.dev, nodes.front().filename().string());
-  }
-  return fmt::format("{}/bus/usb/{:03}/{:03}", probes.roots.dev, number_of(device / "busnum", 10),
-                     number_of(device / "devnum", 10));
-}
-
 std::optional<FoundPart> usb_part(const PartProbes& probes, const fs::path& folder) {
   const std::string vendor = line_of(folder / "idVendor"), product = line_of(folder / "idProduct");
   const auto* known = std::ranges::find_if(kUsbKinds, [&](const UsbKind& kind) {
@@ -162,7 +147,7 @@ std::optional<FoundPart> usb_part(const PartProbes& probes, const fs::path& fold
   else if (const std::string words = line_of(folder / "product"); !words.empty())
     part.what += fmt::format(" \"{}\"", words);
   part.what += fmt::format(", USB {}:{}", vendor, product);
-  const std::string node = node_of(probes, folder);
+  const std::string node = usb_node(folder, probes.roots);
   lack_permission(part, node, known->rule, probes.access_error(node));
   lack_driver(part, bound_driver(folder));
   return part;
@@ -220,7 +205,7 @@ std::vector<FoundPart> list_devices(const PartProbes& probes) {
   std::sort(found.begin(), found.end(), [](const FoundPart& a, const FoundPart& b) {
     return std::tie(a.kind, a.name) < std::tie(b.kind, b.name);
   });
-  for (const gpio::GpioChip& chip : find_gpio_chips(probes.roots))  // by number already
+  for (const gpio::GpioChip& chip : gpio::find_gpio_chips(probes.roots))  // by number already
     found.push_back(gpio_part(probes, chip));
   return found;
 }

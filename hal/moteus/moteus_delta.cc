@@ -87,8 +87,12 @@ class Moteuses final : public can::CanFdDrives {
   void update_power(Loop& loop) RT_SAFE override {
     if (loop.power == CanPower::kOff) return;  // every tick sends a stop, which clears a fault
     bool settled = true;
+    // Read once: an axis that waits for power starts the loop again, and hides nothing of the next.
+    const Asked before{.ns = loop.asked_ns,
+                       .is_ready = loop.power == CanPower::kReady,
+                       .is_late = loop.start_is_late()};
     for (std::size_t i = 0; i < 3; ++i) {
-      judge(loop, i);
+      judge(loop, i, before);
       settled = settled && axes_[i].settled >= kSettledTicks;
     }
     if (loop.power == CanPower::kStarting && settled) loop.become_ready();
@@ -101,7 +105,7 @@ class Moteuses final : public can::CanFdDrives {
     for (std::size_t i = 0; i < 3; ++i) {
       axes_[i].asked_before_Nm = axes_[i].asked_Nm;
       axes_[i].asked_Nm = powered ? torque_Nm[i] : 0.0;
-      const bool stops = !powered || (clears && axes_[i].is_in(MoteusMode::kFault));
+      const bool stops = !powered || (clears && axes_[i].has_low_supply());
       loop.bus.push(stops ? moteus_stop_and_ask(nodes_[i])
                           : moteus_torque(nodes_[i], torque_Nm[i], kWatchdog_s));
     }
@@ -158,6 +162,9 @@ class Moteuses final : public can::CanFdDrives {
     int settled = 0;                               // replies in a row, while starting
     int incomplete = 0;                            // the same, of those that are not whole
     bool is_in(MoteusMode one) const RT_SAFE { return mode == static_cast<int>(one); }
+    bool has_low_supply() const RT_SAFE {
+      return is_in(MoteusMode::kFault) && fault == kLowSupplyFault;
+    }
 
     /// A reply tells of the moment before its command (MO-2), so of the torque asked before that.
     /// Less than that is a limit of the drive's own; more, or another way, is an integral term that
@@ -170,21 +177,27 @@ class Moteuses final : public can::CanFdDrives {
     }
   };
 
+  /// Of the loop, when a tick's judging begins.
+  struct Asked {
+    std::int64_t ns;
+    bool is_ready, is_late;
+  };
+
   /// One drive that shall have power.
-  void judge(Loop& loop, std::size_t i) const RT_SAFE {
+  void judge(Loop& loop, std::size_t i, const Asked& before) const RT_SAFE {
     const Axis& axis = axes_[i];
     const auto mode = static_cast<std::uint32_t>(axis.mode);
     // The first reply after a stop may still tell of the time before it.
-    const bool asked = loop.asked_ns != 0 && loop.axes[i].heartbeat_ns > loop.asked_ns;
-    if (asked && axis.is_in(MoteusMode::kFault) && axis.fault == kLowSupplyFault && !loop.felt)
+    const bool asked = before.ns != 0 && loop.axes[i].heartbeat_ns > before.ns;
+    if (asked && axis.has_low_supply() && !loop.felt)
       return loop.wait_for_power(i, MoteusCause::kLowSupply, kLowSupplyFault);
     if (asked && axis.is_in(MoteusMode::kFault))
       loop.fail(i, MoteusCause::kFault, static_cast<std::uint32_t>(axis.fault));
     if (asked && axis.is_in(MoteusMode::kTimeout)) loop.fail(i, MoteusCause::kTimeout, 0);
-    if (loop.power == CanPower::kReady && !axis.is_in(MoteusMode::kPosition))
+    if (before.is_ready && !axis.is_in(MoteusMode::kPosition))
       loop.fail(i, MoteusCause::kLeftPosition, mode);
     if (std::abs(axis.unasked_Nm) > idle_torque_Nm_) return fail_unasked(loop, i, axis.unasked_Nm);
-    if (!loop.start_is_late() || axis.settled >= kSettledTicks) return;
+    if (!before.is_late || axis.settled >= kSettledTicks) return;
     if (!axis.is_in(MoteusMode::kPosition)) return loop.fail(i, MoteusCause::kNotStarted, mode);
     fail_unasked(loop, i, axis.torque_Nm);
   }

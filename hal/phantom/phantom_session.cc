@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "hal/device_lock.h"
-#include "hal/permission.h"
 #include "hal/phantom/hd_words.h"
 #include "hal/udev_rules.h"
 
@@ -72,12 +71,12 @@ std::optional<Error> ask_limits(PhantomSession& s) {
 }  // namespace
 
 Result<PhantomSession> open_phantom_session(const model::PhantomSettings& settings,
-                                            bool trust_library) {
+                                            bool trust_library, const SystemRoots& roots) {
   const auto hd = load_hd(settings.library, trust_library);
   if (!hd) return hd.error();
   const std::string name = settings.name.empty() ? "Default Device" : settings.name;
-  if (auto refusal = refused_usb_device("2988", nullptr, kPhantomRule)) return refusal->error();
-  if (auto refusal = refused_usb_device("0301", "2988", kOldPhantomRule)) return refusal->error();
+  auto refusal = refused_usb_device("2988", nullptr, kPhantomRule, roots);
+  if (!refusal) refusal = refused_usb_device("0301", "2988", kOldPhantomRule, roots);
   // Before the library looks at it: its forces may be another program's.
   if (auto error = lock_device(fmt::format("the PHANTOM \"{}\"", name))) return *error;
   take_hd_errors(*hd);  // of before
@@ -94,9 +93,10 @@ Result<PhantomSession> open_phantom_session(const model::PhantomSettings& settin
       hd->disable_device(session.id);
     }
     return Error{fmt::format(
-        "the PHANTOM \"{}\" does not open: {}; device.phantom.name is the name that the maker's "
-        "Touch_Setup gave it",
-        name, code == 0 ? "there is no such device" : words_of_hd_error(code))};
+        "the PHANTOM \"{}\" does not open: {}; {}", name,
+        code == 0 ? "there is no such device" : words_of_hd_error(code),
+        refusal ? refusal->error().sentence
+                : "device.phantom.name is the name that the maker's Touch_Setup gave it")};
   }
   hd->make_current(session.id);
   auto error = ask_limits(session);

@@ -8,6 +8,7 @@
 
 #include <string>
 
+#include "hal/permission.h"
 #include "hal/phantom/hd_library.h"
 #include "model/device_settings.h"
 #include "model/types.h"
@@ -28,7 +29,8 @@ struct PhantomSession {
 
 /// Its scheduler does not run yet. Leaves nothing open when it fails.
 model::Result<PhantomSession> open_phantom_session(const model::PhantomSettings& settings,
-                                                   bool trust_library);
+                                                   bool trust_library,
+                                                   const SystemRoots& roots = {});
 
 /// What a person does for a device that has no calibration.
 const char* calibration_cure(const PhantomSession& session);

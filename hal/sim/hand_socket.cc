@@ -15,6 +15,7 @@ namespace {
 using model::Result;
 
 constexpr double kFarthest_m = 1.0;  // no hand is farther from the middle of this device
+constexpr double kMaxTurn_rad = std::numbers::pi + 1e-9;  // as far as a rounded one goes
 
 }  // namespace
 
@@ -22,8 +23,8 @@ bool is_sound(const HandTarget& target) RT_SAFE {
   if (target.magic != kHandTargetMagic || target.version != kHandTargetVersion) return false;
   for (const double x : target.position_m)
     if (!(std::abs(x) <= kFarthest_m)) return false;
-  for (const double x : target.rotation_rad)
-    if (!(std::abs(x) <= std::numbers::pi)) return false;
+  const auto& [x, y, z] = target.rotation_rad;
+  if (!(std::hypot(x, y, z) <= kMaxTurn_rad)) return false;
   return std::isfinite(target.grip_ratio);
 }
 

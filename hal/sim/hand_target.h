@@ -16,7 +16,7 @@ struct HandTarget {
   std::uint32_t magic = kHandTargetMagic;
   std::uint16_t version = kHandTargetVersion;
   std::uint16_t pad = 0;
-  double position_m[3] = {};    // W
+  double position_m[3] = {};    // of the tool, W
   double rotation_rad[3] = {};  // of the tool against its rest orientation, rotation vector in W
   double grip_ratio = 0.0;      // 0 open, 1 closed
 };

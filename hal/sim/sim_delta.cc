@@ -167,7 +167,11 @@ void SimDelta::steer_hand() RT_SAFE {
   HandTarget target;
   if (!hand_targets_.read(target)) return;
   const auto vector = [](const double (&v)[3]) { return Vec3{v[0], v[1], v[2]}; };
-  const Vec3 in_base_m = inside_workspace_m(mounting_.point_in_base(vector(target.position_m)));
+  // A target is a place of the tool. One shift for all that follow one another: pressed in between,
+  // a clutch leaves the handle to the hand.
+  if (!hand_.is_steered()) steering_shift_m_ = tool_shift_m_;
+  const Vec3 handle_m = vector(target.position_m) - steering_shift_m_;
+  const Vec3 in_base_m = inside_workspace_m(mounting_.point_in_base(handle_m));
   hand_.steer({.position_m = mounting_.point_W(in_base_m),
                .rotation_rad = vector(target.rotation_rad),
                .grip_ratio = target.grip_ratio});

@@ -47,6 +47,7 @@ class SimDelta final : public Device {
   [[nodiscard]] Fault write(const Wrench& wrench) RT_SAFE override;
   void permit(bool powered) RT_SAFE override { permitted_ = powered; }
   bool ready() const RT_SAFE override { return permitted_; }
+  void shift_tool(const Vec3& shift_m) RT_SAFE override { tool_shift_m_ = shift_m; }
   void between_ticks(double elapsed_s) RT_SAFE override;
   void stop() override;
 
@@ -92,6 +93,8 @@ class SimDelta final : public Device {
   delta::DeltaPose measured_;  // of the last sample
   delta::Joints motor_Nm_{};   // held until the next write
   Vec3 wrist_Nm_;
+  Vec3 tool_shift_m_;      // from the handle, by the clutch
+  Vec3 steering_shift_m_;  // the same, when steering began
   double wanted_grip_N_ = 0.0, grip_N_ = 0.0;
   double grip_rate_per_s_ = 0.0;  // of the hand
   bool powered_ = true;           // until stop()

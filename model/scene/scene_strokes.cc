@@ -197,8 +197,12 @@ std::vector<HandWaypoint> way_points(const HandScript& script,
   const auto refuse = [&](const reader::TextPlace& place, const std::string& why) {
     visit.note(reader::ProblemKind::kConflict, place, why);
   };
+  // A place that the reader did not write himself is told with where it comes from.
+  const bool apart = script.handle_m != Vec3{};
   if (const std::optional<Error> error = check_place(script.home_m + script.handle_m, limits))
-    refuse(script.home_place, "hand.home_m is " + error->sentence);
+    refuse(script.home_place,
+           (apart ? "the handle at hand.home_m + tool.handle_m is " : "hand.home_m is ") +
+               error->sentence);
   Writer writer(script, spheres);
   for (std::size_t i = 0; i < script.strokes.size(); ++i) {
     const Stroke& stroke = script.strokes[i];
@@ -211,7 +215,8 @@ std::vector<HandWaypoint> way_points(const HandScript& script,
     // A release ends at home, which has been judged.
     if (stroke.action == Action::kRelease) continue;
     if (const std::optional<Error> error = check_place(writer.position_m(), limits))
-      refuse(stroke.place, fmt::format("{} ends at {}", name, error->sentence));
+      refuse(stroke.place, fmt::format("{} ends {}at {}", name, apart ? "with the handle " : "",
+                                       error->sentence));
   }
   if (script.repeat && !script.strokes.empty() &&
       script.strokes.back().action != Action::kRelease) {

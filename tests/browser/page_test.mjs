@@ -172,9 +172,10 @@ async function check_hand(page) {
   await page.keyboard.down("Control");
   await page.mouse.move(640, 300);
   await page.mouse.down();
-  await page.mouse.move(740, 300, { steps: 5 });
+  await page.mouse.move(690, 300, { steps: 3 });
+  await page.keyboard.up("Control"); // a drag stays what it began as
+  await page.mouse.move(740, 300, { steps: 3 });
   await page.mouse.up();
-  await page.keyboard.up("Control");
   check("turns the tool with Ctrl and the mouse", await waits(page, () => Math.hypot(...window.tact.turn.slice(1)) > 0.15));
   await page.keyboard.press("g");
   check(

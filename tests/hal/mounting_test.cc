@@ -91,6 +91,7 @@ TEST(Mounting, TheNameOfTheDeviceTellsHowItStandsAndWhatIsScaled) {
   EXPECT_EQ(name_of({}, 1.0), "puppet");
   EXPECT_EQ(name_of({0, 90, 0}, 3.0), "puppet, hangs, motion x 3");
   EXPECT_EQ(name_of({0, -90, 0}, 1.0), "puppet, upright");
+  EXPECT_EQ(name_of({180, 0, 0}, 1.0), "puppet, turned") << "about its own axis";
   EXPECT_EQ(name_of({0, 45, 0}, 0.5), "puppet, tilted, motion x 0.5");
 }
 

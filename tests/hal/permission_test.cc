@@ -6,13 +6,11 @@
 #include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 
 #include "hal/udev_rules.h"
+#include "tests/support/usb_folders.h"
 
 namespace tact::hal::permission_test {
-
-constexpr uid_t kNobody = 65534;
 
 TEST(Permission, ARefusalThatUdevEndsWithin200MsIsNone) {
   int opens = 0;
@@ -31,19 +29,8 @@ TEST(Permission, ARefusalThatLastsIsOneAndAnotherErrorIsToldAtOnce) {
 
 class PermissionOfNode : public testing::Test {
  protected:
-  PermissionOfNode() {
-    std::filesystem::create_directories(root + "/sys/bus/usb/devices/1-2");
-    std::filesystem::create_directories(root + "/dev/bus/usb/001");
-    std::ofstream node_file(node);
-    chmod(node.c_str(), 0660);
-    for (const auto& [file, word] :
-         {std::pair{"idVendor", "1451"}, {"idProduct", "0402"}, {"busnum", "1"}, {"devnum", "7"}})
-      std::ofstream(root + "/sys/bus/usb/devices/1-2/" + file) << word << '\n';
-  }
-  ~PermissionOfNode() override { std::filesystem::remove_all(root); }
-
-  std::string root = testing::TempDir() + "tact-permission-" + std::to_string(getpid());
-  std::string node = root + "/dev/bus/usb/001/007";
+  tests::UsbFolders usb{"1451", "0402"};
+  const std::string& node = usb.node;
 };
 
 TEST_F(PermissionOfNode, TheRuleIsMissingUnlessTheNodeIsOfTheGroup) {
@@ -62,18 +49,33 @@ TEST_F(PermissionOfNode, TheRuleIsMissingUnlessTheNodeIsOfTheGroup) {
 
 TEST_F(PermissionOfNode, AUsbDeviceThatALibraryLooksForIsRefusedByItsNodeAlone) {
   const auto ask = [&](const char* vendor, const char* product) {
-    return refused_usb_device(vendor, product, kForceDimensionRule, root + "/sys", root + "/dev");
+    return refused_usb_device(vendor, product, kForceDimensionRule, usb.roots());
   };
   EXPECT_FALSE(ask("1451", nullptr)) << "it may be opened";
   EXPECT_FALSE(ask("2988", nullptr)) << "it is not there";
   const auto see_refusal = [&] {
     chmod(node.c_str(), 0);
-    if (geteuid() == 0 && setreuid(kNobody, kNobody) != 0) _exit(2);  // root may open any node
+    tests::become_nobody();
     const auto refusal = ask("1451", "0402");
     const bool told = refusal && refusal->lacking.starts_with(node + " may not be opened");
     _exit(told && !ask("1451", "0403") ? 7 : 8);
   };
   EXPECT_EXIT(see_refusal(), testing::ExitedWithCode(7), "");
+}
+
+TEST(Permission, ADeviceWithASerialPortIsJudgedByThatPortAlone) {
+  const tests::UsbFolders usb("2988", "0302");
+  const std::string port = usb.root + "/dev/ttyACM0";
+  std::filesystem::create_directories(usb.device + "/1-2:1.0/tty/ttyACM0");
+  const auto see_refusals = [&] {
+    usb.add_node(usb.node, 0);
+    usb.add_node(port, 0666);
+    tests::become_nobody();
+    const auto ask = [&] { return refused_usb_device("2988", nullptr, kPhantomRule, usb.roots()); };
+    _exit(ask() ? 8 : 7);
+  };
+  EXPECT_EXIT(see_refusals(), testing::ExitedWithCode(7), "");
+  EXPECT_EQ(usb_node(usb.device, usb.roots()), port);
 }
 
 }  // namespace tact::hal::permission_test

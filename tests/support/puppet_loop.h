@@ -41,6 +41,7 @@ class PuppetDevice : public hal::Device {
   void permit(bool powered) RT_SAFE override { permitted = powered; }
   bool ready() const RT_SAFE override { return can_push; }
   void between_ticks(double elapsed) RT_SAFE override { elapsed_s += elapsed; }
+  void shift_tool(const model::Vec3& of_tool_m) RT_SAFE override { shift_m = of_tool_m; }
   void stop() override {}
 
   double height_m = 0.004 - 0.003;
@@ -48,6 +49,7 @@ class PuppetDevice : public hal::Device {
   bool silent = false;
   model::Fault fault = model::Fault::kNone, write_fault = model::Fault::kNone;
   model::Wrench last;
+  model::Vec3 shift_m;
   int writes = 0;
   bool permitted = false, can_push = true;
   double elapsed_s = 0.0;

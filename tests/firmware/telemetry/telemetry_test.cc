@@ -101,7 +101,7 @@ class WholeController {
  private:
   std::optional<TelemetrySocket> open(const std::string& path) {
     const Hello hello =
-        make_hello(scene_, *tissue_, {.device = device_->info(), .torque_limit_Nm = 0.05});
+        make_hello(scene_, *tissue_, {.device = device_->info(), .torque_limit_Nm = 0.0495});
     return std::move(*TelemetrySocket::open(path, hello, *make_mesh_file(scene_)));
   }
 

@@ -129,6 +129,19 @@ TEST(Cia402Faults, ADriveWithoutPowerAtTheStartIsWaitedForAndNamed) {
   EXPECT_EQ(bench.device->trouble(), "");
 }
 
+TEST(Cia402Faults, ADriveThatKeepsNoWatchIsToldWhileAnEarlierOneWaits) {
+  Bench bench;
+  bench.run();
+  bench.permitted = false;
+  for (int i = 0; i < 10; ++i) bench.tick();
+  bench.drives.axis[0].obeys = false;
+  bench.drives.axis[1].answers_watch = false;
+  bench.permitted = true;
+  EXPECT_GT(bench.ticks_until(Fault::kDriveFault, 4000), 2900) << bench.device->trouble();
+  EXPECT_TRUE(bench.says("arm 2 (node 2 on can0): the drive does not take up its watch"))
+      << bench.device->trouble();
+}
+
 TEST(Cia402Faults, PowerThatGoesBeforeAnyForceIsWaitedForAgain) {
   Bench bench;
   bench.run();

@@ -7,6 +7,7 @@
 
 #include "hal/force_dimension/sdk_words.h"
 #include "tests/support/stub_dhd/stub_client.h"
+#include "tests/support/usb_folders.h"
 
 namespace tact::hal::force_dimension::sdk_session_test {
 
@@ -125,6 +126,20 @@ TEST_F(Session, ADeviceThatIsNotThereIsNotAMissingRule) {
   stub.set_count(0);
   EXPECT_TRUE(has(refusal(), "no Force Dimension device is found")) << refusal();
   EXPECT_FALSE(has(refusal(), "rule")) << refusal();
+}
+
+TEST_F(Session, ARefusedNodeIsToldOnlyWhereTheLibraryFindsNothing) {
+  const tests::UsbFolders usb("1451", "0402");
+  const auto see_refusals = [&] {
+    usb.add_node(usb.node, 0);
+    tests::become_nobody();
+    const auto open = [&] { return open_sdk_session(settings, true, {}, usb.roots()); };
+    if (!open()) _exit(8);  // it opens another one
+    stub.set_count(0);
+    const auto failed = open();
+    _exit(!failed && has(failed.error().sentence, usb.node + " may not") ? 7 : 9);
+  };
+  EXPECT_EXIT(see_refusals(), testing::ExitedWithCode(7), "");
 }
 
 TEST_F(Session, OneOfSeveralDevicesMustBeNamed) {

@@ -71,6 +71,19 @@ TEST(MoteusFaults, ASupplyThatIsTooLowAtTheStartIsWaitedFor) {
   EXPECT_EQ(bench.allocations, 0u);
 }
 
+TEST(MoteusFaults, AFaultIsToldWhileAnEarlierArmWaitsForItsSupply) {
+  Bench bench;
+  ASSERT_EQ(bench.open(), "");
+  bench.axis(0).sag(true);
+  for (int i = 0; i < 100; ++i) bench.tick();  // past the first time that it is asked again
+  ASSERT_TRUE(bench.says("waiting for power of arm 1")) << bench.device->trouble();
+  bench.drives.drive[1]->fail(bench.drives.now_ns);
+  EXPECT_GT(bench.ticks_until(Fault::kDriveFault, 5), 0) << bench.device->trouble();
+  EXPECT_TRUE(bench.says("arm 2 (node 2 on can0): The power stage reports a fault"))
+      << bench.device->trouble();
+  bench.expect_latched(Fault::kDriveFault);
+}
+
 TEST(MoteusFaults, ASupplyThatSagsBeforeAnyForceIsWaitedForAndAfterOneIsAFault) {
   Bench bench;
   bench.run();

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a PHANTOM needs before the loop.
+#include "hal/phantom/phantom_session.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +11,7 @@
 #include "hal/phantom/phantom_device.h"
 #include "tests/support/forked.h"
 #include "tests/support/stub_hd/hd_client.h"
+#include "tests/support/usb_folders.h"
 
 namespace tact::hal::phantom::phantom_session_test {
 
@@ -61,6 +64,21 @@ TEST_F(PhantomSessions, ADeviceThatIsNotThereIsToldWithItsName) {
   stub.fail("hdInitDevice", 0x0302);
   expect_refusal({"the PHANTOM \"" + settings.phantom.name + "\" does not open",
                   "the device does not answer", "device.phantom.name"});
+}
+
+TEST_F(PhantomSessions, ARefusedNodeIsToldOnlyWhereTheLibraryOpensNothing) {
+  const tests::UsbFolders usb("2988", "0302");
+  const auto see_refusals = [&] {
+    usb.add_node(usb.node, 0);
+    tests::become_nobody();
+    const auto open = [&] { return open_phantom_session(settings.phantom, true, usb.roots()); };
+    if (!open()) _exit(8);  // it opens another one
+    stub.fail("hdInitDevice", 0x0302);
+    const auto failed = open();
+    _exit(!failed && failed.error().sentence.find(usb.node + " may not") != std::string::npos ? 7
+                                                                                              : 9);
+  };
+  EXPECT_EXIT(see_refusals(), testing::ExitedWithCode(7), "");
 }
 
 TEST_F(PhantomSessions, ADeviceThatOpensWithAnErrorIsClosedAgainWithItsForcesOff) {

@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cstring>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <thread>
 
@@ -82,13 +83,16 @@ TEST(HandSocket, IgnoresGarbage) {
   magic.magic = 1;
   version.version = 1;
   nan.position_m[2] = std::numeric_limits<double>::quiet_NaN();
-  turn.rotation_rad[1] = 4.0;
+  // Each component is within pi, the turn is not.
+  turn.rotation_rad[0] = turn.rotation_rad[1] = 3.0;
   grip.grip_ratio = std::numeric_limits<double>::infinity();
   for (const HandTarget& bad : {magic, version, far, nan, turn, grip}) {
     EXPECT_FALSE(is_sound(bad));
     send_bytes(path, &bad, sizeof bad);
   }
-  const HandTarget good = at(0.07);
+  HandTarget good = at(0.07);
+  good.rotation_rad[0] = good.rotation_rad[2] = 0.0;
+  good.rotation_rad[1] = std::numbers::pi;
   unsigned char longer[sizeof good + 8] = {};
   std::memcpy(longer, &good, sizeof good);
   send_bytes(path, longer, sizeof longer);

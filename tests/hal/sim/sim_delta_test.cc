@@ -191,6 +191,18 @@ TEST(SimDelta, FollowsTheMouseThatSteersTheHand) {
   EXPECT_NEAR(bench.delta.true_position_W_m().y, 0.18, 1e-3);  // no farther than the workspace
 }
 
+TEST(SimDelta, ATargetIsAPlaceOfTheToolThatAClutchHasMovedFromTheHandle) {
+  Bench bench(settings(), hand_at({0.0, 0.01, 0.0}, 600.0));
+  bench.delta.shift_tool({0.05, 0.0, 0.0});
+  Sample sample;
+  for (int i = 0; i < 1500; ++i) {
+    if (i % 50 == 0) bench.delta.hand_targets().write({.position_m = {0.05, 0.02, 0.0}});
+    if (i == 750) bench.delta.shift_tool({0.02, 0.0, 0.0});  // while it is steered
+    sample = bench.tick();
+  }
+  EXPECT_LT(norm(sample.tool.position_m - Vec3{0.0, 0.02, 0.0}), 1e-3);
+}
+
 TEST(SimDelta, TheSameCallsGiveTheSameBits) {
   Bench one(settings(), moving_hand()), two(settings(), moving_hand());
   for (int i = 0; i < 500; ++i) {

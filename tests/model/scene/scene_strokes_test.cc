@@ -219,6 +219,21 @@ TEST(Strokes, RefuseAHomeOutsideTheWorkspace) {
       "workspace of [limits]; move it inside");
 }
 
+TEST(Strokes, SayThatAPlaceIsOfTheHandleWhereThatIsNotTheOrigin) {
+  const std::string plain = TACT_SOURCE_DIR "/tests/data/scenes/plain.toml";
+  const auto refusal = [&](const std::string& home, const std::string& handle) {
+    const Result<Scene> scene =
+        load_scene(plain, {"hand.home_m=" + home, "tool.handle_m=" + handle});
+    return scene ? std::string() : scene.error().sentence;
+  };
+  const std::string home = refusal("[0, 0, 0.09]", "[0, 0, 0.1]");
+  EXPECT_NE(home.find("the handle at hand.home_m + tool.handle_m is (0.0000, 0.0000, 0.1900) m"),
+            std::string::npos)
+      << home;
+  const std::string stroke = refusal("[0, 0, 0.06]", "[0, 0.15, 0]");
+  EXPECT_NE(stroke.find(" ends with the handle at ("), std::string::npos) << stroke;
+}
+
 TEST(Strokes, ReachIsThatOfTheSphereThatStandsOutMost) {
   const contact::ProbeSphere spheres[] = {{{0, 0.004, 0.004}, 0.004}, {{0, 0, -0.001}, 0.002}};
   EXPECT_NEAR(reach_m(spheres, {0, 0, -1}), 0.003, 1e-15);  // 0.001 + 0.002

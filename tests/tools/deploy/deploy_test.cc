@@ -179,6 +179,41 @@ TEST_F(DeployService, WaitsForTheCanInterfaceOfItsSceneAndGoesWithIt) {
   EXPECT_NE(rules().find("KERNEL==\"can0\""), std::string::npos) << "as the scene without the key";
 }
 
+TEST_F(DeployService, ReadsBothQuotesAndRefusesALineThatItCannotRead) {
+  install_for("kind = 'can-moteus'  # \"three\"\n[ device.can ]\ninterface = 'can1'\n");
+  EXPECT_NE(rules().find("KERNEL==\"can1\""), std::string::npos) << rules();
+  for (const char* line : {"[device.can]\ninterface = can2", "[device.can]\ninterface = \"\"",
+                           "\ncan.interface = 'can2'", "\ncan = {interface = \"can2\"}"}) {
+    install_for("kind = \"can-moteus\"\n" + std::string(line) + "\n", 2);
+    EXPECT_NE(content(said).find("liver.toml:6: this line cannot be read here; write interface = "
+                                 "\"...\" below a line [device.can]"),
+              std::string::npos)
+        << content(said);
+  }
+  EXPECT_NE(rules().find("KERNEL==\"can1\""), std::string::npos) << "nothing was written";
+}
+
+TEST_F(DeployService, TakesEffectForWhatIsPluggedInAlready) {
+  for (const auto& [device, there] :
+       {std::pair{"kind = \\\"falcon\\\"", "--subsystem-match=usb"},
+        std::pair{"kind = \\\"can-odrive\\\"", "--subsystem-match=net --sysname-match=can0"}}) {
+    if (std::system("unshare -rm mount -t tmpfs none /etc 2>/dev/null") != 0)
+      GTEST_SKIP() << "no user namespaces, so no /etc of its own";
+    const std::string command =
+        "unshare -rm env -u SUDO_USER bash -c 'AWK=$(readlink -f $(command -v awk)) "
+        "&& mount -t tmpfs none /etc && mkdir /etc/tact /etc/alternatives && "
+        "ln -s $AWK /etc/alternatives/awk "
+        "&& printf \"[device]\n" +
+        std::string(device) + "\n\" >/etc/tact/liver.toml && " + kDeploy +
+        "install --service liver --dry-run' >" + said + " 2>&1";
+    EXPECT_EQ(std::system(command.c_str()), 0) << content(said);
+    EXPECT_NE(content(said).find("  udevadm control --reload\n  udevadm trigger " +
+                                 std::string(there) + "\n"),
+              std::string::npos)
+        << content(said);
+  }
+}
+
 TEST_F(DeployService, IsStartedByItsUsbDevice) {
   const auto ids_of = [](const std::string& rule) {
     const auto from = rule.find("ATTR{idVendor}");

@@ -23,6 +23,7 @@ export class HandControl {
   private turn = new THREE.Quaternion(); // of the tool against its rest
   private tool_m: Vec | null = null;
   private readonly fingers = new Map<number, [number, number]>(); // or the mouse; where they are, px
+  private turns = false; // what a drag does, from its begin to its end
   private sent_ms = -Infinity;
   private touched_ms = -Infinity;
   private waiting = false;
@@ -84,6 +85,7 @@ export class HandControl {
     if (event.button !== 0 || !(this.wanted(event) || (event.ctrlKey && this.allowed()))) return;
     event.stopImmediatePropagation();
     this.canvas.setPointerCapture(event.pointerId);
+    if (this.fingers.size === 0) this.turns = event.ctrlKey;
     this.fingers.set(event.pointerId, [event.clientX, event.clientY]);
   }
 
@@ -97,7 +99,7 @@ export class HandControl {
     const camera = this.stage.camera;
     const right = new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 0);
     const up = new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 1);
-    if (event.ctrlKey) {
+    if (this.turns) {
       // As a ball under the mouse would turn: what is nearest follows it.
       const axis = up.multiplyScalar(right_px).addScaledVector(right, -up_px);
       return this.turn_on(axis.normalize(), kTurn_rad * Math.hypot(right_px, up_px));
