@@ -83,52 +83,57 @@ json to_json(const loop::StopTimes& t) {
   return {{"missed_ns", t.missed_ns}, {"fault_ns", t.fault_ns}, {"zero_ns", t.zero_ns}};
 }
 
+/// The largest that a hand was given, beside its limits.
+json felt(const RunFacts& facts, const loop::LoopStatistics& loop, const gate::Gate& gate) {
+  return {{"force_max_N", loop.max_force_N},
+          {"force_limit_N", facts.force_limit_N},
+          {"torque_max_Nm", loop.max_torque_Nm},
+          {"grip_force_max_N", loop.max_grip_force_N},
+          {"force_rms_max_N", loop.max_rms_force_N},
+          {"force_continuous_N", gate.continuous_force_N()},
+          {"energy_given_max_J", loop.max_given_energy_J},
+          {"energy_budget_J", gate.energy_budget_J()}};
+}
+
 std::string make_report(const RunFacts& facts, const loop::LoopStatistics& loop,
                         const gate::Gate& gate, const pc::Environment& environment) {
   json shortfalls = json::array(), counts = json::object();
   for (const pc::Shortfall& s : facts.shortfalls) shortfalls.push_back(s.sentence);
   for (const hal::DeviceCount& one : facts.device_counts) counts[one.name] = one.count;
-  const json report = {{"format", "tactd-run"},
-                       {"version", 1},
-                       {"scene", facts.scene_name},
-                       {"law", facts.law_title},
-                       {"device", facts.device_name},
-                       {"device_counts", counts},
-                       {"rate_Hz", facts.rate_Hz},
-                       {"duration_s", facts.duration_s},
-                       {"non_rt", facts.non_rt},
-                       {"simulated_time", facts.simulated_time},
-                       {"shortfalls", shortfalls},
-                       {"ticks", loop.ticks},
-                       {"late", loop.late_ticks},
-                       {"skipped", loop.skipped_ticks},
-                       {"contact_lost", loop.contact_losses},
-                       {"inside_ticks", loop.inside_ticks},
-                       {"clutches", loop.clutches},
-                       {"thread", to_json(facts.costs)},
-                       {"phases", phases(loop)},
-                       {"force_max_N", loop.max_force_N},
-                       {"force_limit_N", facts.force_limit_N},
-                       {"torque_max_Nm", loop.max_torque_Nm},
-                       {"grip_force_max_N", loop.max_grip_force_N},
-                       {"limits_checksum", facts.limits_checksum},
-                       {"force_rms_max_N", loop.max_rms_force_N},
-                       {"force_continuous_N", gate.continuous_force_N()},
-                       {"energy_given_max_J", loop.max_given_energy_J},
-                       {"energy_budget_J", gate.energy_budget_J()},
-                       {"gate", stages(gate)},
-                       {"state", name_of(facts.state)},
-                       {"fault", fault_entry(facts)},
-                       {"stop", to_json(loop.stop)},
-                       {"call_filter", facts.call_filter},
-                       {"black_boxes", facts.black_boxes},
-                       {"dropped_records", facts.dropped_records},
-                       {"refused_requests", facts.refused_requests},
-                       {"dropped_frames", facts.dropped_frames},
-                       {"force_hash", fmt::format("{:016x}", facts.force_hash)},
-                       {"resident_peak_kB", facts.resident_peak_kB},
-                       {"law_table_bytes", facts.law_table_bytes},
-                       {"environment", to_json(environment)}};
+  json report = {{"format", "tactd-run"},
+                 {"version", 1},
+                 {"scene", facts.scene_name},
+                 {"law", facts.law_title},
+                 {"device", facts.device_name},
+                 {"device_counts", counts},
+                 {"rate_Hz", facts.rate_Hz},
+                 {"duration_s", facts.duration_s},
+                 {"non_rt", facts.non_rt},
+                 {"simulated_time", facts.simulated_time},
+                 {"shortfalls", shortfalls},
+                 {"ticks", loop.ticks},
+                 {"late", loop.late_ticks},
+                 {"skipped", loop.skipped_ticks},
+                 {"contact_lost", loop.contact_losses},
+                 {"inside_ticks", loop.inside_ticks},
+                 {"clutches", loop.clutches},
+                 {"thread", to_json(facts.costs)},
+                 {"phases", phases(loop)},
+                 {"limits_checksum", facts.limits_checksum},
+                 {"gate", stages(gate)},
+                 {"state", name_of(facts.state)},
+                 {"fault", fault_entry(facts)},
+                 {"stop", to_json(loop.stop)},
+                 {"call_filter", facts.call_filter},
+                 {"black_boxes", facts.black_boxes},
+                 {"dropped_records", facts.dropped_records},
+                 {"refused_requests", facts.refused_requests},
+                 {"dropped_frames", facts.dropped_frames},
+                 {"force_hash", fmt::format("{:016x}", facts.force_hash)},
+                 {"resident_peak_kB", facts.resident_peak_kB},
+                 {"law_table_bytes", facts.law_table_bytes},
+                 {"environment", to_json(environment)}};
+  report.update(felt(facts, loop, gate));
   return model::io::text_of(report, 2);
 }
 
