@@ -75,8 +75,12 @@ Answer OperatorDesk::reset(bool too_early) {
 
 // Force goes away by it: never too early, and asked of the loop whatever was shown last.
 Answer OperatorDesk::disarm() {
-  const auto off = ask_loop(loop::Request::kDisarm);
-  if (off != true) return not_done("disarmed", off, "it is armed again");
+  // Not taken back: a loop that goes on later takes the force away then.
+  const auto off = wait_for(requests_.ask(loop::Request::kDisarm));
+  if (!off)
+    return not_done("disarmed", false,
+                    "the loop gives no answer; its next tick takes the force away");
+  if (!*off) return not_done("disarmed", off, "it is armed again");
   view_.wait_for_person();
   const bool stopped = newest_().state == loop::State::kStopped;
   return {

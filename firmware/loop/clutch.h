@@ -10,7 +10,7 @@
 //   yields   pressed, and a force is still written: none is asked for any more
 //   open     no force is written: the tool stays, s follows the handle, contact is forgotten
 //
-// Released, the tool follows again from where it is: contact begins anew there (contact.h), so a
+// Released, the tool follows again from where it is: contact begins again there (contact.h), so a
 // sphere inside the organ feels nothing.
 #pragma once
 

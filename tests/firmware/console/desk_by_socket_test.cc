@@ -103,6 +103,15 @@ TEST_F(DeskBySocket, DisarmsAtAnyTime) {
   EXPECT_EQ(edges, (std::vector<std::string>{"disarm", "disarm"}));
 }
 
+TEST_F(DeskBySocket, ADisarmThatIsNotAnsweredStandsForTheNextTick) {
+  show(State::kArmed);
+  stands = true;
+  const Answer answer = ask("disarm");
+  EXPECT_FALSE(answer.done);
+  EXPECT_NE(answer.sentence.find("its next tick takes the force away"), std::string::npos);
+  EXPECT_EQ(static_cast<loop::Request>(requests.asked.load() & 3U), loop::Request::kDisarm);
+}
+
 TEST_F(DeskBySocket, AStopThatIsDisarmedStillHasToBeReset) {
   show(State::kStopped);
   EXPECT_EQ(ask("disarm").sentence, "puppet: no force; it has stopped: reset it, then arm it");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A clutch parts tool and handle: no force meanwhile, and contact begins anew after it.
+// A clutch parts tool and handle: no force meanwhile, and contact begins again after it.
 #include "firmware/loop/clutch.h"
 
 #include <gtest/gtest.h>
@@ -138,7 +138,7 @@ TEST_F(LoopClutch, ReleasedInsideTheOrganThereIsNoForceUntilTheToolWasOutside) {
   EXPECT_EQ(last().output.limit, Fault::kNone);
   move_handle_to(0.020);
   run_ticks(600);
-  EXPECT_GT(device.last.force_N.z, 0.05) << "contact begins anew, with the handle elsewhere";
+  EXPECT_GT(device.last.force_N.z, 0.05) << "contact begins again, with the handle elsewhere";
 }
 
 TEST_F(LoopClutch, PressedForAMomentTheForceComesBackAndNothingIsReindexed) {
