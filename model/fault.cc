@@ -61,7 +61,8 @@ constexpr std::array kTable{
         Fault::kClutchPressed, "clutch pressed",
         "the tool stays where it is, without a force, while the handle moves; held tissue is "
         "let go",
-        "release the clutch: contact begins again where the tool is. If nobody presses it, its line "
+        "release the clutch: contact begins again where the tool is. If nobody presses it, its "
+        "line "
         "flaps: mend it (device.lines.clutch)"},
     FaultEntry{Fault::kUnknown, "unknown", "a fault of another version of tact, or a broken record",
                "use programs and recordings of one build"},

@@ -25,8 +25,28 @@ import {
 
 const kHome_m = [0.1, -0.3, 0.05];
 const kWay_m = [0.08, -0.12, 0.3];
+const kNudge_m = 0.0015;
 const mm = (length_m) => `${(1e3 * length_m).toFixed(2)} mm`;
 const drawn_m = (page) => page.evaluate(() => window.tact.drawn_figure_m);
+
+/** How far the wrist is drawn from where it was 200 ms ago. */
+async function moved_m(page) {
+  const before = await drawn_m(page);
+  await page.waitForTimeout(200);
+  return distance((await drawn_m(page))["left wrist"], before["left wrist"]);
+}
+
+/** The figure takes a tracker only when it stands: from then on the hand follows a nudge. Ends when the hand rests. */
+async function follows(page, body) {
+  let was_taken = false;
+  for (let i = 0; i < 100; ++i) {
+    if (!was_taken) body.at_m = kHome_m.map((m) => m + (i % 2 === 0 ? kNudge_m : 0));
+    const way_m = await moved_m(page);
+    if (was_taken && way_m < 1e-5) return true;
+    if (i % 2 === 1) was_taken ||= way_m > kNudge_m; // along all three axes: sqrt(3) of it
+  }
+  return false;
+}
 
 async function raise(page, body) {
   const before = await drawn_m(page);
@@ -65,7 +85,7 @@ await play(async () => {
   await page.goto(sharp(url));
   const body = new MarkerBody(port, kHome_m);
   check("hears of the left hand", await waits(page, () => window.tact?.drawn_figure_m && window.tact.tracking_words === ""));
-  await page.waitForTimeout(1500);
+  check("is taken by the figure", await follows(page, body));
   const before = await raise(page, body);
   body.stop();
   check(
