@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Press, grip, twist, pull and tear of liver_twist on the stand-in for Force Dimension's library:
-// its handle goes exactly as the scene's hand wants, three times as fast.
+// Press, grip, twist, pull and tear of liver_twist on the stand-ins for the makers' libraries of
+// Force Dimension and of PHANTOM: the handle goes exactly as the scene's hand wants, three times as
+// fast. The jaws close by the gripper, or by a button.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,7 +10,9 @@
 #include <cmath>
 #include <deque>
 #include <memory>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "firmware/admission/torque_note.h"
 #include "firmware/gate/limits_for.h"
@@ -18,9 +22,11 @@
 #include "model/scene/tissue.h"
 #include "model/time_ns.h"
 #include "model/units.h"
+#include "tests/support/mountings.h"
 #include "tests/support/scene_loop.h"
 #include "tests/support/sentence.h"
 #include "tests/support/stub_dhd/stub_client.h"
+#include "tests/support/stub_hd/hd_client.h"
 
 namespace tact::firmware::run::twist_on_real_devices_test {
 
@@ -29,20 +35,82 @@ using model::operator""_deg;
 
 constexpr double kStrokes_s = 3e-3;  // of the scene in a tick of 1 ms
 
+using Rows = double[3][3];
+
+/// A stand-in whose handle a test leads, in the axes of the base.
+class LedDevice {
+ public:
+  virtual ~LedDevice() = default;
+  virtual std::vector<std::string> keys() const = 0;
+  virtual void lead(const Vec3& at_m, const Rows& turn, double grip_ratio) = 0;
+  /// What its library was given last.
+  virtual model::Wrench given() const = 0;
+};
+
+class LedDhd : public LedDevice {
+ public:
+  explicit LedDhd(int type) { stub_.set_type(type); }
+  std::vector<std::string> keys() const override {
+    return {"device.kind=\"force-dimension\"",
+            "device.force_dimension.library=\"" + tests::kStubLibrary + "\""};
+  }
+  void lead(const Vec3& at_m, const Rows& turn, double grip_ratio) override {
+    stub_.hold(at_m.x, at_m.y, at_m.z);
+    stub_.turn(turn);
+    stub_.grip(0.5236 * (1.0 - grip_ratio), grip_ratio > 0.7 ? 1 : 0);
+  }
+  model::Wrench given() const override {
+    double f[6] = {};
+    stub_.last_force(f);
+    return {{f[0], f[1], f[2]}, {f[3], f[4], f[5]}};
+  }
+
+ private:
+  tests::StubDhd stub_;
+};
+
+class LedHd : public LedDevice {
+ public:
+  std::vector<std::string> keys() const override {
+    const auto scene = tests::phantom_scene();
+    return {"device.kind=\"phantom\"", "device.phantom.library=\"" + tests::kStubHdLibrary + "\"",
+            "device.phantom.name=\"" + scene.device.phantom.name + "\""};
+  }
+  void lead(const Vec3& at_m, const Rows& turn, double grip_ratio) override {
+    constexpr unsigned kButtons = 0x2000;
+    stub_.hold(1e3 * at_m.y + kMiddle_mm.x, 1e3 * at_m.z + kMiddle_mm.y,
+               1e3 * at_m.x + kMiddle_mm.z);
+    stub_.turn(turn);
+    stub_.set_number(kButtons, grip_ratio > 0.7 ? 1.0 : 0.0);
+  }
+  model::Wrench given() const override {
+    double f[3] = {};
+    return stub_.last_force(f) == 0 ? model::Wrench{} : model::Wrench{{f[2], f[0], f[1]}, {}};
+  }
+
+ private:
+  static constexpr Vec3 kMiddle_mm{0.0, 10.0, 5.0};
+  tests::StubHd stub_;
+};
+
+constexpr int kPhantom = 0;
+
+/// Each stands in another way.
 struct RealDevice {
   const char* name;
-  int type;
+  int type;  // of Force Dimension
   bool has_torque;
-  const char* base_orientation_deg = "[0, 0, 0]";
+  const tests::MountingCase& stands;
 
   friend void PrintTo(const RealDevice& one, std::ostream* out) { *out << one.name; }
 };
 
-const RealDevice kDevices[] = {{"delta.6", 64, true},
-                               {"omega.7", 35, false},
-                               {"sigma.7", 104, true},
-                               {"lambda.7, hanging", 108, true, "[0, 90, 0]"},
-                               {"delta.6, turned", 64, true, "[0, 0, 90]"}};
+const RealDevice kDevices[] = {{"omega7", 35, false, tests::kMountings[0]},
+                               {"lambda7", 108, true, tests::kMountings[1]},
+                               {"delta6", 64, true, tests::kMountings[2]},
+                               {"sigma7", 104, true, tests::kMountings[3]},
+                               {"phantom", kPhantom, false, tests::kMountings[4]},
+                               {"delta6_upside_down", 64, true, tests::kMountings[5]}};
 
 /// What the hand felt, from the first tick to the last.
 struct Felt {
@@ -55,15 +123,18 @@ struct Felt {
 class TwistOnRealDevices : public testing::TestWithParam<RealDevice> {
  protected:
   void SetUp() override {
-    stub_.set_type(GetParam().type);
-    const std::string orientation = GetParam().base_orientation_deg;
+    if (GetParam().type == kPhantom)
+      led_ = std::make_unique<LedHd>();
+    else
+      led_ = std::make_unique<LedDhd>(GetParam().type);
+    const Vec3& turned_deg = GetParam().stands.orientation_deg;
     // The liver 93 mm lower: the handle, not the jaws, is in the middle of a small workspace.
-    auto loaded = model::scene::load_scene(
-        TACT_SOURCE_DIR "/model/scenes/liver_twist.toml",
-        {"device.kind=\"force-dimension\"",
-         "device.force_dimension.library=\"" + tests::kStubLibrary + "\"",
-         "device.base_orientation_deg=" + orientation, "organ.position_m=[0, 0, -0.123]",
-         "hand.site_m=[0, 0, -0.093]", "hand.home_m=[0, 0, -0.073]"});
+    std::vector<std::string> keys = led_->keys();
+    keys.insert(keys.end(), {fmt::format("device.base_orientation_deg=[{}, {}, {}]", turned_deg.x,
+                                         turned_deg.y, turned_deg.z),
+                             "organ.position_m=[0, 0, -0.123]", "hand.site_m=[0, 0, -0.093]",
+                             "hand.home_m=[0, 0, -0.073]"});
+    auto loaded = model::scene::load_scene(TACT_SOURCE_DIR "/model/scenes/liver_twist.toml", keys);
     ASSERT_EQ(tests::sentence_of(loaded), "");
     scene_ = std::move(*loaded);
     scene_.device.trust_library = true;
@@ -96,9 +167,7 @@ class TwistOnRealDevices : public testing::TestWithParam<RealDevice> {
     const double r[3][3] = {{column[0].x, column[1].x, column[2].x},
                             {column[0].y, column[1].y, column[2].y},
                             {column[0].z, column[1].z, column[2].z}};
-    stub_.hold(p.x, p.y, p.z);
-    stub_.turn(r);
-    stub_.grip(0.5236 * (1.0 - at.grip_ratio), at.grip_ratio > 0.7 ? 1 : 0);
+    led_->lead(p, r, at.grip_ratio);
   }
 
   loop::TickRecord step(Felt& felt) {
@@ -124,12 +193,10 @@ class TwistOnRealDevices : public testing::TestWithParam<RealDevice> {
 
   /// What the library was given last is a wrench that the loop wrote, to the last digit.
   void compare(Felt& felt) {
-    double f[6] = {};
-    stub_.last_force(f);
-    const Vec3 force_N{f[0], f[1], f[2]}, torque_Nm{f[3], f[4], f[5]};
-    if (norm(force_N) == 0.0) return;
+    const model::Wrench given = led_->given();
+    if (norm(given.force_N) == 0.0) return;
     const bool known = std::any_of(written_.begin(), written_.end(), [&](const model::Wrench& w) {
-      return w.force_N == force_N && w.torque_Nm == torque_Nm;
+      return w.force_N == given.force_N && w.torque_Nm == given.torque_Nm;
     });
     ++(known ? felt.arrived : felt.others);
   }
@@ -145,7 +212,7 @@ class TwistOnRealDevices : public testing::TestWithParam<RealDevice> {
     return felt;
   }
 
-  tests::StubDhd stub_;
+  std::unique_ptr<LedDevice> led_;
   model::scene::Scene scene_;
   hal::Mounting mounting_;
   std::unique_ptr<model::scene::Tissue> tissue_;
@@ -178,11 +245,7 @@ TEST_P(TwistOnRealDevices, PressGripTwistPullAndTearAreFelt) {
   EXPECT_LT(felt.torque_Nm, 0.06);
 }
 
-INSTANTIATE_TEST_SUITE_P(Types, TwistOnRealDevices, testing::ValuesIn(kDevices),
-                         [](const auto& one) {
-                           std::string name = one.param.name;
-                           std::erase_if(name, [](char c) { return !std::isalnum(c); });
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(Devices, TwistOnRealDevices, testing::ValuesIn(kDevices),
+                         [](const auto& one) { return one.param.name; });
 
 }  // namespace tact::firmware::run::twist_on_real_devices_test

@@ -23,6 +23,7 @@ class StubHd : public StubLibrary {
     find("stub_hd_fail", fail);
     find("stub_hd_lose_force_output", lose_force_output);
     find("stub_hd_hold", hold);
+    find("stub_hd_turn", turn);
     find("stub_hd_spin", spin);
     find("stub_hd_unsafe_calls", unsafe_calls);
     find("stub_hd_set_serial", set_serial);
@@ -44,6 +45,7 @@ class StubHd : public StubLibrary {
   decltype(&stub_hd_fail) fail = nullptr;
   decltype(&stub_hd_lose_force_output) lose_force_output = nullptr;
   decltype(&stub_hd_hold) hold = nullptr;
+  decltype(&stub_hd_turn) turn = nullptr;
   decltype(&stub_hd_spin) spin = nullptr;
   decltype(&stub_hd_unsafe_calls) unsafe_calls = nullptr;
   decltype(&stub_hd_set_serial) set_serial = nullptr;

@@ -208,6 +208,7 @@ void hdGetDoublev(unsigned what, double* values) {
     const double columns[16] = {c,       0.0, -s,      0.0, -s * up,  out,      -c * up,  0.0,
                                 s * out, up,  c * out, 0.0, at_mm[0], at_mm[1], at_mm[2], 1.0};
     std::copy(columns, columns + 16, values);
+    if (state.turned) std::copy(state.turn.begin(), state.turn.end(), values);
   } else {
     *values = number_of(what);
   }

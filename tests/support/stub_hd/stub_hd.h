@@ -21,6 +21,8 @@ void stub_hd_lose_force_output();
 void stub_hd_hold(double x_mm, double y_mm, double z_mm);
 /// Leans the upright stylus so far towards the operator: pi/2 lays it down.
 void stub_hd_lean(double rad);
+/// The tool's rotation in W instead, row by row.
+void stub_hd_turn(const double rotation[3][3]);
 /// Turns the stylus at this rate about the device's y.
 void stub_hd_spin(double radps);
 /// hdBeginFrame takes so long.

@@ -34,6 +34,8 @@ struct State {
   int delay_us = 0;
   std::array<double, 3> set_N{}, force_N{};  // of the device's frame
   double strongest_N = 0.0, spin_radps = 0.0, lean_rad = 0.0;
+  bool turned = false;
+  std::array<double, 12> turn{};  // columns of the stylus' axes
   LedHandle handle;
   std::vector<unsigned> errors;
   std::string name, serial = std::to_string(getpid());

@@ -40,6 +40,15 @@ void stub_hd_lean(double rad) {
   const Locked locked;
   state.lean_rad = rad;
 }
+void stub_hd_turn(const double r[3][3]) {
+  const Locked locked;
+  // The stylus' x, y, z are the tool's y, -x, z; the device's are y, z, x of W.
+  for (int i = 0; i < 3; ++i) {
+    const int w = (i + 1) % 3;
+    state.turn[i] = r[w][1], state.turn[4 + i] = -r[w][0], state.turn[8 + i] = r[w][2];
+  }
+  state.turned = true;
+}
 void stub_hd_spin(double radps) {
   const Locked locked;
   state.spin_radps = radps;
