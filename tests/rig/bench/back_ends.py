@@ -28,6 +28,10 @@ def law(scene, *settings):
 # The 300 masses of gum take 0.64 million instructions a tick, more than half a period: 150 of them.
 LAWS = (law("heart"), law("skin"), law("liver", 'law="compliance"'), law("gum", "spring_patch.nodes=150"))
 
+# The forceps are a lever of 93 mm: 20 mN m, of which the gate lets a quarter through.
+TORQUE_LIMIT_NM = 0.005
+TWIST = law("liver_twist", f"limits.torque_Nm={TORQUE_LIMIT_NM}")
+
 # No device: the gate alone.
 GATE = BackEnd("gate", programs=("tact-rig-gate",))
 

@@ -4,6 +4,8 @@ import functools
 import json
 import subprocess
 
+from bench.back_ends import TORQUE_LIMIT_NM
+
 
 def hard_real_time(run):
     """tactd took the kernel for what it is, and lost neither a tick nor a page nor a heap call."""
@@ -43,6 +45,12 @@ def touched(run):
     """A run without force proves nothing."""
     force_N = run.report.get("force_max_N", 0.0)
     return [] if force_N > 0.2 else [f"largest force {force_N:.3f} N: the tissue was not felt"]
+
+
+def torque_at_its_limit(run):
+    torque_Nm = run.report.get("torque_max_Nm", 0.0)
+    return [] if abs(torque_Nm / TORQUE_LIMIT_NM - 1) < 1e-9 else [
+        f"largest torque {torque_Nm:.9f} N m, not its limit of {TORQUE_LIMIT_NM}"]
 
 
 class SameForcesAs:

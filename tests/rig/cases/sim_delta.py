@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The simulated delta: tactd itself on a PREEMPT_RT kernel, without a bus."""
 from bench import checks, gate_paths, wake_up
-from bench.back_ends import GATE, LAWS, SIM_DELTA
+from bench.back_ends import GATE, LAWS, SIM_DELTA, TWIST
 from bench.case import Case
 
 SOUND = (checks.hard_real_time, checks.no_fault, checks.no_late_tick, checks.whole_run, checks.touched)
@@ -24,6 +24,8 @@ CASES = [
          SIM_DELTA,
          "control $SECONDS_OF_RUN\ntrace_threads $tactd 1.5 >$RESULTS/threads.txt\nfinish",
          (*SOUND, checks.threads_as_listed), seconds=5),
+    Case("liver-twist", "a torque that the tissue drives to its limit stays there",
+         TWIST, "control $SECONDS_OF_RUN\nfinish", (*SOUND, checks.torque_at_its_limit, checks.same_forces), seconds=6),
     Case("gate-stages", "the path of the gate is known for each of its stages", GATE,
          "chrt -f 80 tact-rig-gate >$RESULTS/gate.json", (gate_paths.every_stage_acts,)),
 ]
