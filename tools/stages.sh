@@ -9,20 +9,60 @@ skipped_in() {
     -e 's/^\[  SKIPPED \] ([[:alnum:]_/]+\.[[:alnum:]_/]+)$/\1/p' "$1"
 }
 
+# once_more NAME COMMAND...: a test that waits for a real clock has failed. Does it pass alone? Then it is flaky. Not
+# with --long.
+once_more() {
+  local name=$1
+  shift
+  [ "${long:-no}" = no ] || return 1
+  echo "---- again, alone: $name"
+  "$@" 2>&1 | sed 's/ tests failed out of / failed of /'  # is counted once
+  [ "${PIPESTATUS[0]}" -eq 0 ] && echo "flaky: $name"
+}
+
+# ctest_twice DIR OPTIONS...: each test has one try; those that wait for a real clock (labelled +clock) have a second
+# one, alone, if nothing else has failed.
+ctest_twice() {
+  local failed clocks name
+  ctest --test-dir "$1" --output-on-failure --no-tests=error "${@:2}" && return
+  mapfile -t failed < <(sed 's/^[0-9]*://' "$1/Testing/Temporary/LastTestsFailed.log")
+  clocks=$(ctest --test-dir "$1" -N -L '[+]clock' | sed -nE 's/^ +Test +#[0-9]+: (.*)/\1/p')
+  for name in "${failed[@]}"; do
+    grep -qxF -- "$name" <<<"$clocks" || return 1
+  done
+  for name in "${failed[@]}"; do
+    once_more "$name" ctest --test-dir "$1" --output-on-failure --no-tests=error --timeout 300 \
+      -R "^$(tr -c '[:alnum:]\n' . <<<"$name")\$" || return 1
+  done
+}
+
+# ctest_beside_load DIR OPTIONS...: one try, and four processes take the cores meanwhile
+ctest_beside_load() {
+  local status
+  stress-ng --cpu 4 --quiet --timeout 8h &
+  ctest --test-dir "$1" --output-on-failure --no-tests=error -j 4 "${@:2}" && status=0 || status=$?
+  kill %% 2>/dev/null
+  return $status
+}
+
 # tell_stage NAME STATUS SECONDS: one line a stage; ctest stages count their tests, others count as one.
 tell_stage() {
-  local name=$1 status=$2 seconds=$3 log="$logs/$1.log" good bad skipped
+  local name=$1 status=$2 seconds=$3 log="$logs/$1.log" good bad skipped flaky
   # "100% tests passed, 0 tests failed out of 123"
   read -r bad good < <(sed -n 's/.* \([0-9]*\) tests failed out of \([0-9]*\).*/\1 \2/p' "$log" |
     awk '{print $1, $2 - $1}')
   skipped=$(skipped_in "$log" | sort -u)
+  flaky=$(sed -n 's/^flaky: //p' "$log")
   if [ -z "${good:-}" ]; then good=1 bad=0; elif [ -n "$skipped" ]; then good=$((good - $(wc -l <<<"$skipped"))); fi
   if [ "$status" -ne 0 ] && [ "$bad" -eq 0 ]; then bad=1 good=$((good - 1)); fi
+  if [ "$status" -eq 0 ]; then good=$((good + bad)) bad=0; fi  # the flaky ones
   echo "$name $good $bad" >>"$counts"
-  printf '%-10s %4d passed, %d failed  (%d s)%s\n' "$name" "$good" "$bad" "$seconds" \
-    "${skipped:+  ($(wc -l <<<"$skipped") skipped)}"
+  printf '%-10s %4d passed, %d failed  (%d s, %d s of CPU)%s\n' "$name" "$good" "$bad" "$seconds" \
+    "$(cpu_seconds "$logs/$name.times")" "${skipped:+  ($(wc -l <<<"$skipped") skipped)}"
   # shellcheck disable=SC2086  # a list of names
   [ -n "$skipped" ] && printf '           skipped: %s\n' $skipped
+  # shellcheck disable=SC2086  # a list of names
+  [ -n "$flaky" ] && printf 'flaky: %s\n' $flaky | tee -a "$counts.flaky" | sed 's/^/           /'
   [ "$status" -eq 0 ] && return
   echo "---- the end of build/logs/$name.log"
   grep -A3 -E 'FAILED|error:|warning:|\*\*\*Failed|Failure$' "$log" | head -n 40  # and why
@@ -30,11 +70,14 @@ tell_stage() {
   echo "----"
 }
 
+# cpu_seconds FILE: of what `times` has written there, for a shell and what it waited for
+cpu_seconds() { tr ' ' '\n' <"$1" | awk -F '[ms]' '{sum += 60 * $1 + $2} END {printf "%d", sum}'; }
+
 # run_stage NAME: its function, its output to its log; then one line
 run_stage() {
   local start=$SECONDS status told
   [ -t 1 ] && [ -z "${is_beside:-}" ] && printf '%s ...\r' "$1"
-  (set -e; "$1") >"$logs/$1.log" 2>&1 &
+  (set -e; trap 'times >"$logs/$1.times"' EXIT; "$1") >"$logs/$1.log" 2>&1 &
   wait $!  # ends when the trap is called, too
   status=$?
   told=$(tell_stage "$1" $status $((SECONDS - start)))
@@ -53,12 +96,13 @@ run_beside() {
   } &
 }
 
-begin_counts() { counts=$(mktemp) && trap 'rm -f "$counts"' EXIT; }
-# tell_counts NAME...: the sum; fails if a test failed, or if one of these stages told nothing
+begin_counts() { counts=$(mktemp) && touch "$counts.flaky" && trap 'rm -f "$counts" "$counts.flaky"' EXIT; }
+# tell_counts NAME...: what was flaky, and the sum; fails if a test failed, or if one of these stages told nothing
 tell_counts() {
   local name
   for name in "$@"; do
     grep -q "^$name " "$counts" || { echo "$name did not end: it counts as failed"; echo "$name 0 1" >>"$counts"; }
   done
+  cat "$counts.flaky"
   awk '{good += $2; bad += $3} END {print good + 0 " passed, " bad + 0 " failed"; exit bad > 0}' "$counts"
 }

@@ -7,7 +7,6 @@
 //      path that is 1 nm beside comes to another force there
 #pragma once
 
-#include <cstdlib>
 #include <map>
 #include <optional>
 #include <ostream>
@@ -19,8 +18,6 @@
 #include "tests/support/random_path.h"
 
 namespace tact::tests {
-
-inline bool is_long() { return std::getenv("TACT_LONG") != nullptr; }
 
 /// The first tick that breaks each rule.
 struct PathResult {

@@ -152,7 +152,7 @@ function(tact_test)
     if(suites_${clock})
       list(JOIN suites_${clock} ":" filter)
       gtest_discover_tests(${test} DISCOVERY_TIMEOUT 60 TEST_FILTER "${filter}"
-        PROPERTIES LABELS "${room}${labels}" ${TACT_REAL_CLOCK_${clock}})
+        PROPERTIES LABELS "${room}${labels}+clock" ${TACT_REAL_CLOCK_${clock}})
     endif()
   endforeach()
 endfunction()

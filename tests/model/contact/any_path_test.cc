@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "tests/support/extent.h"
 #include "tests/support/path_run.h"
 
 namespace tact::model::contact::any_path_test {
@@ -51,11 +52,11 @@ mesh::SurfaceMesh body_of(const std::string& name) {
 class AnyPath : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(AnyPath, KeepsTheRulesOfContact) {
-  const tests::PathCounts counts = tests::run_random_paths(GetParam(), body_of(GetParam()),
-                                                           tests::is_long() ? 6'000'000 : 100'000);
+  const tests::PathCounts counts =
+      tests::run_random_paths(GetParam(), body_of(GetParam()), tests::share_of(100'000, 6'000'000));
   RecordProperty("counts", counts.summary());
   EXPECT_TRUE(counts.broken.empty()) << counts.summary() << "\n" << counts.first;
-  EXPECT_GT(counts.pauses, 5);
+  EXPECT_GT(counts.pauses, tests::share_of(5, 5));
   EXPECT_LT(counts.forks, 2 + counts.pauses / 50);
   EXPECT_LT(static_cast<double>(counts.unsettled), 0.03 * static_cast<double>(counts.ticks));
 }

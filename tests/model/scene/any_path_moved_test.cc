@@ -15,6 +15,7 @@
 #include "model/scene/tissue.h"
 #include "model/units.h"
 #include "tests/support/brute_force.h"
+#include "tests/support/extent.h"
 #include "tests/support/path_run.h"
 #include "tests/support/random_path.h"
 
@@ -143,7 +144,7 @@ void run(const Scene& scene, const Tissue& tissue, const tests::BruteForce& body
 }
 
 TEST(AnyPathMoved, TheShippedLiverKeepsTheRulesOfContact) {
-  const std::size_t most_ticks = tests::is_long() ? 4'000'000 : 100'000;
+  const std::size_t most_ticks = tests::share_of(100'000, 4'000'000);
   Counts counts;
   const auto whole = load_scene(TACT_SOURCE_DIR "/model/scenes/liver.toml", {});
   ASSERT_TRUE(whole);
@@ -177,7 +178,7 @@ TEST(AnyPathMoved, TheShippedLiverKeepsTheRulesOfContact) {
   EXPECT_LT(static_cast<double>(counts.unsolved), 0.01 * static_cast<double>(counts.ticks));
   // Those whose force would have jumped and was slowed down, and told so.
   EXPECT_LT(static_cast<double>(counts.unsettled), 0.03 * static_cast<double>(counts.ticks));
-  EXPECT_GT(counts.strokes, 20U);
+  EXPECT_GT(counts.strokes, tests::share_of(20, 20));
 }
 
 }  // namespace tact::model::scene::any_path_moved_test

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "model/scene/scene.h"
+#include "tests/support/extent.h"
 #include "tests/support/path_run.h"
 #include "tests/support/sentence.h"
 
@@ -16,10 +17,10 @@ TEST_P(AnyPathOrgan, KeepsTheRulesOfContact) {
   auto scene = load_scene(TACT_SOURCE_DIR "/model/scenes/" + std::string(GetParam()) + ".toml", {});
   ASSERT_EQ(tests::sentence_of(scene), "");
   const tests::PathCounts counts = tests::run_random_paths(GetParam(), std::move(scene->organ_mesh),
-                                                           tests::is_long() ? 4'000'000 : 100'000);
+                                                           tests::share_of(100'000, 4'000'000));
   RecordProperty("counts", counts.summary());
   EXPECT_TRUE(counts.broken.empty()) << counts.summary() << "\n" << counts.first;
-  EXPECT_GT(counts.pauses, 5);
+  EXPECT_GT(counts.pauses, tests::share_of(5, 5));
   EXPECT_LT(counts.forks, 2 + counts.pauses / 50);
   EXPECT_LT(static_cast<double>(counts.unsettled), 0.03 * static_cast<double>(counts.ticks));
 }

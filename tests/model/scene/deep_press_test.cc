@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <random>
 #include <string>
 #include <vector>
@@ -16,14 +15,13 @@
 #include "model/scene/tissue.h"
 #include "model/tissue/elastic_field.h"
 #include "model/units.h"
+#include "tests/support/extent.h"
 #include "tests/support/sentence.h"
 
 namespace tact::model::scene::deep_press_test {
 
 constexpr double kTick_s = 1e-3, kBefore_m = 6_mm, kDeep_m = 60_mm, kRadius_m = 4_mm;
 constexpr double kRange_m = 12_mm;  // of the law
-
-bool is_long() { return std::getenv("TACT_LONG") != nullptr; }
 
 /// A shipped organ of one elastic law, which may relax and rub; no cutting.
 struct Organ {
@@ -139,7 +137,11 @@ std::vector<Push> pushes_at(int point, const contact::SurfaceView& surface, std:
   const Vec3 side = normalized(cross(in, std::abs(in.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
   std::vector<Push> out;
   for (const double speed_mps : {0.5, 0.05, 0.005}) {
-    if (!is_long() && point % (speed_mps < 0.01 ? 50 : speed_mps < 0.1 ? 10 : 1) != 0) continue;
+    if (!tests::extent_is("long") && point % (speed_mps < 0.01  ? 50
+                                              : speed_mps < 0.1 ? 10
+                                                                : 1) !=
+                                         0)
+      continue;
     const Push straight{
         .from_m = at_m - kRadius_m * in, .along = in, .speed_mps = speed_mps, .is_straight = true};
     Push oblique = straight, dragged = straight;
@@ -160,7 +162,8 @@ TEST_P(DeepPress, HoldsAgainstThePushAndGivesNothing) {
   const double limit_N = organ.curve.respond(kRange_m).force_N;
   std::mt19937 random(7);
   int straight = 0, straight_drawn = 0, other = 0, other_drawn = 0;
-  for (int point = 0; point < 500; ++point)
+  const int points = static_cast<int>(tests::share_of(500, 500));
+  for (int point = 0; point < points; ++point)
     for (const Push& push : pushes_at(point, surface, random)) {
       const Felt felt = feel(organ.contact_scene(), push);
       SCOPED_TRACE(testing::Message() << "point " << point << ", " << push.speed_mps << " m/s");
@@ -175,7 +178,7 @@ TEST_P(DeepPress, HoldsAgainstThePushAndGivesNothing) {
   RecordProperty("straight_drawn_in", straight_drawn);
   RecordProperty("oblique_or_dragged", other);
   RecordProperty("oblique_or_dragged_drawn_in", other_drawn);
-  EXPECT_GT(straight, 100);
+  EXPECT_GT(straight, points / 5);
   // Over a rim, where the tool slips off to the other side. An oblique push of 60 mm slides there.
   EXPECT_LE(straight_drawn, 0.05 * straight);
 }
@@ -186,7 +189,7 @@ TEST_P(DeepPress, RubbingTissueThatRelaxesGivesNothing) {
   const contact::SurfaceView surface = organ.scene.organ_mesh.view();
   const double limit_N = organ.curve.respond(kRange_m).force_N;
   std::mt19937 random(8);
-  for (int point = 0; point < (is_long() ? 500 : 100); ++point)
+  for (int point = 0; point < static_cast<int>(tests::share_of(100, 500)); ++point)
     for (const Push& push : pushes_at(point, surface, random)) {
       const Felt felt = feel(organ.contact_scene(), push);
       SCOPED_TRACE(testing::Message() << "point " << point << ", " << push.speed_mps << " m/s");
@@ -203,7 +206,7 @@ TEST_P(DeepPress, AShippedToolGivesNothing) {
   ASSERT_EQ(tests::sentence_of(tissue), "");
   const contact::ContactScene scene = (*tissue)->contact_scene();
   std::mt19937 random(9);
-  for (int point = 1; point <= (is_long() ? 200 : 10); ++point)
+  for (int point = 1; point <= static_cast<int>(tests::share_of(10, 200)); ++point)
     for (const Push& push : pushes_at(point, scene.surface, random)) {
       const Felt felt = feel(scene, push, scene.spheres[0].offset_m);
       SCOPED_TRACE(testing::Message() << "point " << point << ", " << push.speed_mps << " m/s");

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <random>
@@ -18,6 +17,7 @@
 #include "model/units.h"
 #include "tests/support/brute_force.h"
 #include "tests/support/contact_rules.h"
+#include "tests/support/extent.h"
 #include "tests/support/sentence.h"
 
 namespace tact::model::scene::organ_acts_test {
@@ -235,8 +235,7 @@ class PauseActs : public ::testing::TestWithParam<int> {
     const Vec3 want_N = whole.force_vector_N();
     ASSERT_GT(norm(want_N), 0.02);
     for (std::uint32_t periods = 1; periods <= 19; ++periods) {
-      if (std::getenv("TACT_LONG") == nullptr && periods != 1 && periods != 4 && periods != 19)
-        continue;
+      if (!tests::extent_is("long") && periods != 1 && periods != 4 && periods != 19) continue;
       act(paused, periods);
       EXPECT_LE(norm(paused.force_vector_N() - want_N), 0.05 * norm(want_N))
           << periods << " periods: " << paused.force_N() << " N, without " << norm(want_N) << " N";

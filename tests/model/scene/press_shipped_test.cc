@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The whole tool of every shipped scene pressed at vertices of its organ: a sample, or with
-// TACT_LONG=1 all.
+// TACT_EXTENT=long all.
 //
 // Must hold at every place: what the row of the scene below does not except. The exceptions are
 // measured, of all vertices, and shall not grow:
@@ -22,12 +22,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <string>
 #include <vector>
 
 #include "model/scene/press_sweep.h"
 #include "model/units.h"
+#include "tests/support/extent.h"
 #include "tests/support/sentence.h"
 
 namespace tact::model::scene::press_shipped_test {
@@ -111,7 +111,7 @@ TEST_P(PressShipped, ToolIsSoundButForWhatIsMeasured) {
   const auto scene =
       load_scene(TACT_SOURCE_DIR "/model/scenes/" + std::string(c.scene) + ".toml", {});
   ASSERT_EQ(tests::sentence_of(scene), "");
-  const std::size_t count = std::getenv("TACT_LONG") != nullptr ? 0 : c.count;
+  const std::size_t count = tests::extent_is("long") ? 0 : c.count;
   const auto places = press_places(*scene, count, true, true);
   const auto sweep =
       sweep_presses(*scene, places, {.depth_m = c.depth_m, .limit_N_per_m = kLimit_N_per_m});

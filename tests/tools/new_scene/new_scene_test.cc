@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <utility>
 
 #include "model/scene/compliance_file.h"
 #include "model/scene/scene.h"
+#include "tests/support/extent.h"
 #include "tests/support/mesh_files.h"
 #include "tests/support/shapes.h"
 #include "tools/new_scene/outputs.h"
@@ -208,8 +208,8 @@ TEST_F(NewScene, WhatTactdRefusesIsNotWritten) {
 }
 
 TEST_F(NewScene, PlansTheLawForThisPcWithReferencesThatAnotherCanUse) {
-  if (std::getenv("TACT_LONG") == nullptr)
-    GTEST_SKIP() << "two minutes of finite elements: with TACT_LONG=1, as tools/check --long";
+  if (!tests::extent_is("long"))
+    GTEST_SKIP() << "two minutes of finite elements: with TACT_EXTENT=long, as tools/check --long";
   if (std::system("command -v ccx >/dev/null") != 0) GTEST_SKIP() << "no CalculiX here";
   const std::string organ = temp_.write("organ.obj", as_obj(ellipsoid_mm(2)));
   const auto with_cache = [this](const char* program, const std::string& arguments) {
