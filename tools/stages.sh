@@ -77,7 +77,8 @@ cpu_seconds() { tr ' ' '\n' <"$1" | awk -F '[ms]' '{sum += 60 * $1 + $2} END {pr
 run_stage() {
   local start=$SECONDS status told
   [ -t 1 ] && [ -z "${is_beside:-}" ] && printf '%s ...\r' "$1"
-  (set -e; trap 'times >"$logs/$1.times"' EXIT; "$1") >"$logs/$1.log" 2>&1 &
+  # shellcheck disable=SC2064  # that name, wherever the stage ends
+  (set -e; trap "times >'$logs/$1.times'" EXIT; "$1") >"$logs/$1.log" 2>&1 &
   wait $!  # ends when the trap is called, too
   status=$?
   told=$(tell_stage "$1" $status $((SECONDS - start)))

@@ -12,7 +12,7 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 RUN = """logs=$PWD
 . "$0"
-tests() { ctest_twice "$PWD" -j 2; }
+tests() { inner() { ctest_twice "$PWD" -j 2; }; inner; }
 begin_counts
 run_stage tests
 tell_counts tests"""

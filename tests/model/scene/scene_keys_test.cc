@@ -20,8 +20,7 @@
 
 namespace tact::model::scene::scene_keys_test {
 
-const std::string kScenes = TACT_SOURCE_DIR "/model/scenes/";
-const std::string kLiver = kScenes + "liver.toml";
+const std::string kScenes = TACT_SOURCE_DIR "/model/scenes/", kLiver = kScenes + "liver.toml";
 const std::string kDevices = TACT_SOURCE_DIR "/tools/deploy/devices.toml";
 
 std::vector<reader::ReferenceRow> reference_rows() {
@@ -150,8 +149,7 @@ TEST(Scene, WithAnyByteSpoiltNeverCrashesAndSaysOneLine) {
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   const std::string path = std::string(TACT_BINARY_DIR) + "/scene_spoilt.toml";
   const std::string spoilers = std::string("\0\xff\"'[]{}=.,-9e\n#_", 17);
-  const std::size_t step = text.size() / tests::share_of(text.size(), text.size());
-  for (std::size_t i = 0; i < text.size(); i += step) {
+  for (std::size_t i = 0; i < text.size(); i += 10 / tests::share_of(10, 10)) {
     std::string spoilt = text;
     spoilt[i] = spoilers[(7 * i) % spoilers.size()];
     std::ofstream(path, std::ios::binary) << spoilt;
