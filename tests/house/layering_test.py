@@ -131,9 +131,10 @@ def unlicensed(path, text):
 
 
 def misnamed(path, text):
-    said = re.match(r"// [^\n]*\n// (\w+\.h) - ", text)
-    if path.endswith(".h") and said and said[1] != path.rsplit("/", 1)[1]:
-        yield f"{path}:2: calls itself {said[1]}"
+    """A header below the licence says its name and what it is; tools/rooms prints that."""
+    name = path.rsplit("/", 1)[1]
+    if path.endswith(".h") and not re.match(rf"// [^\n]*\n// {re.escape(name)} - \S", text):
+        yield f"{path}:2: does not say what it is: // {name} - what"
 
 
 def long_comments(path, text):
@@ -167,6 +168,7 @@ def blind_rules():
         "compiler": vouch_breaches("x.cc", '#pragma clang diagnostic ignored "-Wfunction-effects"\n'),
         "sanitizer": vouch_breaches("x.cc", "const __rtsan::ScopedDisabler off;\n"),
         "another's name": misnamed("a/x.h", f"// {LICENCE}\n// y.h - what\n"),
+        "no name": misnamed("a/x.h", f"// {LICENCE}\n#pragma once\n"),
         "licence": unlicensed("x.cc", "#pragma once\n"),
         "wide comment": long_comments("x.cc", "// " + "x" * 98 + "\n"),
         "stale shim": vouch_breaches("firmware/loop/clock.cc", ""),

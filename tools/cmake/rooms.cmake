@@ -1,66 +1,55 @@
 # SPDX-License-Identifier: Apache-2.0
-# What a folder can declare: tact_room, tact_part, tact_program, tact_test.
+# What a list of rooms declares: tact_room, tact_room_text, tact_program, tact_test.
 
-# tact_room([SOURCES a.cc...] [ALONE a.cc...] [PARTS folder...] LINKS target... [MOSTLY_LIBRARY])
-# This folder as a library: model/law is the target tact_model_law. LINKS names the rooms that it
-# may include (tests/house/layering_test.py holds it to them) and the libraries that it uses. PARTS:
-# its own folders, each with a tact_part of its sources. ALONE: those of SOURCES that no unity build takes up, as
-# a test defines their functions in their place, or they define the heap's.
+# tact_room(ROOM [SOURCES a.cc part/b.cc...] [ALONE a.cc...] LINKS target... [MOSTLY_LIBRARY])
+# A folder as a library: the room model/law is the target tact_model_law, its SOURCES are in model/law/. LINKS names the
+# rooms that it may include (tests/house/layering_test.py holds it to them) and the libraries that it uses. ALONE:
+# those of SOURCES that no unity build takes up, as a test defines their functions in their place, or they define the
+# heap's.
 # MOSTLY_LIBRARY: more code of libraries' templates than computing. It is optimised less (-O1: host/server compiles
 # in half the time), and not at all under a sanitizer.
-function(tact_room)
-  cmake_parse_arguments(ARG "MOSTLY_LIBRARY" "" "SOURCES;ALONE;PARTS;LINKS" ${ARGN})
-  tact_room_name(room)
-  if(ARG_SOURCES OR ARG_PARTS)
-    add_library(tact_${room} STATIC ${ARG_SOURCES})
+function(tact_room room)
+  cmake_parse_arguments(ARG "MOSTLY_LIBRARY" "" "SOURCES;ALONE;LINKS" ${ARGN})
+  tact_target(target ${room})
+  if(ARG_SOURCES)
+    list(TRANSFORM ARG_SOURCES PREPEND ${PROJECT_SOURCE_DIR}/${room}/)
+    list(TRANSFORM ARG_ALONE PREPEND ${PROJECT_SOURCE_DIR}/${room}/)
+    add_library(${target} STATIC ${ARG_SOURCES})
     set_source_files_properties(${ARG_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
-    target_link_libraries(tact_${room} PUBLIC tact_flags ${ARG_LINKS})
+    target_link_libraries(${target} PUBLIC tact_flags ${ARG_LINKS})
     if(ARG_MOSTLY_LIBRARY AND TACT_SANITIZE)
-      target_compile_options(tact_${room} PRIVATE -O0)
+      target_compile_options(${target} PRIVATE -O0)
     elseif(ARG_MOSTLY_LIBRARY)
-      target_compile_options(tact_${room} PRIVATE -O1)
+      target_compile_options(${target} PRIVATE -O1)
     endif()
-    set(TACT_ROOM ${room})  # for tact_part
-    foreach(part ${ARG_PARTS})
-      add_subdirectory(${part})
-    endforeach()
   else()
-    add_library(tact_${room} INTERFACE)
-    target_link_libraries(tact_${room} INTERFACE tact_flags ${ARG_LINKS})
+    add_library(${target} INTERFACE)
+    target_link_libraries(${target} INTERFACE tact_flags ${ARG_LINKS})
   endif()
 endfunction()
 
-# tact_part(SOURCES a.cc...)
-# A folder inside a room, in its library and its namespace: tools/jitter/run is of tact_tools_jitter.
-function(tact_part)
-  cmake_parse_arguments(ARG "" "" "SOURCES" ${ARGN})
-  target_sources(tact_${TACT_ROOM} PRIVATE ${ARG_SOURCES})
+function(tact_target variable room)  # the room firmware/black_box is the target tact_firmware_black_box
+  string(REPLACE "/" "_" name ${room})
+  set(${variable} tact_${name} PARENT_SCOPE)
 endfunction()
 
-# tact_room_text(limits.html [NAME PATH]): the file, or that of a path, as kText, or NAME, of
-# "folder/limits.html.h", in the room's namespace
-function(tact_room_text file)
-  tact_room_name(room)
-  file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+# tact_room_text(tools/limits report/limits.html [NAME PATH]): the file of that room, or that of a path, as kText, or
+# NAME, of "tools/limits/report/limits.html.h", in the room's namespace
+function(tact_room_text folder file)
   string(REPLACE "/" "::" namespace ${folder})
-  set(source ${CMAKE_CURRENT_SOURCE_DIR}/${file})
+  set(source ${PROJECT_SOURCE_DIR}/${folder}/${file})
   set(name kText)
   if(ARGC GREATER 2)
-    set(name ${ARGV1})
-    set(source ${ARGV2})
+    set(name ${ARGV2})
+    set(source ${ARGV3})
   endif()
   file(READ ${source} text)
   file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/text/${folder}/${file}.h @ONLY CONTENT
     "// made from @folder@/@file@\n#pragma once\nnamespace tact::@namespace@ {\n\
 inline constexpr const char* @name@ = R\"~~(@text@)~~\";\n}\n")
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${source})
-  target_include_directories(tact_${room} PRIVATE ${PROJECT_BINARY_DIR}/text)
-endfunction()
-
-function(tact_room_name variable)  # firmware/black_box is firmware_black_box
-  file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
-  string(REPLACE "/" "_" name ${folder})
-  set(${variable} ${name} PARENT_SCOPE)
+  tact_target(target ${folder})
+  target_include_directories(${target} PRIVATE ${PROJECT_BINARY_DIR}/text)
 endfunction()
 
 # tact_program(NAME SOURCES main.cc... LINKS room... [OPTIMISED])
@@ -102,19 +91,20 @@ foreach(clock 0 1)
   endif()
 endforeach()
 
-# tact_test(SOURCES a_test.cc... LINKS room... [PROGRAMS tactd...] [LABELS threads loop parse]
+# tact_test(ROOM SOURCES a_test.cc... LINKS room... [PROGRAMS tactd...] [LABELS threads loop parse]
 #           [REAL_CLOCK Suite...] [OPTIMISED a_test.cc...])
-# All tests of a room as one program, tests/model/law as model_law_test. PROGRAMS are run by it, so
+# All tests of a room as one program: the SOURCES in tests/model/law/ as model_law_test. PROGRAMS are run by it, so
 # they are built with it; tests/support/program.h runs no other. LABELS: what tools/check runs again
 # under the thread sanitizer (threads), the real-time sanitizer (loop: what a tick reaches) or that of
 # addresses (parse: what reads files and bytes of others): ctest -L '[+]loop' finds those, -L model_law
 # the room. REAL_CLOCK: suites that wait for a real clock.
 # OPTIMISED: those of SOURCES that compute for seconds.
-function(tact_test)
+function(tact_test folder)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINKS;PROGRAMS;LABELS;REAL_CLOCK;OPTIMISED" ${ARGN})
-  tact_room_name(room)
-  string(REGEX REPLACE "^tests_" "" room ${room})
+  string(REPLACE "/" "_" room ${folder})
   set(test ${room}_test)
+  list(TRANSFORM ARG_SOURCES PREPEND ${PROJECT_SOURCE_DIR}/tests/${folder}/)
+  list(TRANSFORM ARG_OPTIMISED PREPEND ${PROJECT_SOURCE_DIR}/tests/${folder}/)
   add_executable(${test} ${ARG_SOURCES} $<TARGET_OBJECTS:tact_test_base>)
   target_link_libraries(${test} PRIVATE tact_flags ${ARG_LINKS} nlohmann_json::nlohmann_json GTest::gtest_main)
   target_precompile_headers(${test} REUSE_FROM tact_test_base)

@@ -74,12 +74,10 @@ FILES = {
 
 def programs_with_json():
     """Names of programs whose sources have an option --json."""
-    for path in sorted(ROOT.glob("*/*/CMakeLists.txt")):
-        if path.relative_to(ROOT).parts[0] == "tests":
-            continue
-        for name, sources in re.findall(r"tact_program\((\S+)\s+SOURCES ([^)]*?) LINKS", path.read_text()):
-            texts = [path.parent / word for word in sources.split()] + list(path.parent.glob("options.cc")) + \
-                list(path.parent.glob("command_line.cc"))
+    for path in [ROOT / top / "CMakeLists.txt" for top in ("firmware", "host", "tools")]:
+        for name, sources in re.findall(r"tact_program\((\S+)\s+SOURCES ([^)]*?)\s+LINKS", path.read_text()):
+            texts = [path.parent / word for word in sources.split()]
+            texts += [text.parent / word for text in texts for word in ("options.cc", "command_line.cc")]
             if any('"--json' in text.read_text() for text in texts if text.exists()):
                 yield name
 
