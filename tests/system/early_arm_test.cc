@@ -26,11 +26,10 @@ class Arming : public Tactd {
     const std::string script = in_folder("run.sh");
     std::ofstream(script)
         << "export XDG_RUNTIME_DIR=" << in_folder("") << "\ncd " << in_folder("") << "\n"
-        << program_path("tactd") << " " << kLiver
-        << " --no-black-box --seconds 1 --socket " << in_folder("t.sock") << kStubDevice
-        << " --json " << in_folder("report.json") << " 2>" << told()
-        << " & tactd=$!\nready() { for i in {1..100}; do grep -qs 'ready, force is off' " << told()
-        << " && break; sleep .05; done; }\n"
+        << program_path("tactd") << " " << kLiver << " --no-black-box --seconds 1 --socket "
+        << in_folder("t.sock") << kStubDevice << " --json " << in_folder("report.json") << " 2>"
+        << told() << " & tactd=$!\nready() { for i in {1..100}; do grep -qs 'ready, force is off' "
+        << told() << " && break; sleep .05; done; }\n"
         << "ctl() { " << program_path("tactctl") << " " << kLiver << " --pid $tactd $1; }\n"
         << acts << "\nwait $tactd; cat " << told() << "\n";
     return run_command("bash " + script);
@@ -62,10 +61,12 @@ class Arming : public Tactd {
 
 // From the first instruction on: no socket yet, then refused, then the words, then armed.
 TEST_F(Arming, AnImpatientPersonGetsNoForceBeforeTheWords) {
-  const Outcome out = run(
-      "until ctl arm; do :; done\n"
-      "grep -q 'ready, force is off' " + told() + " || echo no words\n"
-      "ctl arm");
+  const Outcome out =
+      run("until ctl arm; do :; done\n"
+          "grep -q 'ready, force is off' " +
+          told() +
+          " || echo no words\n"
+          "ctl arm");
   ASSERT_FALSE(report().is_discarded()) << out.output;
   EXPECT_FALSE(has(out, "no words")) << out.output;
   EXPECT_TRUE(has(out, "it is armed already")) << out.output;
@@ -74,13 +75,13 @@ TEST_F(Arming, AnImpatientPersonGetsNoForceBeforeTheWords) {
 
 // A sanitizer catches SEGV, BUS and FPE for its reports, and tactd leaves them to it.
 TEST_F(Arming, SignalsByMistakeEndNothing) {
-  const Outcome out = run(
-      "caught() { (( 0x$(awk '/SigCgt/ {print $2}' /proc/$tactd/status) >> ($1 - 1) & 1 )); }\n"
-      // by number, as names cost a process each: all but HUP INT QUIT ABRT KILL TERM STOP
-      // TSTP XCPU; BUS FPE SEGV
-      "ready; for s in {1..64}; do case $s in 1|2|3|6|9|15|19|20|24) ;; "
-      "7|8|11) caught $s || kill -$s $tactd;; *) kill -$s $tactd;; esac; done\n"
-      "sleep .2; ctl arm");
+  const Outcome out =
+      run("caught() { (( 0x$(awk '/SigCgt/ {print $2}' /proc/$tactd/status) >> ($1 - 1) & 1 )); }\n"
+          // by number, as names cost a process each: all but HUP INT QUIT ABRT KILL TERM STOP
+          // TSTP XCPU; BUS FPE SEGV
+          "ready; for s in {1..64}; do case $s in 1|2|3|6|9|15|19|20|24) ;; "
+          "7|8|11) caught $s || kill -$s $tactd;; *) kill -$s $tactd;; esac; done\n"
+          "sleep .2; ctl arm");
   ASSERT_FALSE(report().is_discarded()) << out.output;
   EXPECT_EQ(report().at("state"), "armed") << out.output;
 }

@@ -112,8 +112,9 @@ TEST_F(RecordingFile, IsRefusedWhenAnotherVersionMadeIt) {
       .put('\x08');
   const ReadResult read = read_recording(path_);
   EXPECT_FALSE(read.usable);
-  EXPECT_TRUE(read.damage.starts_with("recording version 8 cannot be read by this tact-view "
-                                      "(version 7, or 9 with an operator); record it again"))
+  EXPECT_TRUE(
+      read.damage.starts_with("recording version 8 cannot be read by this tact-view "
+                              "(version 7, or 9 with an operator); record it again"))
       << read.damage;
 }
 
