@@ -62,7 +62,7 @@ class Arming : public Tactd {
 // From the first instruction on: no socket yet, then refused, then the words, then armed.
 TEST_F(Arming, AnImpatientPersonGetsNoForceBeforeTheWords) {
   const Outcome out =
-      run("until ctl arm; do :; done\n"
+      run("until ctl arm; do kill -0 $tactd || break; done\n"
           "grep -q 'ready, force is off' " +
           told() +
           " || echo no words\n"
