@@ -24,26 +24,23 @@ void pause_a_moment() {
 }
 
 void OperatorDesk::obey(std::int64_t longest_ns) {
-  const Act act = signals_.wait(longest_ns, control_ != nullptr ? control_->fd() : -1);
+  const bool ends = signals_.wait_for_end(longest_ns, control_ != nullptr ? control_->fd() : -1);
   // Taken before show(): what was asked before the words
   // were told must not count as an answer to them.
-  const auto asked = next_by_socket();
-  if (act == Act::kLeave) stop();
+  const auto asked = next_request();
+  if (ends) stop();
   const bool just_told = show();
-  if (act == Act::kReset) reset(just_told);
-  if (act == Act::kArm) arm(just_told);
   if (asked) asked->answer(do_word(asked->word(), just_told));
 }
 
-std::optional<ControlRequest> OperatorDesk::next_by_socket() const {
+std::optional<ControlRequest> OperatorDesk::next_request() const {
   return control_ != nullptr ? control_->next() : std::nullopt;
 }
 
 // A request that came before the words, and be it in the moment before, is no answer to them.
 bool OperatorDesk::show() {
   if (!view_.show(newest_())) return false;
-  for (int early = signals_.forget(); early > 0; --early) refuse("armed or reset", kTooEarly);
-  while (const auto early = next_by_socket()) early->answer(do_word(early->word(), true));
+  while (const auto early = next_request()) early->answer(do_word(early->word(), true));
   return true;
 }
 
@@ -133,7 +130,7 @@ std::unique_ptr<ControlSocket> open_control(const std::string& scene_path,
   auto control = folder ? ControlSocket::open(control_path(*folder, scene_path, getpid()))
                         : model::Result<std::unique_ptr<ControlSocket>>(folder.error());
   if (control) return std::move(*control);
-  view.tell(fmt::format("tactctl does not reach this tactd, only signals do: {}",
+  view.tell(fmt::format("tactctl does not reach this tactd, so nobody can arm it: {}",
                         control.error().sentence));
   return nullptr;
 }

@@ -2,8 +2,7 @@
 // operator_desk.h - a person asks, the loop does it or not, and the person hears which.
 //
 // Arming is an act, made once, when it may be: after the words "ready, force is off" were told. A
-// request that comes at another time is refused with the reason, and forgotten. By signal or by
-// tactctl, the rule is one.
+// request that comes at another time is refused with the reason, and forgotten.
 #pragma once
 
 #include <functional>
@@ -23,7 +22,7 @@ void pause_a_moment();
 
 class OperatorDesk {
  public:
-  /// `control`: none, and signals alone are heard. `pause` lets the loop have a moment to answer.
+  /// `control`: none, and nobody can ask. `pause` lets the loop have a moment to answer.
   OperatorDesk(const OperatorSignals& signals, loop::Requests& requests, OperatorView& view,
                std::function<telemetry::Frame()> newest, ControlSocket* control = nullptr,
                std::function<void()> pause = pause_a_moment)
@@ -38,7 +37,7 @@ class OperatorDesk {
   void obey(std::int64_t longest_ns);
 
  private:
-  std::optional<ControlRequest> next_by_socket() const;
+  std::optional<ControlRequest> next_request() const;
   bool show();
   Answer do_word(const std::string& word, bool too_early);
   Answer arm(bool too_early);
@@ -58,7 +57,7 @@ class OperatorDesk {
   std::function<void()> pause_;
 };
 
-/// The desk's door for tactctl; none, and told, where it cannot be opened: signals are heard still.
+/// The socket for tactctl; none, and told, where it cannot be opened.
 std::unique_ptr<ControlSocket> open_control(const std::string& scene_path,
                                             const OperatorView& view);
 

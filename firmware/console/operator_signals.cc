@@ -20,14 +20,6 @@ constexpr std::array kLeave{SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP, SIGABRT};
 /// What nobody can ignore, and what ends nothing by itself.
 constexpr std::array kLeftAlone{SIGKILL, SIGSTOP, SIGCHLD, SIGCONT, SIGURG, SIGWINCH};
 
-/// Blocked from the first moment: by default either would end the process.
-sigset_t requests_of_a_person() {
-  sigset_t set{};
-  sigemptyset(&set);
-  for (const int signal : {SIGUSR1, SIGUSR2}) sigaddset(&set, signal);
-  return set;
-}
-
 /// glibc keeps two signals to itself (nptl(7)) and lets nobody ignore them; it puts handlers of its
 /// own in place when it needs them.
 void ignore_one_of_glibc(int signal) {
@@ -47,20 +39,17 @@ void ignore(int signal) {
 }  // namespace
 
 void outlive_stray_signals() {
-  const sigset_t requests = requests_of_a_person();
-  pthread_sigmask(SIG_BLOCK, &requests, nullptr);
   const auto is_one_of = [](int signal, const auto& some) {
     return std::ranges::find(some, signal) != some.end();
   };
   for (int signal = 1; signal <= kLastSignal; ++signal)
-    if (!is_one_of(signal, kLeave) && !is_one_of(signal, kLeftAlone) &&
-        sigismember(&requests, signal) == 0)
-      ignore(signal);
+    if (!is_one_of(signal, kLeave) && !is_one_of(signal, kLeftAlone)) ignore(signal);
 }
 
-OperatorSignals::OperatorSignals() : signals_(requests_of_a_person()) {
+OperatorSignals::OperatorSignals() {
   std::signal(SIGINT, SIG_DFL);  // a shell starts background programs with SIGINT ignored
   // Blocked in this thread and all that it starts: a thread that is not would end the process.
+  sigemptyset(&signals_);
   for (const int signal : kLeave) sigaddset(&signals_, signal);
   pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
   signal_fd_ = signalfd(-1, &signals_, SFD_NONBLOCK | SFD_CLOEXEC);
@@ -70,7 +59,7 @@ OperatorSignals::~OperatorSignals() {
   if (signal_fd_ >= 0) close(signal_fd_);
 }
 
-Act OperatorSignals::wait(std::int64_t longest_ns, int other_fd) const {
+bool OperatorSignals::wait_for_end(std::int64_t longest_ns, int other_fd) const {
   constexpr timespec kNow{};
   const timespec longest{.tv_sec = longest_ns / model::kSecond_ns,
                          .tv_nsec = longest_ns % model::kSecond_ns};
@@ -78,18 +67,7 @@ Act OperatorSignals::wait(std::int64_t longest_ns, int other_fd) const {
                                 {.fd = other_fd, .events = POLLIN, .revents = 0}}};
   ppoll(either.data(), either.size(), &longest, nullptr);
   // The descriptor only wakes; this takes the signal, and works without a descriptor, too.
-  const int signal = sigtimedwait(&signals_, nullptr, &kNow);
-  if (signal == SIGUSR1) return Act::kReset;
-  if (signal == SIGUSR2) return Act::kArm;
-  return signal > 0 ? Act::kLeave : Act::kNone;
-}
-
-int OperatorSignals::forget() const {
-  constexpr timespec kNow{};
-  const sigset_t requests = requests_of_a_person();
-  int forgotten = 0;
-  while (sigtimedwait(&requests, nullptr, &kNow) > 0) ++forgotten;
-  return forgotten;
+  return sigtimedwait(&signals_, nullptr, &kNow) > 0;
 }
 
 }  // namespace tact::firmware::console

@@ -56,9 +56,8 @@ bool OperatorView::show(const telemetry::Frame& newest) {
   } else if (newest.state == loop::State::kReady && !told_ready_ && !arms_itself_) {
     waits_for_.clear();
     told_ready_ = true;
-    tell(fmt::format(
-        "ready, force is off: hold the device, then arm it (tactctl {} arm, or kill -USR2 {})",
-        scene_path_, getpid()));
+    tell(fmt::format("ready, force is off: hold the device, then arm it (tactctl {} arm)",
+                     scene_path_));
   }
   tell_inside(newest);
   const std::string noticed = std::exchange(notice_, lines_.notice());
@@ -99,8 +98,7 @@ std::string OperatorView::why_not_arm() const {
     case loop::State::kArmed:
       return "it is armed already";
     case loop::State::kStopped:
-      return fmt::format("it has stopped; reset it first (tactctl {} reset, or kill -USR1 {})",
-                         scene_path_, getpid());
+      return fmt::format("it has stopped; reset it first (tactctl {} reset)", scene_path_);
   }
   return "its state is not known";
 }

@@ -16,7 +16,7 @@ bool wait_for_bus(const model::scene::Scene& scene, const console::OperatorSigna
       console::say(stderr, "tactd: waiting for {}: it is not there, or not up; ip link shows it\n",
                    missing);
     told = missing;
-    if (signals.wait(model::kSecond_ns) == console::Act::kLeave) return false;
+    if (signals.wait_for_end(model::kSecond_ns)) return false;
   }
 }
 

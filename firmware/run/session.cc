@@ -183,7 +183,7 @@ void Session::run_free() {
     telemetry_->drain();
     if (loop_->statistics().ticks % ticks_per_shape() != 0) continue;
     telemetry_->publish();
-    if (operator_->wait(0) == console::Act::kLeave) requests_.stop.store(true);
+    if (operator_->wait_for_end(0)) requests_.stop.store(true);
   }
   loop_->release_device();
 }

@@ -5,8 +5,7 @@
 // Recording: FileHeader, Hello, meshes, then one FrameRecord per frame; little-endian, fixed sizes,
 // so a damaged frame costs that frame only. Every part has a CRC-32 (polynomial 0x04C11DB7, as
 // zlib). In version 9 the operator's tracker ran: behind each frame stands one operator record of
-// the viewer, bodies and figure (host/record/operator_record.h). tactd writes version 7. Version 8
-// is 9 without left hand and elbow; it is read, and no longer written.
+// the viewer, bodies and figure (host/record/operator_record.h). tactd writes version 7.
 // Tick log: LogStart and what else belongs to its header (tick_log.h), then `ticks` records of
 // tick_bytes, each with its CRC, in the machine's own layout, and a whole recording of the same
 // seconds. Without a number of ticks they go on to the end of the file, and no recording follows.
@@ -24,9 +23,8 @@
 namespace tact::firmware::telemetry {
 
 inline constexpr char kRecordingMagic[8] = {'t', 'a', 'c', 't', 'r', 'e', 'c', '\n'};
-inline constexpr std::uint32_t kRecordingVersion = 7;           // 7: with the look
-inline constexpr std::uint32_t kTrackedRecordingVersion = 9;    // 7 with the tracked operator
-inline constexpr std::uint32_t kTenBodiesRecordingVersion = 8;  // the same with ten bodies
+inline constexpr std::uint32_t kRecordingVersion = 7;         // 7: with the look
+inline constexpr std::uint32_t kTrackedRecordingVersion = 9;  // 7 with the tracked operator
 
 struct FileHeader {
   char magic[8] = {};

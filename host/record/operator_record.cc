@@ -6,8 +6,6 @@
 #include <boost/crc.hpp>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
-#include <iterator>
 
 #include "host/figure/figure_words.h"
 
@@ -97,23 +95,6 @@ std::string operator_record(const tracking::TrackedOperator& tracked,
   if (figure != nullptr) record.figure = record_of(*figure);
   record.crc = crc_of(record);
   return {reinterpret_cast<const char*>(&record), sizeof record};
-}
-
-OperatorRecord from_version_8(std::span<const std::byte, kOperatorBytesOfVersion8> old) {
-  constexpr std::size_t kBodies =
-      offsetof(OperatorRecord, body) + kRolesOfVersion8 * sizeof(BodyRecord);  // time and bodies
-  constexpr std::size_t kSummed = kOperatorBytesOfVersion8 - 2 * sizeof(std::uint32_t);
-  OperatorRecord out;
-  std::ranges::copy(old.first<kBodies>(), std::as_writable_bytes(std::span(&out, 1)).begin());
-  std::ranges::copy(old.subspan<kBodies, sizeof out.figure>(),
-                    std::as_writable_bytes(std::span(&out.figure, 1)).begin());
-  std::uint32_t crc = 0;
-  std::memcpy(&crc, old.data() + kSummed, sizeof crc);
-  boost::crc_32_type sum;
-  sum.process_bytes(old.data(), kSummed);
-  // The new layout has a sum of its own; a wrong one is handed on as a wrong one.
-  out.crc = sum.checksum() == crc ? crc_of(out) : ~crc_of(out);
-  return out;
 }
 
 std::optional<tracking::TrackedOperator> operator_of(const OperatorRecord& record) {

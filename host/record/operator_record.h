@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // operator_record.h - the tracked operator in a recording: one record of fixed size behind each
-// frame of a recording of version 9 (firmware/telemetry/recording_format.h). Version 8 has the
-// first ten bodies alone.
+// frame of a recording of version 9 (firmware/telemetry/recording_format.h).
 //
 // Of each body the raw pose, as solved, and the one that was shown, both in the device's frame W.
 // Behind them the figure as it was shown: where it stood and how it was bound began before the
@@ -11,7 +10,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 #include <type_traits>
 
@@ -34,7 +32,7 @@ enum FigureFlag : std::uint8_t {
   kLeftLegReached = 1,
   kRightLegReached = 2,
   kShoulderTooFar = 4,
-  kLeftHandMissed = 8,  // not "reached": version 8 has 0 here
+  kLeftHandMissed = 8,
 };
 
 /// FigurePose; its trouble and its words follow from it and the bodies.
@@ -62,20 +60,11 @@ static_assert(std::is_trivially_copyable_v<OperatorRecord>);
 static_assert(sizeof(BodyRecord) == 7 * 8 + 9 * 4 + 4 && sizeof(BodyRecord) % 8 == 0);
 static_assert(sizeof(FigureRecord) == 8 + (3 * figure::kFigureJoints + 8) * 4 + 12);
 static_assert(sizeof(FigureRecord) % 8 == 0);
-static_assert(sizeof(OperatorRecord) ==
-              16 + tracking::kBodyRoles * sizeof(BodyRecord) + sizeof(FigureRecord));
-
-inline constexpr std::size_t kRolesOfVersion8 = 10;
-/// Bytes behind each frame of version 8.
-inline constexpr std::size_t kOperatorBytesOfVersion8 =
-    sizeof(OperatorRecord) - (tracking::kBodyRoles - kRolesOfVersion8) * sizeof(BodyRecord);
-static_assert(kOperatorBytesOfVersion8 == 1304 && sizeof(OperatorRecord) == 1496);
+static_assert(sizeof(OperatorRecord) == 1496);  // as host/PROTOCOL.md has it
 
 /// The bytes behind one frame; `figure` may be null.
 std::string operator_record(const tracking::TrackedOperator& tracked,
                             const figure::FigurePose* figure = nullptr);
-/// The record of version 8 with bodies that are absent behind its own. Damage stays damage.
-OperatorRecord from_version_8(std::span<const std::byte, kOperatorBytesOfVersion8> old);
 /// Nothing if the checksum differs or a number makes no sense.
 std::optional<tracking::TrackedOperator> operator_of(const OperatorRecord& record);
 /// The figure that was shown with these bodies, to a millionth; nothing if none was, or a number is

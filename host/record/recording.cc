@@ -76,21 +76,11 @@ std::optional<std::size_t> operator_bytes_of(std::uint32_t version) {
   switch (version) {
     case kRecordingVersion:
       return 0;
-    case kTenBodiesRecordingVersion:
-      return kOperatorBytesOfVersion8;
     case kTrackedRecordingVersion:
       return sizeof(OperatorRecord);
     default:
       return std::nullopt;
   }
-}
-
-bool read_operator(SealedFile& in, std::size_t bytes, OperatorRecord& out) {
-  if (bytes == sizeof out) return read(in, out);
-  std::array<std::byte, kOperatorBytesOfVersion8> old;
-  if (!read(in, old)) return false;
-  out = from_version_8(old);
-  return true;
 }
 
 /// Error: why it cannot be used.
@@ -108,8 +98,8 @@ Result<Setup> read_setup(SealedFile& in, const Magic& magic) {
   const auto operator_bytes = operator_bytes_of(header.version);
   if (!operator_bytes) {
     return Error{
-        fmt::format("recording version {} cannot be read by this tact-view (version {} to {}); "
-                    "record it again, or open it with the tact-view that made it",
+        fmt::format("recording version {} cannot be read by this tact-view (version {}, or {} with "
+                    "an operator); record it again, or open it with the tact-view that made it",
                     header.version, kRecordingVersion, kTrackedRecordingVersion)};
   }
   setup.operator_bytes = *operator_bytes;
@@ -160,7 +150,7 @@ std::string read_frames(SealedFile& in, std::uint64_t start, std::size_t operato
   FrameRecord record;
   OperatorRecord tracked;
   for (std::uint64_t i = 0; i < records && read(in, record); ++i) {
-    if (operator_bytes > 0 && !read_operator(in, operator_bytes, tracked)) break;
+    if (operator_bytes > 0 && !read(in, tracked)) break;
     // Frames have one size, so the next begins where it should, whatever this one holds.
     if (crc_of(record.frame) != record.crc || check_frame(record.frame, recording.hello)) {
       if (damaged++ == 0) first_damaged = start + i * stride;

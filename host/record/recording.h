@@ -25,7 +25,6 @@ using firmware::telemetry::FileHeader;
 using firmware::telemetry::FrameRecord;
 using firmware::telemetry::kRecordingMagic;
 using firmware::telemetry::kRecordingVersion;
-using firmware::telemetry::kTenBodiesRecordingVersion;
 using firmware::telemetry::kTrackedRecordingVersion;
 using firmware::telemetry::recording_frame;
 using firmware::telemetry::recording_start;

@@ -17,7 +17,7 @@ MANY = rf"(?:(?:std::array|std::vector|std::span)<(?:const )?(?:{NUMBER}|std::ar
 MEMBER = re.compile(r"\s*(?:(?:inline|static|mutable|constexpr|const) )*"
                     rf"(?:{NUMBER}|{MANY}) ([^()]*?)[;{{]\s*(?://.*)?$")
 NAME = re.compile(r"([A-Za-z_]\w*)(?:\[\w+\])?(?:(?: = )?\{[^}]*\}| = [^,]*)?(?:, |$)")
-UNIT = re.compile(r"_(?:s|ms|us|m|mm|um|N|Nm|J|W|kg|Hz|rad|deg|radps|mps|mps2|m2|m3|Pa|V|A|C|N2|N2s|turns|words|px|ratio"
+UNIT = re.compile(r"_(?:s|ms|us|m|mm|um|N|Nm|J|W|kg|Hz|rad|deg|radps|mps|mps2|m2|m3|Pa|V|A|C|N2|N2m2|N2s|turns|words|px|ratio"
                   r"|percent|share|\w*_?per_\w+|kgm2|Ns|bps|kB|MB|bytes|ticks|m_N|wxyz)_?$")
 # Shares, coordinates of a formula, and what has the unit of something else: the word says so.
 PLAIN = {

@@ -6,8 +6,7 @@
 #include <string>
 
 #include "firmware/loop/tick_record.h"
-#include "model/scene/scene.h"
-#include "tests/soak/accounts.h"
+#include "model/limit_witness.h"
 
 namespace tact::soak {
 
@@ -15,7 +14,7 @@ class Promises {
  public:
   /// Limits of scene and device together (firmware::gate::limits_for).
   Promises(const model::Limits& limits, std::int64_t period_ns)
-      : limits_(limits), period_ns_(period_ns) {}
+      : witness_(limits, static_cast<double>(period_ns) * 1e-9), period_ns_(period_ns) {}
 
   void check(const firmware::loop::TickRecord& record);
 
@@ -25,22 +24,13 @@ class Promises {
 
  private:
   void expect(bool kept, const char* promise, std::uint64_t tick);
-  void check_force(const firmware::loop::TickRecord& record);
-  double passed_s(const firmware::loop::TickRecord& record) const;  // since the write before
-  void account(const firmware::loop::TickRecord& record);
-  void check_energy(const firmware::loop::TickRecord& record);
-  void check_heat(const firmware::loop::TickRecord& record);
   void check_state(const firmware::loop::TickRecord& record);
 
-  model::Limits limits_;
+  model::LimitWitness witness_;
   std::int64_t period_ns_;
   std::int64_t first_due_ns_ = 0;
   firmware::loop::TickRecord before_{};
-  EnergyAccount energy_;  // since it was armed
-  HeatAccount heat_, torque_heat_;
   bool begun_ = false;
-  bool overheated_ = false;
-  double longest_s_ = 0.0;  // that a force was held meanwhile
   std::uint64_t broken_ = 0;
   std::string first_;
 };

@@ -22,7 +22,7 @@
 byte loop_state = OFF;   // the truth
 byte shown = OFF;        // what the desk was shown last
 bool told = false;       // the words stand
-bit asks_arm = 0;        // a request that waits; signals of one kind are one
+bit asks_arm = 0;        // a request that waits
 bit arm_is_news = 0;     // made after the words
 bit asks_reset = 0;
 byte arms = 0, asked = 0;  // edges and requests, as far as 3

@@ -10,29 +10,27 @@ namespace tact::tests::early_arm_test {
 class Arming : public Tactd {
  protected:
   /// tactd on the stand-in for Force Dimension's library, which waits for a person; `acts` is bash
-  /// with $tactd in it.
+  /// with $tactd in it, and `ctl` is tactctl.
   /// A machine that is busy with other work may stop such a loop by itself: then once more.
-  Outcome run(const std::string& acts, const std::string& before = "") const {
-    Outcome out = run_once(acts, before);
-    for (int i = 0; i < 5 && stopped_itself(); ++i) out = run_once(acts, before);
+  Outcome run(const std::string& acts) const {
+    Outcome out = run_once(acts);
+    for (int i = 0; i < 5 && stopped_itself(); ++i) out = run_once(acts);
     return out;
   }
   bool stopped_itself() const {
     const nlohmann::json told = report();
     return told.is_discarded() || told.at("fault").at("number") != 0;
   }
-  Outcome run_once(const std::string& acts, const std::string& before) const {
+  Outcome run_once(const std::string& acts) const {
     std::filesystem::remove(told());
     const std::string script = in_folder("run.sh");
     std::ofstream(script)
-        << before << program_path("tactd") << " " << kLiver
-        << " --no-black-box --seconds 1 --socket " << in_folder("t.sock") << kStubDevice
-        << " --json " << in_folder("report.json") << " 2>" << told()
-        << " & tactd=$!\nready() { for i in {1..100}; do grep -qs 'ready, force is off' " << told()
-        << " && break; sleep .05; done; }\n"
-        << "blocked() { while kill -0 $tactd && "
-           "! (( 0x0$(awk '/SigBlk/ {print $2}' /proc/$tactd/status) & 0x800 )); do :; done; }\n"
-        // USR2, by the first line of main
+        << "export XDG_RUNTIME_DIR=" << in_folder("") << "\ncd " << in_folder("") << "\n"
+        << program_path("tactd") << " " << kLiver << " --no-black-box --seconds 1 --socket "
+        << in_folder("t.sock") << kStubDevice << " --json " << in_folder("report.json") << " 2>"
+        << told() << " & tactd=$!\nready() { for i in {1..100}; do grep -qs 'ready, force is off' "
+        << told() << " && break; sleep .05; done; }\n"
+        << "ctl() { " << program_path("tactctl") << " " << kLiver << " --pid $tactd $1; }\n"
         << acts << "\nwait $tactd; cat " << told() << "\n";
     return run_command("bash " + script);
   }
@@ -61,55 +59,29 @@ class Arming : public Tactd {
   }
 };
 
-TEST_F(Arming, BeforeTheWordsIsRefusedWhenEverItComesAndLeavesNothingBehind) {
-  for (const char* delay_s : {"0", "0.02", "0.05", "0.08"}) {
-    const Outcome out =
-        run(std::string("blocked; sleep ") + delay_s + "; kill -USR2 $tactd; ready");
-    ASSERT_TRUE(has(out, "ready, force is off")) << delay_s << out.output;
-    EXPECT_TRUE(has(out, "not armed")) << delay_s << out.output;
-    ASSERT_FALSE(report().is_discarded()) << out.output;
-    EXPECT_EQ(report().at("state"), "ready") << delay_s;
-    EXPECT_EQ(report().at("refused_requests"), 1) << delay_s;
-  }
-}
-
-// Blocked by the parent, the signals of the time before main wait, too, and kill nobody.
-TEST_F(Arming, ABurstFromTheFirstInstructionOnGivesNoForceBeforeTheWords) {
-  int rounds = 0;
-  for (const char* burst_s : {"0.03", "0.1", "0.2"}) {
-    const Outcome out =
-        run(std::string("blocked; (while kill -USR1 $tactd && kill -USR2 $tactd; do :; done)"
-                        "& burst=$!; sleep ") +
-                burst_s + "; kill $burst; wait $burst; grep -q 'ready, force is off' " + told() +
-                " && echo too late; ready",
-            "env --block-signal=USR1 --block-signal=USR2 ");
-    if (has(out, "too late")) continue;  // the last ones came after the words, and may arm
-    ++rounds;
-    ASSERT_TRUE(has(out, "ready, force is off")) << burst_s << out.output;
-    ASSERT_FALSE(report().is_discarded()) << out.output;
-    EXPECT_EQ(report().at("state"), "ready") << burst_s << out.output;
-    EXPECT_EQ(report().at("force_max_N"), 0.0) << burst_s;
-    EXPECT_GT(report().at("refused_requests"), 0) << burst_s;
-  }
-  EXPECT_GE(rounds, 1);
-}
-
-TEST_F(Arming, AfterTheWordsArmsAtOnce) {
-  const Outcome out = run("ready; sleep .1; kill -USR2 $tactd");
+// From the first instruction on: no socket yet, then refused, then the words, then armed.
+TEST_F(Arming, AnImpatientPersonGetsNoForceBeforeTheWords) {
+  const Outcome out =
+      run("until ctl arm; do kill -0 $tactd || break; done\n"
+          "grep -q 'ready, force is off' " +
+          told() +
+          " || echo no words\n"
+          "ctl arm");
   ASSERT_FALSE(report().is_discarded()) << out.output;
+  EXPECT_FALSE(has(out, "no words")) << out.output;
+  EXPECT_TRUE(has(out, "it is armed already")) << out.output;
   EXPECT_EQ(report().at("state"), "armed") << out.output;
-  EXPECT_EQ(report().at("refused_requests"), 0) << out.output;
 }
 
 // A sanitizer catches SEGV, BUS and FPE for its reports, and tactd leaves them to it.
 TEST_F(Arming, SignalsByMistakeEndNothing) {
-  const Outcome out = run(
-      "caught() { (( 0x$(awk '/SigCgt/ {print $2}' /proc/$tactd/status) >> ($1 - 1) & 1 )); }\n"
-      // by number, as names cost a process each: all but HUP INT QUIT ABRT KILL USR1 USR2 TERM STOP
-      // TSTP XCPU; BUS FPE SEGV
-      "ready; for s in {1..64}; do case $s in 1|2|3|6|9|10|12|15|19|20|24) ;; "
-      "7|8|11) caught $s || kill -$s $tactd;; *) kill -$s $tactd;; esac; done\n"
-      "sleep .2; kill -USR2 $tactd");
+  const Outcome out =
+      run("caught() { (( 0x$(awk '/SigCgt/ {print $2}' /proc/$tactd/status) >> ($1 - 1) & 1 )); }\n"
+          // by number, as names cost a process each: all but HUP INT QUIT ABRT KILL TERM STOP
+          // TSTP XCPU; BUS FPE SEGV
+          "ready; for s in {1..64}; do case $s in 1|2|3|6|9|15|19|20|24) ;; "
+          "7|8|11) caught $s || kill -$s $tactd;; *) kill -$s $tactd;; esac; done\n"
+          "sleep .2; ctl arm");
   ASSERT_FALSE(report().is_discarded()) << out.output;
   EXPECT_EQ(report().at("state"), "armed") << out.output;
 }

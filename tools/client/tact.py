@@ -27,7 +27,7 @@ except ImportError:
     raise ImportError("tact.py needs numpy: apt install python3-numpy for Debian's python3, else pip install numpy") from None
 
 MAGIC, TELEMETRY_VERSION = 0x74636174, 5
-RECORDING_VERSIONS = {7: 0, 8: 1304, 9: 1496}  # bytes of the operator behind each frame
+RECORDING_VERSIONS = {7: 0, 9: 1496}  # bytes of the operator behind each frame
 LOG_MAGIC, RECORDING_MAGIC = b"tactlogA", b"tactrec\n"
 SEAL = b"tactseal"
 PHASES = ("wake", "read", "touch", "feel", "judge", "write", "tell", "total")

@@ -1,123 +1,245 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arming is an act, made once, when it may be.
+// What a person asks of a running tactd by its socket: done, or refused with the reason. Arming is
+// an act, made once, when it may be.
 #include "firmware/console/operator_desk.h"
 
 #include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
+#include <array>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
-#include "tests/firmware/console/desk_surroundings.h"
+#include "firmware/console/control_name.h"
+#include "model/io/socket_file.h"
+#include "tests/support/puppet_loop.h"
 
 namespace tact::firmware::console::operator_desk_test {
 
 using loop::State;
 
-class Desk : public DeskSurroundings {
+class Desk : public testing::Test {
  protected:
-  std::string ask(int signal) {
-    raise(signal);
-    return told([&] { desk.obey(1'000'000'000); });
-  }
-  std::string show(State state) {
-    frame.state = state;
-    return told([&] { desk.obey(0); });
-  }
-  template <typename Does>
-  static std::string told(Does does) {
+  void SetUp() override {
     testing::internal::CaptureStderr();
-    does();
-    return testing::internal::GetCapturedStderr();
+    auto opened = ControlSocket::open(path);
+    ASSERT_TRUE(opened) << opened.error().sentence;
+    control = std::move(*opened);
+    desk = make_desk(view, tick);
+  }
+  void TearDown() override {
+    testing::internal::GetCapturedStderr();
+    control.reset();
+    std::filesystem::remove(path);
+  }
+  std::unique_ptr<OperatorDesk> make_desk(OperatorView& of, std::function<void()> pause) {
+    return std::make_unique<OperatorDesk>(
+        signals, requests, of, [this] { return frame; }, control.get(), std::move(pause));
+  }
+  /// A person who has said it; hear() is the answer, once the desk has been at work.
+  int say(const char* word) const {
+    const auto address = model::io::socket_address(path);
+    const int fd = ::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
+    EXPECT_EQ(connect(fd, reinterpret_cast<const sockaddr*>(&*address), sizeof *address), 0);
+    EXPECT_GT(send(fd, word, strlen(word), 0), 0);
+    return fd;
+  }
+  static Answer hear(int fd) {
+    std::array<char, kLongestControlMessage> message{};
+    const auto n = recv(fd, message.data(), message.size(), MSG_DONTWAIT);
+    close(fd);
+    EXPECT_GT(n, 0) << "no answer";
+    return unpack_answer(std::string(message.data(), static_cast<std::size_t>(std::max(n, 0l))));
+  }
+  Answer ask(const char* word) {
+    const int fd = say(word);
+    desk->obey(1'000'000'000);
+    return hear(fd);
+  }
+  std::string refusal(const char* word) {
+    const Answer answer = ask(word);
+    EXPECT_FALSE(answer.done);
+    return answer.sentence;
+  }
+  /// What the terminal is told meanwhile.
+  std::string show(State state) {
+    testing::internal::GetCapturedStderr();
+    testing::internal::CaptureStderr();
+    frame.state = state;
+    desk->obey(0);
+    const std::string told = testing::internal::GetCapturedStderr();
+    testing::internal::CaptureStderr();
+    return told;
   }
 
-  OperatorDesk desk{signals, requests, view, [this] { return frame; }, nullptr, tick};
+  loop::SimulatedClock clock;
+  PuppetDevice device{clock};
+  PuppetLines lines;
+  loop::Requests requests;
+  std::vector<std::string> edges;  // what the loop was asked
+  bool refuses = false, stands = false;
+  int pauses = 0;
+  OperatorSignals signals;
+  std::function<void()> tick = [this] {
+    ++pauses;
+    const std::uint32_t asked = requests.asked.load();
+    if (stands) return;
+    edges.emplace_back(std::array{"none", "arm", "reset", "disarm"}[asked & 3U]);
+    requests.echo(asked, !refuses);
+  };
+  OperatorView view{device, lines, false};
+  telemetry::Frame frame;
+  std::string path = control_path(testing::TempDir(), "liver.toml", getpid());
+  std::unique_ptr<ControlSocket> control;
+  std::unique_ptr<OperatorDesk> desk;
 };
 
 TEST_F(Desk, ArmsOnlyAfterTheWordsThatItMayBe) {
-  EXPECT_NE(ask(SIGUSR2).find("not armed: the device is not ready yet"), std::string::npos);
+  EXPECT_EQ(refusal("arm"), "puppet: not armed: the device is not ready yet");
   show(State::kOff);
-  EXPECT_NE(ask(SIGUSR2).find("not armed"), std::string::npos);
+  EXPECT_NE(refusal("arm").find("not armed"), std::string::npos);
   EXPECT_TRUE(edges.empty());
   EXPECT_EQ(requests.refused.load(), 2u);
   EXPECT_NE(show(State::kReady).find("ready, force is off"), std::string::npos);
-  EXPECT_EQ(ask(SIGUSR2), "");
+  const Answer armed = ask("arm");
+  EXPECT_TRUE(armed.done);
+  EXPECT_EQ(armed.sentence, "puppet: armed, force is on");
   EXPECT_EQ(edges, (std::vector<std::string>{"arm"}));
   EXPECT_EQ(requests.refused.load(), 2u);
 }
 
 TEST_F(Desk, ARequestThatWaitsWhileTheWordsAreToldIsRefused) {
-  raise(SIGUSR2);
-  raise(SIGUSR1);
-  EXPECT_NE(show(State::kReady).find("came before it was ready"), std::string::npos);
-  desk.obey(0);
-  desk.obey(0);
+  const std::array<int, 3> early{say("arm"), say("arm"), say("reset")};
+  show(State::kReady);
+  desk->obey(0);
+  for (const int one : early)
+    EXPECT_NE(hear(one).sentence.find("came before it was ready"), std::string::npos);
   EXPECT_TRUE(edges.empty()) << "queued";
-  EXPECT_EQ(requests.refused.load(), 2u);
+  EXPECT_EQ(requests.refused.load(), 3u);
 }
 
 TEST_F(Desk, ResetsAStopAloneAndTheWordsComeAgainBeforeTheNextArming) {
   show(State::kReady);
-  EXPECT_NE(ask(SIGUSR1).find("not reset: it is ready, not stopped"), std::string::npos);
+  EXPECT_EQ(refusal("reset"), "puppet: not reset: it is ready, not stopped");
   show(State::kArmed);
-  EXPECT_NE(ask(SIGUSR2).find("armed already"), std::string::npos);
+  EXPECT_NE(refusal("arm").find("armed already"), std::string::npos);
   show(State::kStopped);
-  EXPECT_NE(ask(SIGUSR2).find("reset it first"), std::string::npos);
+  EXPECT_NE(refusal("arm").find("reset it first"), std::string::npos);
   EXPECT_TRUE(edges.empty());
-  EXPECT_EQ(ask(SIGUSR1), "");
+  EXPECT_TRUE(ask("reset").done);
   EXPECT_EQ(edges, (std::vector<std::string>{"reset"}));
-  EXPECT_NE(ask(SIGUSR2).find("not armed"), std::string::npos) << "the words were not told yet";
+  EXPECT_FALSE(ask("arm").done) << "the words were not told yet";
   EXPECT_NE(show(State::kReady).find("ready, force is off"), std::string::npos);
-  EXPECT_EQ(ask(SIGUSR2), "");
+  EXPECT_TRUE(ask("arm").done);
   EXPECT_EQ(edges.back(), "arm");
 }
 
-TEST_F(Desk, WhatTheLoopRefusesIsTold) {
+TEST_F(Desk, WhatTheLoopRefusesIsTheAnswer) {
   refuses = true;
   show(State::kReady);
-  EXPECT_NE(ask(SIGUSR2).find("not armed: no power"), std::string::npos);
+  EXPECT_NE(refusal("arm").find("puppet: not armed: no power"), std::string::npos);
   EXPECT_EQ(pauses, 1) << "the echo ends the wait";
 }
 
 TEST_F(Desk, ALoopThatDoesNotAnswerIsNotAskedLater) {
   stands = true;
   show(State::kReady);
-  EXPECT_NE(ask(SIGUSR2).find("not armed: the loop gives no answer"), std::string::npos);
+  EXPECT_NE(refusal("arm").find("not armed: the loop gives no answer"), std::string::npos);
   EXPECT_EQ(requests.asked.load() & 3U, 0U) << "taken back";
+  EXPECT_LT(pauses, 500) << "of 1 ms; five requests in a row stay below WatchdogSec";
 }
 
 TEST_F(Desk, ARequestThatWasDoneBeforeItWasTakenBackIsToldAsDone) {
   std::uint32_t taken = 0;  // by a tick that ends after the desk has given up
-  OperatorDesk other(
-      signals, requests, view, [this] { return frame; }, nullptr,
-      [&] {
-        const std::uint32_t asked = requests.asked.load();
-        if ((asked & 3U) != 0) taken = asked;
-        if ((asked & 3U) == 0) requests.echo(taken, true);
-      });
+  desk = make_desk(view, [&] {
+    const std::uint32_t asked = requests.asked.load();
+    if ((asked & 3U) != 0) taken = asked;
+    if ((asked & 3U) == 0) requests.echo(taken, true);
+  });
   show(State::kReady);
-  raise(SIGUSR2);
-  EXPECT_EQ(told([&] { other.obey(1'000'000'000); }), "");
+  EXPECT_TRUE(ask("arm").done);
   EXPECT_EQ(requests.asked.load() & 3U, 0U);
-}
-
-TEST_F(Desk, ALoopThatHangsHoldsTheMainThreadForLessThanHalfASecond) {
-  stands = true;
-  show(State::kReady);
-  ask(SIGUSR2);
-  EXPECT_LT(pauses, 500) << "of 1 ms; five requests in a row stay below WatchdogSec";
 }
 
 TEST_F(Desk, ADeviceThatArmsItselfAtTheStartWaitsForAPersonAfterAStop) {
   OperatorView itself(device, lines, true);
-  OperatorDesk other(signals, requests, itself, [this] { return frame; }, nullptr, tick);
+  desk = make_desk(itself, tick);
   for (const State state : {State::kReady, State::kArmed, State::kStopped, State::kReady}) {
-    frame.state = state;
-    const std::string words = told([&] { other.obey(0); });
+    const std::string words = show(state);
     EXPECT_EQ(words.find("ready, force is off") != std::string::npos,
               state == State::kReady && !itself.why_not_arm().starts_with("it arms itself"))
         << words;
   }
   EXPECT_EQ(itself.why_not_arm(), "");
+}
+
+TEST_F(Desk, DisarmsAtAnyTime) {
+  EXPECT_TRUE(ask("disarm").done);
+  show(State::kReady);
+  show(State::kArmed);
+  EXPECT_EQ(ask("disarm").sentence, "puppet: no force; arm it again when it shall have one");
+  EXPECT_EQ(edges, (std::vector<std::string>{"disarm", "disarm"}));
+}
+
+TEST_F(Desk, ADisarmThatIsNotAnsweredStandsForTheNextTick) {
+  show(State::kArmed);
+  stands = true;
+  const Answer answer = ask("disarm");
+  EXPECT_FALSE(answer.done);
+  EXPECT_NE(answer.sentence.find("its next tick takes the force away"), std::string::npos);
+  EXPECT_EQ(static_cast<loop::Request>(requests.asked.load() & 3U), loop::Request::kDisarm);
+}
+
+TEST_F(Desk, AStopThatIsDisarmedStillHasToBeReset) {
+  show(State::kStopped);
+  EXPECT_EQ(ask("disarm").sentence, "puppet: no force; it has stopped: reset it, then arm it");
+}
+
+TEST_F(Desk, WhatWouldArmItselfWaitsForAPersonOnceItIsDisarmed) {
+  OperatorView itself(device, lines, true);
+  desk = make_desk(itself, tick);
+  show(State::kReady);
+  EXPECT_EQ(ask("arm").sentence, "puppet: not armed: it arms itself as soon as it has power");
+  stands = true;
+  EXPECT_FALSE(ask("disarm").done);
+  EXPECT_FALSE(ask("arm").done);
+  stands = false;
+  EXPECT_TRUE(ask("disarm").done);
+  show(State::kReady);  // and the words are told
+  EXPECT_TRUE(ask("arm").done);
+}
+
+TEST_F(Desk, StopsAtAnyTimeEvenInTheMomentOfTheWords) {
+  const int fd = say("stop");
+  show(State::kReady);
+  EXPECT_TRUE(hear(fd).done);
+  EXPECT_TRUE(requests.stop.load());
+}
+
+TEST_F(Desk, ToldOfItsStateAndOfWordsThatItDoesNotKnow) {
+  frame.force_N[0] = 3.0F, frame.force_N[1] = 4.0F;
+  show(State::kArmed);
+  EXPECT_EQ(ask("status").sentence, "puppet: armed, 5.000 N");
+  frame.fault = static_cast<std::uint16_t>(model::Fault::kEmergencyStop);
+  show(State::kStopped);
+  const std::string stopped = ask("status").sentence;
+  EXPECT_TRUE(stopped.starts_with("puppet: stopped, 5.000 N, fault ")) << stopped;
+  EXPECT_FALSE(ask("ARM").done);
+  EXPECT_TRUE(edges.empty());
+}
+
+TEST_F(Desk, ASignalToEndIsHeardBesideARequest) {
+  show(State::kReady);
+  const int fd = say("status");
+  raise(SIGTERM);
+  desk->obey(1'000'000'000);
+  EXPECT_TRUE(hear(fd).done);
+  EXPECT_TRUE(requests.stop.load());
 }
 
 }  // namespace tact::firmware::console::operator_desk_test

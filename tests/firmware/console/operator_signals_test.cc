@@ -20,17 +20,9 @@ TEST(OperatorSignals, EveryWayToEndAsksToLeave) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP, SIGABRT}) {
     ASSERT_TRUE(sigismember(&blocked, signal)) << signal << " would end or halt this test";
     raise(signal);
-    EXPECT_EQ(signals.wait(kSecond_ns), Act::kLeave) << signal;
+    EXPECT_TRUE(signals.wait_for_end(kSecond_ns)) << signal;
   }
-}
-
-TEST(OperatorSignals, ResetAndArmAreRequestsOfTheirOwn) {
-  const OperatorSignals signals;
-  raise(SIGUSR1);
-  EXPECT_EQ(signals.wait(kSecond_ns), Act::kReset);
-  raise(SIGUSR2);
-  EXPECT_EQ(signals.wait(kSecond_ns), Act::kArm);
-  EXPECT_EQ(signals.wait(0), Act::kNone);
+  EXPECT_FALSE(signals.wait_for_end(0));
 }
 
 bool asks_to_leave(int signal) {
@@ -53,7 +45,7 @@ TEST(OperatorSignals, NothingThatComesBeforeTheLoopOrByMistakeEndsTheProcess) {
       if (!asks_to_leave(signal) && signal != SIGKILL && signal != SIGSTOP && !is_caught(signal))
         syscall(SYS_kill, getpid(), signal);
     const OperatorSignals signals;
-    _exit(signals.forget() == 2 && signals.wait(0) == Act::kNone ? 7 : 8);
+    _exit(signals.wait_for_end(0) ? 8 : 7);
   };
   EXPECT_EXIT(outlive(), testing::ExitedWithCode(7), "");
 }

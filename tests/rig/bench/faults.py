@@ -66,8 +66,7 @@ def attempt(required):
     arming alone changes nothing."""
     if not isinstance(required, Latches):
         return ""
-    reset = "kill -USR1 $tactd; sleep .06; " if required.name in OF_THE_DEVICE else ""
-    return f"{reset}kill -USR2 $tactd"
+    return "ask reset; ask arm" if required.name in OF_THE_DEVICE else "ask arm"
 
 
 def motors_let_go(run, within_ms, since_ns=None):

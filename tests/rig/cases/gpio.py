@@ -60,11 +60,11 @@ CASES = [
           f"pull {A} up; pull {B} up; sleep .01", at_once("emergency stop")),
     fault("discrepancy", "channels that disagree for 50 ms are a fault that no reset clears",
           f"inject pull {B} down; sleep .1; {OUTPUTS}pull {B} up; sleep .05\n"
-          "kill -USR1 $tactd; sleep .1", at_once("emergency stop"),
+          "ask reset; sleep .1", at_once("emergency stop"),
           (checks.told("channel A of the e-stop did not open with channel B"),)),
     fault("stuck", "a channel that sticks is told by name, and no reset clears it",
           f"inject pull {A} down; sleep .1; {OUTPUTS}pull {A} up; sleep .05\n"
-          "kill -USR1 $tactd; sleep .1", at_once("emergency stop"),
+          "ask reset; sleep .1", at_once("emergency stop"),
           (checks.told("channel B of the e-stop did not open with channel A"),)),
     fault("dead-man", "a released dead-man stops the force",
           f"inject pull {DEAD_MAN} down; sleep .03; {OUTPUTS}pull {DEAD_MAN} up; sleep .01", at_once("dead man released")),
@@ -80,8 +80,8 @@ CASES = [
     Case("lines-reset", "an e-stop is left by reset and then arm, in this order, and only so",
          SIM_DELTA_LINES,
          f"control $SECONDS_OF_RUN\nsleep 1\ninject pull {A} down; pull {B} down; sleep .1\n"
-         f"pull {A} up; pull {B} up; sleep .1\nkill -USR2 $tactd; sleep .1\n"
-         "kill -USR1 $tactd; sleep .3; kill -USR2 $tactd\nfinish",
+         f"pull {A} up; pull {B} up; sleep .1\nask arm; sleep .1\n"
+         "ask reset; sleep .3; ask arm\nfinish",
          (checks.hard_real_time, checks.armed_again), seconds=4),
     Case("lines-clutch", "a clutch in a press takes the force away, and what is released inside the organ has none",
          with_switches(SIM_DELTA_LINES),

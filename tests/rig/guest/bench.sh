@@ -6,6 +6,7 @@
 #   inject COMMAND...                   notes the time, then does the harm (builtins cost no fork)
 #   stand PERIODS                       stops tactd for so many periods of its grid: injected when it goes on
 #   prove WORDS COMMAND...              that the harm was done, for checks.proved
+#   ask arm|reset                       by tactctl, done or refused
 #   pull LINE up|down                   a switch on a line of the simulated chip, without a fork
 #   refused                             runs a tactd that must not start
 #   finish                              waits for tactd; its report, what the tick log says of the fault
@@ -84,6 +85,8 @@ refused() {
   echo $? >$RESULTS/tactd.status
   [ ${#background[@]} -eq 0 ] || kill "${background[@]}" 2>/dev/null
 }
+
+ask() { tactctl "$SCENE" --pid $tactd "$1" >>$RESULTS/asked.txt 2>&1 || :; }
 
 pull() { echo "pull-$2" >"${line[$1]}/pull"; }
 

@@ -131,7 +131,7 @@ TEST(Verdict, PowerIsThatOfForceAndTorqueInTheTraceAsInTheVerdict) {
   row.written_Nm = {0.1, 0, 0};
   row.tool.angular_velocity_radps = {3.0, 0, 0};
   row.gated_Nm = {0.07, 0, 0};
-  EXPECT_DOUBLE_EQ(power_W(row), 2.0 * 0.5 + 0.1 * 3.0);
+  EXPECT_DOUBLE_EQ(model::given_power_W({row.written_N, row.written_Nm}, row.tool), 1.3);
   EXPECT_DOUBLE_EQ(extremes_of({row}, kLimits, 0.001).power_W, 1.3);
   const std::string folder = testing::TempDir() + "tact-verdict-" + std::to_string(getpid());
   std::filesystem::create_directories(folder);

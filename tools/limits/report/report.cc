@@ -104,7 +104,7 @@ report::Table trace_table(const CaseResult& result) {
                r.tool.position_m.y,
                r.tool.position_m.z,
                norm(r.tool.velocity_mps),
-               power_W(r),
+               model::given_power_W({r.written_N, r.written_Nm}, r.tool),
                r.given_J,
                r.rms_N,
                r.fresh ? 1.0 : 0.0,

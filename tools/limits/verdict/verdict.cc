@@ -6,14 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/limits/verdict/energy_account.h"
-
 namespace tact::tools::limits {
 namespace {
 
 using firmware::gate::kStageCount;
 using firmware::gate::kStageName;
 
+constexpr double kRounding_ratio = model::LimitWitness::kRounding_ratio;
 constexpr double kMinTurn = 0.45;   // of the torque limit, where a torque must go
 constexpr double kMinGrip = 0.999;  // of the limit on the fingers, where it is the case
 
@@ -124,11 +123,6 @@ void check_expected(Checks& checks, const CaseVerdict& v) {
 
 }  // namespace
 
-double power_W(const TickRow& row) {
-  return dot(row.written_N, row.tool.velocity_mps) +
-         dot(row.written_Nm, row.tool.angular_velocity_radps);
-}
-
 double torque_step_Nm(const model::Limits& limits, double period_s) {
   return limits.force_N > 0.0 ? limits.slew_N_per_s * period_s * limits.torque_Nm / limits.force_N
                               : 0.0;
@@ -188,37 +182,22 @@ std::string CaseVerdict::acted_words() const {
 
 Extremes extremes_of(const std::vector<TickRow>& rows, const model::Limits& limits,
                      double period_s) {
+  model::LimitWitness witness(limits, period_s);
   Extremes worst;
-  EnergyAccount energy(limits);
-  // First order, as a motor warms: the mean square over thermal_time_s.
-  const double share = period_s / limits.thermal_time_s;
-  double heat = 0.0, torque_heat = 0.0;
-  Vec3 before_N, before_Nm;
   for (const TickRow& row : rows) {
-    const auto larger = [](double& most, double value) { most = std::max(most, value); };
-    larger(worst.force_N, norm(row.written_N));
-    larger(worst.torque_Nm, norm(row.written_Nm));
-    larger(worst.grip_N, std::abs(row.written_grip_N));
-    if (is_finite(row.commanded_N)) larger(worst.commanded_N, norm(row.commanded_N));
-    const bool stopped = !row.armed || latches(row.fault);  // then it goes to zero at once
-    const double periods = 1.0 + row.skipped_periods;       // since the write before
-    if (!stopped) {
-      larger(worst.step_N, norm(row.written_N - before_N) / periods);
-      larger(worst.step_Nm, norm(row.written_Nm - before_Nm) / periods);
-    }
-    if (is_finite(row.tool)) larger(worst.power_W, power_W(row));
-    // the force of the tick before was held until now
-    const double cooled = std::min(share * periods, 1.0);
-    heat += cooled * (dot(before_N, before_N) - heat);
-    torque_heat += cooled * (dot(before_Nm, before_Nm) - torque_heat);
-    larger(worst.rms_N, std::sqrt(heat));
-    larger(worst.rms_Nm, std::sqrt(torque_heat));
-    energy.add(row, period_s);
-    before_N = row.written_N;
-    before_Nm = row.written_Nm;
+    const char* broken = witness.check({.written = {row.written_N, row.written_Nm},
+                                        .written_grip_N = row.written_grip_N,
+                                        .tool = row.tool,
+                                        .fresh = row.fresh,
+                                        .armed = row.armed,
+                                        .faulted = latches(row.fault),
+                                        .skipped_periods = row.skipped_periods});
+    if (broken != nullptr && worst.broken.empty())
+      worst.broken = fmt::format("{}, {:.4g} s", broken, row.t_s);
+    if (is_finite(row.commanded_N))
+      worst.commanded_N = std::max(worst.commanded_N, norm(row.commanded_N));
   }
-  worst.given_J = energy.largest_J();
-  worst.overdrawn_J = energy.overdrawn_J();
+  static_cast<model::LimitExtremes&>(worst) = witness.worst();
   worst.zero_s = time_to_zero_s(rows, limits);
   return worst;
 }
@@ -237,6 +216,9 @@ CaseVerdict judge_rows(const Case& c, const std::vector<TickRow>& rows, const mo
   checks.add(!rows.empty() && rows.back().t_s >= 0.0, "it armed, and the case began",
              "it did not arm, or the case did not begin");
   checks.add(check_bounds(v.worst, limits, period_s));
+  const std::string& broken = v.worst.broken;
+  checks.add(broken.empty(), broken.empty() ? "every tick kept every limit in full"
+                                            : "a limit was broken: " + broken);
   check_silence(checks, rows);
   check_expected(checks, v);
   v.checks = checks.list();

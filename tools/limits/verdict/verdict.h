@@ -1,20 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// verdict.h - did the force keep its limits? Judged from the record of a case alone, with accounts
-// of its own: nothing here asks the gate what it thinks of itself.
-//
-//     |F| <= force_N     |T| <= torque_Nm     |dF| <= slew_N_per_s T     F . v + T . w <= power_W
-//     sum of F_(k-1) . (x_k - x_(k-1)) <= energy_J + recovery_W t        RMS <= continuous_force_N
-//     RMS of T <= torque_Nm continuous_force_N / force_N
-//     F = 0 exactly while not armed, and from a latched fault on
-//
-// F is what the device was handed last. Of missed samples the mean force counts along the way that
-// the next one shows.
+// verdict.h - did the force keep its limits (model/limit_witness.h)? Judged from the record of a
+// case alone: nothing here asks the gate what it thinks of itself. F is what the device was handed
+// last; it is zero exactly while not armed, and from a latched fault on.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "model/limit_witness.h"
 #include "tools/limits/cases/case_run.h"
 
 namespace tact::tools::limits {
@@ -26,13 +20,9 @@ struct Check {
 };
 
 /// The worst of a record, for the report and for the checks.
-struct Extremes {
-  double force_N = 0.0, commanded_N = 0.0, torque_Nm = 0.0, power_W = 0.0;
-  double step_N = 0.0, step_Nm = 0.0;  // for each period that passed since the write before
-  double given_J = 0.0;                // largest since arming
-  double overdrawn_J = 0.0;            // above budget and recovery; 0: never
-  double rms_N = 0.0, rms_Nm = 0.0;
-  double grip_N = 0.0;  // on the fingers
+struct Extremes : model::LimitExtremes {
+  double commanded_N = 0.0;
+  std::string broken;  // the first limit of the witness that a tick broke, and when; empty: none
   // From the cause to zero force and torque, which stay zero while it stands; none: no cause, or
   // never zero.
   std::optional<double> zero_s{};
@@ -52,8 +42,6 @@ struct CaseVerdict {
   std::string acted_words() const;
 };
 
-/// That the tick gives to the hand, by force and by torque.
-double power_W(const TickRow& row);
 Extremes extremes_of(const std::vector<TickRow>& rows, const model::Limits& limits,
                      double period_s);
 /// Largest change in a tick: the slew of the force, in proportion.

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // gate_watch.h - the gate of the controller between a tissue and a device, with a witness.
 //
-// Whatever a law or an unstable loop asks for, the written force must keep |F| <= limit and, from
-// tick to tick, |dF| <= slew dt; a latched fault may cut to zero at once.
+// Whatever a law or an unstable loop asks for, the written force must keep its limits
+// (model/limit_witness.h); a latched fault may cut to zero at once.
 #pragma once
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "firmware/gate/gate.h"
+#include "model/limit_witness.h"
 #include "tools/stability/sweep/map.h"
 
 namespace tact::tools::stability {
@@ -32,22 +30,26 @@ class GateWatch {
  public:
   explicit GateWatch(double rate_Hz)
       : gate_(kSceneLimits, 1.0 / rate_Hz, 1.0),
-        step_limit_N_(kSceneLimits.slew_N_per_s / rate_Hz),
+        witness_(kSceneLimits, 1.0 / rate_Hz),
         ramp_ticks_(static_cast<int>(2.0 * kSceneLimits.ramp_s * rate_Hz)) {}
 
   /// Arms and waits until the gate is fully open under this force.
   void open(double wanted_N) {
-    for (int i = 0; i < ramp_ticks_; ++i) written_N_ = write(wanted_N, true);
-    max_force_N_ = max_step_N_ = 0.0;
+    for (int i = 0; i < ramp_ticks_; ++i) step(wanted_N, true);
+    witness_.forget_worst();
   }
 
   /// One tick: the force written for the one wanted.
   double step(double wanted_N, bool fresh) {
-    const double now_N = write(wanted_N, fresh);
-    max_force_N_ = std::max(max_force_N_, std::abs(now_N));
-    if (armed_) max_step_N_ = std::max(max_step_N_, std::abs(now_N - written_N_));
-    written_N_ = now_N;
-    return now_N;
+    firmware::gate::GateInput input{.wanted = {}, .tool = {}, .fresh = fresh, .armed = armed_};
+    input.wanted.force_N.x = wanted_N;
+    const firmware::gate::GateVerdict verdict = gate_.judge(input);
+    const bool latched = verdict.fault != model::Fault::kNone;
+    const char* broken = witness_.check(
+        {.written = verdict.wrench, .fresh = fresh, .armed = armed_, .faulted = latched});
+    kept_bounds_ = kept_bounds_ && broken == nullptr;
+    armed_ = armed_ && !latched;  // as the supervisor does
+    return written_N_ = verdict.wrench.force_N.x;
   }
 
   /// What became of a run beyond its limit of stability: a word of the column beyond_the_line.
@@ -58,32 +60,22 @@ class GateWatch {
   }
   bool is_latched() const { return !armed_; }
   double written_N() const { return written_N_; }
-  double max_force_N() const { return max_force_N_; }
-  double max_step_N() const { return max_step_N_; }
+  double max_force_N() const { return witness_.worst().force_N; }
+  double max_step_N() const { return witness_.worst().step_N; }
   /// It was asked for more than it lets through.
   bool is_fought() const {
     constexpr double kNear = 0.9;
-    return max_force_N_ > kNear * kSceneLimits.force_N || max_step_N_ > kNear * step_limit_N_;
+    return max_force_N() > kNear * kSceneLimits.force_N ||
+           max_step_N() > kNear * witness_.force_step_N();
   }
-  bool kept_bounds() const {
-    return max_force_N_ <= kSceneLimits.force_N && max_step_N_ <= step_limit_N_ + 1e-12;
-  }
+  bool kept_bounds() const { return kept_bounds_; }
 
  private:
-  double write(double wanted_N, bool fresh) {
-    firmware::gate::GateInput input{.wanted = {}, .tool = {}, .fresh = fresh, .armed = armed_};
-    input.wanted.force_N.x = wanted_N;
-    const firmware::gate::GateVerdict verdict = gate_.judge(input);
-    if (verdict.fault != model::Fault::kNone) armed_ = false;  // as the supervisor does
-    return verdict.wrench.force_N.x;
-  }
-
   firmware::gate::Gate gate_;
-  double step_limit_N_;
+  model::LimitWitness witness_;
   int ramp_ticks_;
-  bool armed_ = true;
+  bool armed_ = true, kept_bounds_ = true;
   double written_N_ = 0.0;
-  double max_force_N_ = 0.0, max_step_N_ = 0.0;
 };
 
 /// Of a table with the column beyond_the_line: the gate held, and how many cells put it to the
