@@ -75,7 +75,7 @@ TEST(VerifyCan, EveryPublishedFrameOfTheKernelPassesAndEveryFieldIsLookedAt) {
 }
 
 TEST(VerifyCan, EveryPublishedFrameOfOdrivePassesAndEveryFieldIsLookedAt) {
-  check_file("can_odrive.json", 145,
+  check_file("can_odrive.json", 89,
              {{"encode", {}}, {"decode", {"data"}}, {"heartbeat_v0_5", {"data"}}});
 }
 
