@@ -132,15 +132,15 @@ void read_camera(Keys& k, TrackingSetup& out) {
   read_name(k, camera.name);
   read_lens(k, camera);
   camera.pose = read_pose(k, Need::kOptional);
+  if (std::ranges::find(out.cameras, camera.name, &TrackingCamera::name) != out.cameras.end())
+    k.refuse({"name"}, fmt::format("two cameras are called {}; rename one", camera.name));
   const auto has_role = [](const MarkerBody& body) { return body.role.has_value(); };
   if (!camera.pose && std::ranges::all_of(out.bodies, has_role)) {
-    k.refuse({"position_m"},
+    k.refuse({"name"},
              fmt::format("camera {} has no position_m and rotation_wxyz; write them, or add a body "
                          "with role = \"base\"",
                          camera.name));
   }
-  if (std::ranges::find(out.cameras, camera.name, &TrackingCamera::name) != out.cameras.end())
-    k.refuse({"name"}, fmt::format("two cameras are called {}; rename one", camera.name));
   out.cameras.push_back(std::move(camera));
 }
 

@@ -112,6 +112,7 @@ TEST_F(SetupFile, OneLineSaysWhatIsWrongAndWhere) {
       {with("[1.0, 0.0, 0.0, 0.0]", "[0.0, 0.0, 0.0, 0.0]"), ":10: rotation_wxyz has no direct"},
       {with("position_m = [0.0, 0.0, 0.0]\nrotation_wxyz = [1.0, 0.0, 0.0, 0.0]\n", ""),
        "camera front has no position_m"},
+      {with("rotation_wxyz = [1.0, 0.0, 0.0, 0.0]\n", ""), ":4: camera front has no position_m"},
       {with("role = \"head\"", "role = \"nose\""),
        "role = \"nose\" is unknown; allowed: \"head\", "},
       {with("role = \"head\"", "role = \"tool\""), "two bodies have this role"},
@@ -128,7 +129,7 @@ TEST_F(SetupFile, OneLineSaysWhatIsWrongAndWhere) {
        "registration.rotation_wxyz is missing"},
       {good("[[camera]]\nname = \"front\"\nsweep = true\n"), "two cameras are called front"},
       {"", "input is missing; allowed: a section [input]"},
-      {"[input]\nudp_port = 1\n", "camera is missing; allowed: 1 .. 32 sections [[camera]]"},
+      {"[input]\nudp_port = 1\n", "body is missing; allowed: 1 .. 32 sections [[body]]"},
   };
   for (const auto& [text, expected] : cases) {
     const std::string wrong = load(text);
