@@ -72,10 +72,7 @@ struct CanSettings {
   double rated_torque_Nm = 0.0;  // what 1000 of object 6071 are; 0: the drive's own 6076
 };
 
-enum class UsbTransport { kUsbfs, kLibusb };
-
 struct FalconSettings {
-  UsbTransport transport = UsbTransport::kUsbfs;
   std::string bus_path;         // "1-2.3"; empty: the only one
   std::string firmware_path;    // absolute; empty: its firmware must be running
   std::string firmware_sha256;  // empty: only images that are known

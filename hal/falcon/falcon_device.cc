@@ -23,9 +23,6 @@ constexpr int kMuteTicks = 20;
 constexpr double kMaxCounts_per_s = 250e3;  // 6 m/s where the counts are finest
 constexpr double kMaxCountsAtOnce = 250.0;  // 1 ms of it: a stamp may be a USB frame off
 constexpr FalconCommand kLastCommand{.lights = kFalconRed};
-constexpr const char* kUnguarded =
-    "if tactd is killed, nothing zeroes the Falcon, because libusb's descriptor is not found: use "
-    "device.falcon.transport = \"usbfs\"";
 constexpr int kLastCommands = 3;  // nobody sees whether the first has come
 
 bool is_pressed(const FalconReport& report, std::uint8_t button) RT_SAFE {
@@ -38,7 +35,7 @@ FalconDevice::FalconDevice(const model::FalconSettings& settings, std::unique_pt
     : settings_(settings),
       pipe_(std::move(pipe)),
       velocity_(settings.observer_bandwidth_Hz, kJump_m),
-      trouble_(FalconTrouble{.what = FalconTrouble::What::kNotHomed}.packed()) {}
+      trouble_(FalconTrouble{.what = FalconTrouble::What::kNotHomed}) {}
 
 FalconDevice::~FalconDevice() { stop(); }
 
@@ -50,8 +47,7 @@ DeviceInfo FalconDevice::info() const {
           .workspace_half_length_m = kFalconHalfLength_m,
           .grip = GripKind::kButton,
           .at_tool = falcon_at_tool(kinematics_, settings_),
-          .damping_key = "device.falcon.joint_damping_Nms_per_rad",
-          .caution = pipe_->descriptor() < 0 ? kUnguarded : ""};
+          .damping_key = "device.falcon.joint_damping_Nms_per_rad"};
 }
 
 Fault FalconDevice::read(Sample& sample, std::int64_t now_ns) RT_SAFE {
@@ -101,7 +97,7 @@ bool FalconDevice::follow_homing(const FalconReport& report) RT_SAFE {
       .what = homed ? FalconTrouble::What::kNone : FalconTrouble::What::kNotHomed,
       .homed = report.homed};
   // Relaxed: one word that says all; nothing else is published by it. The same in latch().
-  trouble_.store(state.packed(), std::memory_order_relaxed);
+  trouble_.store(state, std::memory_order_relaxed);
   if (!homed) return false;
   homed_ = true;  // the counts jump with it; nothing was believed before
   return true;
@@ -166,7 +162,7 @@ void FalconDevice::check_pipe() RT_SAFE {
 void FalconDevice::latch(Fault fault, const FalconTrouble& trouble) RT_SAFE {
   if (fault_ != Fault::kNone) return;
   fault_ = fault;
-  trouble_.store(trouble.packed(), std::memory_order_relaxed);
+  trouble_.store(trouble, std::memory_order_relaxed);
 }
 
 /// A short silence takes nothing from it: that is the gate's to judge.
@@ -222,7 +218,7 @@ FalconCommand FalconDevice::command(const FalconWords& words) const RT_SAFE {
 }
 
 std::string FalconDevice::trouble() const {
-  return in_words(FalconTrouble::unpacked(trouble_.load(std::memory_order_relaxed)));
+  return in_words(trouble_.load(std::memory_order_relaxed));
 }
 
 std::optional<LastWords> FalconDevice::last_words() {

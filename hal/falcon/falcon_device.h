@@ -79,7 +79,7 @@ class FalconDevice final : public Device {
   bool homed_ = false, powered_ = true, stopped_ = false;
   FalconWords words_{};
   Fault fault_ = Fault::kNone;
-  std::atomic<std::uint64_t> trouble_{0};
+  std::atomic<FalconTrouble> trouble_;
 };
 
 }  // namespace tact::hal::falcon

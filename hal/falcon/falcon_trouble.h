@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// falcon_trouble.h - what keeps a Falcon from making force, packed small, and in words.
+// falcon_trouble.h - what keeps a Falcon from making force, in one word, and in words.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <string>
 
@@ -9,7 +10,8 @@
 
 namespace tact::hal::falcon {
 
-struct FalconTrouble {
+/// One atomic word: the loop stores it, any thread reads it.
+struct alignas(8) FalconTrouble {
   enum class What : std::uint8_t {
     kNone,
     kNotHomed,
@@ -25,18 +27,8 @@ struct FalconTrouble {
   std::uint8_t homed = 0;        // three bits, axis 1 first
   std::uint8_t line_errors = 0;  // ftdi_requests.h
   std::uint16_t error = 0;       // errno
-
-  std::uint64_t packed() const RT_SAFE {
-    return static_cast<std::uint64_t>(what) | std::uint64_t{homed} << 8 |
-           std::uint64_t{line_errors} << 16 | std::uint64_t{error} << 24;
-  }
-  static FalconTrouble unpacked(std::uint64_t code) RT_SAFE {
-    return {.what = static_cast<What>(code & 0xFFu),
-            .homed = static_cast<std::uint8_t>(code >> 8),
-            .line_errors = static_cast<std::uint8_t>(code >> 16),
-            .error = static_cast<std::uint16_t>(code >> 24)};
-  }
 };
+static_assert(std::atomic<FalconTrouble>::is_always_lock_free);
 
 /// One sentence: which part, why, the cure; empty for kNone.
 std::string in_words(const FalconTrouble& trouble);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// falcon_open.h - from the scene's settings to a Falcon that runs: find, wake, choose a transport.
+// falcon_open.h - from the scene's settings to a Falcon that runs: find, wake, take.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// falcon_receiver.h - from USB transfers to the newest report: the part that both pipes share.
+// falcon_receiver.h - from USB transfers to the newest report.
 //
 // take() and finish() belong to the I/O thread, newest() to the loop, health() to anyone.
 #pragma once

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <filesystem>
 
 #include "hal/device_lock.h"
 #include "hal/permission.h"
@@ -151,15 +150,6 @@ FalconUsb::~FalconUsb() {
   if (claimed_) libusb_release_interface(handle_, falcon::kFalconUsbInterface);
   if (handle_ != nullptr) libusb_close(handle_);
   if (context_ != nullptr) libusb_exit(context_);
-}
-
-int FalconUsb::descriptor() const {
-  std::error_code none;
-  // libusb tells no descriptor; the guardian needs it to zero the motors (hal/last_words.h).
-  for (const auto& file : std::filesystem::directory_iterator("/proc/self/fd", none))
-    if (std::filesystem::read_symlink(file.path(), none) == node_)
-      return std::stoi(file.path().filename());
-  return -1;
 }
 
 bool FalconUsb::control(const falcon::FtdiRequest& request) {

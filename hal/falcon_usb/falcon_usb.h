@@ -28,13 +28,8 @@ class FalconUsb {
   FalconUsb(const FalconUsb&) = delete;
   FalconUsb& operator=(const FalconUsb&) = delete;
 
-  libusb_context* context() const { return context_; }
-  libusb_device_handle* handle() const { return handle_; }
   const std::string& bus_path() const { return bus_path_; }  // "1-2.3", also of the only one
   const std::string& node() const { return node_; }          // "/dev/bus/usb/001/004"
-  /// The library's own of that node, which it does not tell: by the names of our open files. -1:
-  /// none.
-  int descriptor() const;
 
   /// One request without data; false: it failed.
   bool control(const falcon::FtdiRequest& request);

@@ -13,8 +13,6 @@
 namespace tact::hal::falcon_usb {
 namespace {
 
-constexpr unsigned kControlWait_ms = 1000;
-
 /// Takes the interface from a kernel driver, but from no other program.
 int claim(int fd, int interface) {
   usbdevfs_disconnect_claim wanted{};
@@ -83,16 +81,6 @@ void UsbfsNode::discard(usbdevfs_urb& urb) { ioctl(fd_, USBDEVFS_DISCARDURB, &ur
 
 int UsbfsNode::clear_halt(unsigned endpoint) {
   return ioctl(fd_, USBDEVFS_CLEAR_HALT, &endpoint) == 0 ? 0 : errno;
-}
-
-int UsbfsNode::control(const falcon::FtdiRequest& request) {
-  usbdevfs_ctrltransfer transfer{};
-  transfer.bRequestType = request.type;
-  transfer.bRequest = request.request;
-  transfer.wValue = request.value;
-  transfer.wIndex = request.index;
-  transfer.timeout = kControlWait_ms;
-  return ioctl(fd_, USBDEVFS_CONTROL, &transfer) < 0 ? errno : 0;
 }
 
 }  // namespace tact::hal::falcon_usb

@@ -13,7 +13,6 @@
 #include <span>
 #include <string>
 
-#include "hal/falcon/ftdi_requests.h"
 #include "model/result.h"
 #include "model/rt.h"
 
@@ -56,8 +55,6 @@ class UsbfsNode final : public UsbfsPort {
   int clear_halt(unsigned endpoint) override;
   int descriptor() const override { return fd_; }
   std::span<std::uint8_t> buffer() RT_SAFE override { return {buffer_, kUsbfsBuffer_bytes}; }
-  /// Set-up: 0 or an errno.
-  int control(const falcon::FtdiRequest& request);
 
  private:
   int fd_, interface_;

@@ -9,8 +9,6 @@
 namespace tact::hal::odrive {
 namespace {
 
-constexpr double kFeedForwardStep = 0.001;  // turn/s and N m
-
 bool is_node(int node) RT_SAFE { return node >= 0 && node <= kOdriveLargestNode; }
 
 std::uint32_t id_of(int node, OdriveCommand command) RT_SAFE {
@@ -32,14 +30,6 @@ class Writer {
   Writer& limit_f32(std::size_t offset, double value) RT_SAFE {
     good_ = good_ && value >= 0.0;
     return f32(offset, value);
-  }
-  Writer& feed_forward(std::size_t offset, double value) RT_SAFE {
-    const double steps = value / kFeedForwardStep;
-    good_ = good_ && std::abs(steps) < 32767.5;
-    if (!good_) return *this;
-    const auto nearest = static_cast<std::int32_t>(steps < 0.0 ? steps - 0.5 : steps + 0.5);
-    can::put_unsigned(frame_.data, offset, 2, static_cast<std::uint32_t>(nearest));
-    return *this;
   }
   Writer& u32(std::size_t offset, std::uint32_t value) RT_SAFE {
     can::put_unsigned(frame_.data, offset, 4, value);
@@ -63,17 +53,6 @@ bool is_reply(const can::CanFrame& frame, int node, OdriveCommand command) RT_SA
   return is_node(node) && is_data(frame, id_of(node, command), 8);
 }
 
-/// A reply that is a pair of finite numbers.
-template <class Pair>
-std::optional<Pair> decode_pair(const can::CanFrame& frame, int node,
-                                OdriveCommand command) RT_SAFE {
-  if (!is_reply(frame, node, command)) return std::nullopt;
-  const auto first = static_cast<double>(can::get_f32(frame.data, 0));
-  const auto second = static_cast<double>(can::get_f32(frame.data, 4));
-  if (!std::isfinite(first) || !std::isfinite(second)) return std::nullopt;
-  return Pair{first, second};
-}
-
 }  // namespace
 
 OdriveAddress odrive_address(const can::CanFrame& frame) RT_SAFE {
@@ -85,24 +64,6 @@ std::optional<can::CanFrame> odrive_input_torque(int node, double torque_Nm,
                                                  OdriveTorqueLength length) RT_SAFE {
   return Writer(node, OdriveCommand::kSetInputTorque, static_cast<std::uint8_t>(length))
       .f32(0, torque_Nm)
-      .frame();
-}
-
-std::optional<can::CanFrame> odrive_input_velocity(int node, double velocity_turns_per_s,
-                                                   double torque_Nm) RT_SAFE {
-  return Writer(node, OdriveCommand::kSetInputVelocity, 8)
-      .f32(0, velocity_turns_per_s)
-      .f32(4, torque_Nm)
-      .frame();
-}
-
-std::optional<can::CanFrame> odrive_input_position(int node, double position_turns,
-                                                   double velocity_turns_per_s,
-                                                   double torque_Nm) RT_SAFE {
-  return Writer(node, OdriveCommand::kSetInputPosition, 8)
-      .f32(0, position_turns)
-      .feed_forward(4, velocity_turns_per_s)
-      .feed_forward(6, torque_Nm)
       .frame();
 }
 
@@ -144,15 +105,7 @@ std::optional<can::CanFrame> odrive_request(int node, OdriveCommand command) RT_
 
 std::optional<OdriveVersion> decode_odrive_version(const can::CanFrame& frame, int node) RT_SAFE {
   if (!is_reply(frame, node, OdriveCommand::kGetVersion)) return std::nullopt;
-  const auto& d = frame.data;
-  return OdriveVersion{.protocol = d[0],
-                       .hardware_major = d[1],
-                       .hardware_minor = d[2],
-                       .hardware_variant = d[3],
-                       .firmware_major = d[4],
-                       .firmware_minor = d[5],
-                       .firmware_revision = d[6],
-                       .unreleased = d[7] != 0};
+  return OdriveVersion{.firmware_major = frame.data[4], .firmware_minor = frame.data[5]};
 }
 
 std::optional<OdriveHeartbeat> decode_odrive_heartbeat(const can::CanFrame& frame,
@@ -176,42 +129,18 @@ std::optional<OdriveHeartbeat05> decode_odrive_heartbeat_05(const can::CanFrame&
                            .trajectory_done = (frame.data[7] & 0x80u) != 0};
 }
 
-std::optional<OdriveErrors> decode_odrive_errors(const can::CanFrame& frame, int node) RT_SAFE {
-  if (!is_reply(frame, node, OdriveCommand::kGetError)) return std::nullopt;
-  return OdriveErrors{.active = can::get_u32(frame.data, 0),
-                      .disarm_reason = can::get_u32(frame.data, 4)};
-}
-
 std::optional<OdriveEstimates> decode_odrive_estimates(const can::CanFrame& frame,
                                                        int node) RT_SAFE {
-  return decode_pair<OdriveEstimates>(frame, node, OdriveCommand::kGetEncoderEstimates);
+  if (!is_reply(frame, node, OdriveCommand::kGetEncoderEstimates)) return std::nullopt;
+  const auto position_turns = static_cast<double>(can::get_f32(frame.data, 0));
+  const auto velocity_turns_per_s = static_cast<double>(can::get_f32(frame.data, 4));
+  if (!std::isfinite(position_turns) || !std::isfinite(velocity_turns_per_s)) return std::nullopt;
+  return OdriveEstimates{position_turns, velocity_turns_per_s};
 }
 
 std::optional<OdriveCount05> decode_odrive_count_05(const can::CanFrame& frame, int node) RT_SAFE {
   if (!is_reply(frame, node, OdriveCommand::kGetEncoderCount05)) return std::nullopt;
-  return OdriveCount05{.shadow = can::get_i32(frame.data, 0),
-                       .in_circle = can::get_i32(frame.data, 4)};
+  return OdriveCount05{.shadow = can::get_i32(frame.data, 0)};
 }
 
-std::optional<OdriveIq> decode_odrive_iq(const can::CanFrame& frame, int node) RT_SAFE {
-  return decode_pair<OdriveIq>(frame, node, OdriveCommand::kGetIq);
-}
-
-std::optional<OdriveTemperature> decode_odrive_temperature(const can::CanFrame& frame,
-                                                           int node) RT_SAFE {
-  if (!is_reply(frame, node, OdriveCommand::kGetTemperature)) return std::nullopt;
-  OdriveTemperature out{.inverter_C = static_cast<double>(can::get_f32(frame.data, 0)),
-                        .motor_C = {}};
-  const auto motor_C = static_cast<double>(can::get_f32(frame.data, 4));
-  if (!std::isfinite(out.inverter_C) || std::isinf(motor_C)) return std::nullopt;
-  if (!std::isnan(motor_C)) out.motor_C = motor_C;
-  return out;
-}
-
-std::optional<OdriveBus> decode_odrive_bus(const can::CanFrame& frame, int node) RT_SAFE {
-  return decode_pair<OdriveBus>(frame, node, OdriveCommand::kGetBusVoltageCurrent);
-}
-std::optional<OdriveTorques> decode_odrive_torques(const can::CanFrame& frame, int node) RT_SAFE {
-  return decode_pair<OdriveTorques>(frame, node, OdriveCommand::kGetTorques);
-}
 }  // namespace tact::hal::odrive

@@ -21,21 +21,13 @@ enum class OdriveCommand : std::uint8_t {
   kGetVersion = 0x00,  // 0.6
   kHeartbeat = 0x01,
   kEstop = 0x02,
-  kGetError = 0x03,  // 0.5: of the motor alone, 64 bits
   kSetAxisState = 0x07,
   kGetEncoderEstimates = 0x09,
   kGetEncoderCount05 = 0x0A,  // 0.5
   kSetControllerMode = 0x0B,
-  kSetInputPosition = 0x0C,
-  kSetInputVelocity = 0x0D,
   kSetInputTorque = 0x0E,
   kSetLimits = 0x0F,
-  kGetIq = 0x14,
-  kGetTemperature = 0x15,  // 0.6; another thing in 0.5
-  kGetBusVoltageCurrent = 0x17,
   kClearErrors = 0x18,
-  kGetTorques = 0x1C,  // 0.6; another thing in 0.5
-  kGetPowers = 0x1D,   // 0.6
 };
 
 enum class OdriveAxisState : std::uint32_t {
@@ -57,19 +49,12 @@ struct OdriveAddress {
 };
 OdriveAddress odrive_address(const can::CanFrame& frame) RT_SAFE;
 
-// --- To the drive. Nothing if the node or a number is outside its range. Velocity and position are
-// for tact-verify and the fuzzer alone, as the published vectors have them. ---
+// --- To the drive. Nothing if the node or a number is outside its range. ---
 
 /// Eight bytes as the maker's own tools send it, or the first four of them, which save 32 us.
 enum class OdriveTorqueLength : std::uint8_t { kShort = 4, kPadded = 8 };
 std::optional<can::CanFrame> odrive_input_torque(int node, double torque_Nm,
                                                  OdriveTorqueLength length) RT_SAFE;
-std::optional<can::CanFrame> odrive_input_velocity(int node, double velocity_turns_per_s,
-                                                   double torque_Nm) RT_SAFE;
-/// Velocity and torque are fed forward in steps of 0.001, the drive's default, within +-32.767.
-std::optional<can::CanFrame> odrive_input_position(int node, double position_turns,
-                                                   double velocity_turns_per_s,
-                                                   double torque_Nm) RT_SAFE;
 std::optional<can::CanFrame> odrive_limits(int node, double velocity_turns_per_s,
                                            double current_A) RT_SAFE;
 std::optional<can::CanFrame> odrive_axis_state(int node, OdriveAxisState state) RT_SAFE;
@@ -86,10 +71,7 @@ std::optional<can::CanFrame> odrive_request(int node, OdriveCommand command) RT_
 // --- From the drive. Nothing unless it is a data frame of this node and message, whole and finite.
 
 struct OdriveVersion {  // 0.6
-  int protocol;
-  int hardware_major, hardware_minor, hardware_variant;
-  int firmware_major, firmware_minor, firmware_revision;
-  bool unreleased;
+  int firmware_major, firmware_minor;
 };
 std::optional<OdriveVersion> decode_odrive_version(const can::CanFrame& frame, int node) RT_SAFE;
 
@@ -113,12 +95,6 @@ struct OdriveHeartbeat05 {
 std::optional<OdriveHeartbeat05> decode_odrive_heartbeat_05(const can::CanFrame& frame,
                                                             int node) RT_SAFE;
 
-struct OdriveErrors {  // 0.6
-  std::uint32_t active;
-  std::uint32_t disarm_reason;
-};
-std::optional<OdriveErrors> decode_odrive_errors(const can::CanFrame& frame, int node) RT_SAFE;
-
 struct OdriveEstimates {
   double position_turns;
   double velocity_turns_per_s;
@@ -126,37 +102,9 @@ struct OdriveEstimates {
 std::optional<OdriveEstimates> decode_odrive_estimates(const can::CanFrame& frame,
                                                        int node) RT_SAFE;
 
-struct OdriveCount05 {     // 0.5: of the encoder itself, whatever the estimates say
-  std::int32_t shadow;     // since power-on, or absolute; over turns
-  std::int32_t in_circle;  // within a turn
+struct OdriveCount05 {  // 0.5: of the encoder itself, whatever the estimates say
+  std::int32_t shadow;  // since power-on, or absolute; over turns
 };
 std::optional<OdriveCount05> decode_odrive_count_05(const can::CanFrame& frame, int node) RT_SAFE;
-
-// From here on for tact-verify and the fuzzer alone, as the published vectors have them.
-
-struct OdriveIq {
-  double setpoint_A;
-  double measured_A;
-};
-std::optional<OdriveIq> decode_odrive_iq(const can::CanFrame& frame, int node) RT_SAFE;
-
-struct OdriveTemperature {  // 0.6
-  double inverter_C;
-  std::optional<double> motor_C;  // nothing: the drive sends NaN, as without a thermistor
-};
-std::optional<OdriveTemperature> decode_odrive_temperature(const can::CanFrame& frame,
-                                                           int node) RT_SAFE;
-
-struct OdriveBus {
-  double voltage_V;
-  double current_A;
-};
-std::optional<OdriveBus> decode_odrive_bus(const can::CanFrame& frame, int node) RT_SAFE;
-
-struct OdriveTorques {  // 0.6
-  double target_Nm;
-  double estimate_Nm;
-};
-std::optional<OdriveTorques> decode_odrive_torques(const can::CanFrame& frame, int node) RT_SAFE;
 
 }  // namespace tact::hal::odrive

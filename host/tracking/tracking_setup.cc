@@ -10,7 +10,9 @@
 #include <limits>
 
 #include "host/tracking/observation.h"
-#include "host/tracking/tracking_keys.h"
+#include "model/io/input_file.h"
+#include "model/io/toml.h"
+#include "model/reader/scene_reader.h"
 
 namespace tact::host::tracking {
 namespace {
@@ -18,8 +20,13 @@ namespace {
 namespace fs = std::filesystem;
 using model::Error;
 using model::Result;
+using model::reader::Choice;
+using model::reader::Keys;
+using model::reader::Need;
 
 // Chosen bounds: beyond any camera, any operator, any marker body; a wrong unit shows.
+constexpr std::uintmax_t kMaxFile_bytes = 1'000'000;
+constexpr double kFarthest_m = 100.0;
 constexpr double kMax_px = 1e6;
 constexpr double kFarthestShoulder_m = 3.0;
 constexpr double kFarthestMarker_m = 10.0;
@@ -27,171 +34,185 @@ constexpr double kOutlierTangent = 0.0025;  // as 3 px with f = 1200 px
 // EPnP's least (epnp.h).
 constexpr std::size_t kMinMarkers = 4;
 constexpr std::size_t kMaxSections = 32;
-constexpr const char* kBase = "base";
 constexpr const char* kSuffix = ".tracking.toml";
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-constexpr std::array<const char*, kBodyRoles> kRoleNames = {
-    "head",      "shoulder",   "waist",       "wrist", "hand",      "left_leg",
-    "right_leg", "left_ankle", "right_ankle", "tool",  "left_hand", "elbow"};
+constexpr auto kBase = static_cast<std::size_t>(kBodyRoles);  // behind the roles
+constexpr std::array<Choice, kBodyRoles + 1> kRoles{{{"head", ""},
+                                                     {"shoulder", ""},
+                                                     {"waist", ""},
+                                                     {"wrist", ""},
+                                                     {"hand", ""},
+                                                     {"left_leg", ""},
+                                                     {"right_leg", ""},
+                                                     {"left_ankle", ""},
+                                                     {"right_ankle", ""},
+                                                     {"tool", ""},
+                                                     {"left_hand", ""},
+                                                     {"elbow", ""},
+                                                     {"base", ""}}};
 
-void read_name(TrackingKeys& k, std::string& out) {
-  out = k.text("name");
-  if (!is_tracking_name(out)) k.refuse("name", "name must be 1 to 32 letters, digits, _ or -");
+/// As TOML has it; a camera, a body or a section without a pose has none.
+struct GivenPose {
+  model::Vec3 position_m{kNone, kNone, kNone};
+  std::array<double, 4> wxyz{kNone, kNone, kNone, kNone};
+};
+
+Eigen::Vector3d point_of(const model::Vec3& v_m) { return {v_m.x, v_m.y, v_m.z}; }
+
+std::optional<Pose> read_pose(Keys& k, Need need) {
+  GivenPose given;
+  k.vector("position_m", {-kFarthest_m, kFarthest_m}, "origin", given.position_m, need);
+  k.quaternion("rotation_wxyz", "axes", given.wxyz, need);
+  const bool has_position = !std::isnan(given.position_m.x), has_turn = !std::isnan(given.wxyz[0]);
+  if (has_position != has_turn)
+    k.refuse({"position_m", "rotation_wxyz"},
+             "position_m and rotation_wxyz go together: write both");
+  if (!has_position || !has_turn) return std::nullopt;
+  const auto rotation = pose::rotation_from(given.wxyz);
+  if (!rotation)
+    k.refuse({"rotation_wxyz"}, "rotation_wxyz has no direction; no turn is [1, 0, 0, 0]");
+  return Pose{.rotation = rotation.value_or(Eigen::Quaterniond::Identity()),
+              .position_m = point_of(given.position_m)};
 }
 
-void read_input(TrackingKeys& k, TrackingSetup& out) {
-  k.only({"udp_port", "recording"});
-  // Both or none: equal.
-  if (k.has("udp_port") == k.has("recording"))
-    return k.refuse("udp_port", "[input] takes udp_port or recording, one of them; write one");
-  if (k.has("udp_port")) {
-    const double port = k.number("udp_port", 1, 65535);
-    if (port != std::floor(port))
-      k.refuse("udp_port", "udp_port must be a whole number; write one");
-    out.udp_port = static_cast<std::uint16_t>(port);
-  } else {
-    // Beside the description, wherever the program was started.
-    out.recording = (fs::path(out.path).parent_path() / k.text("recording")).string();
-  }
+std::optional<Eigen::Vector3d> read_point(Keys& k, const char* key, double most_m,
+                                          const char* meaning, Need need) {
+  model::Vec3 point_m{kNone, kNone, kNone};
+  k.vector(key, {-most_m, most_m}, meaning, point_m, need);
+  if (std::isnan(point_m.x)) return std::nullopt;
+  return point_of(point_m);
 }
 
-/// False if so many sections came before: checked first, names are compared with all of them.
-bool has_room(TrackingKeys& k, std::size_t before) {
-  if (before < kMaxSections) return true;
-  k.refuse("name", fmt::format("more than {} cameras or bodies; leave some out", kMaxSections));
-  return false;
+void read_name(Keys& k, std::string& out) {
+  k.text("name", "1 to 32 letters, digits, _ or -", out);
+  if (!out.empty() && !is_tracking_name(out))
+    k.refuse({"name"}, "name must be 1 to 32 letters, digits, _ or -");
 }
 
-void read_camera(TrackingKeys& k, TrackingSetup& out) {
-  if (!has_room(k, out.cameras.size())) return;
-  TrackingCamera camera;
-  k.only({"name", "sweep", "fx_px", "fy_px", "cx_px", "cy_px", "outlier_px", "position_m",
-          "rotation_wxyz"});
-  read_name(k, camera.name);
-  const bool sweep = k.flag("sweep");
+void read_input(Keys& k, TrackingSetup& out) {
+  std::size_t port = 0;
+  std::string recording;
+  k.count("udp_port", {1, 65535}, "on 127.0.0.1", port, Need::kOptional);
+  k.text("recording", "beside this file", recording, Need::kOptional);
+  if ((port == 0) == recording.empty())
+    k.refuse({"udp_port"}, "[input] takes udp_port or recording, one of them; write one");
+  out.udp_port = static_cast<std::uint16_t>(port);
+  // Beside the description, wherever the program was started.
+  if (!recording.empty()) out.recording = (fs::path(out.path).parent_path() / recording).string();
+}
+
+/// Tangents are pixels of a camera with focal length 1 (epnp.h).
+void read_lens(Keys& k, TrackingCamera& camera) {
+  bool sweep = false;
+  k.flag("sweep", "measures tangents, not pixels", sweep, Need::kOptional);
   if (sweep) {
-    // Tangents are pixels of a camera with focal length 1 (epnp.h).
     camera.lens = {.fx_px = 1.0, .fy_px = 1.0};
     camera.outlier_px = kOutlierTangent;
-    for (const char* key : {"fx_px", "fy_px", "cx_px", "cy_px"}) {
-      if (!k.has(key)) continue;
-      k.refuse(key, fmt::format("a sweep tracker measures tangents; leave {} out", key));
-    }
-  } else {
-    camera.lens = {.fx_px = k.number("fx_px", 1.0, kMax_px),
-                   .fy_px = k.number("fy_px", 1.0, kMax_px),
-                   .cx_px = k.number("cx_px", -kMax_px, kMax_px),
-                   .cy_px = k.number("cy_px", -kMax_px, kMax_px)};
   }
-  if (k.has("outlier_px")) camera.outlier_px = k.number("outlier_px", 1e-6, 1e3);
-  if (k.has("position_m") || k.has("rotation_wxyz")) camera.pose = k.pose();
-  const bool twice = std::ranges::any_of(
-      out.cameras, [&](const TrackingCamera& other) { return other.name == camera.name; });
-  if (twice) k.refuse("name", fmt::format("two cameras are called {}; rename one", camera.name));
-  out.cameras.push_back(std::move(camera));
+  const auto read = [&](const char* key, double least_px, double& out) {
+    double given_px = kNone;
+    k.number(key, {least_px, kMax_px}, "of the lens", given_px,
+             sweep ? Need::kOptional : Need::kRequired);
+    if (std::isnan(given_px)) return;
+    if (sweep) k.refuse({key}, fmt::format("a sweep tracker measures tangents; leave {} out", key));
+    out = given_px;
+  };
+  read("fx_px", 1.0, camera.lens.fx_px);
+  read("fy_px", 1.0, camera.lens.fy_px);
+  read("cx_px", -kMax_px, camera.lens.cx_px);
+  read("cy_px", -kMax_px, camera.lens.cy_px);
+  k.number("outlier_px", {1e-6, 1e3}, "a marker farther off is wrong", camera.outlier_px,
+           Need::kOptional);
 }
 
-void read_role(TrackingKeys& k, const TrackingSetup& out, MarkerBody& body) {
-  const std::string role = k.text("role");
-  const auto found = std::ranges::find(kRoleNames, role);
-  if (found != kRoleNames.end()) {
-    body.role = static_cast<BodyRole>(found - kRoleNames.begin());
-  } else if (role != kBase) {
-    // The base has no role of the operator: it is the tracker's own frame.
-    k.refuse("role", fmt::format("role is none of: {}, {}; write one of them",
-                                 fmt::join(kRoleNames, ", "), kBase));
-  }
-  for (const MarkerBody& other : out.bodies) {
-    if (other.name == body.name) k.refuse("name", "two bodies have this name; rename one");
-    if (other.role == body.role) k.refuse("role", "two bodies have this role; leave one out");
-  }
-}
-
-void read_markers(TrackingKeys& k, MarkerBody& body) {
-  for (const std::vector<double>& row :
-       // Any number here: id and metres have different bounds, each told below.
-       k.rows("markers_m", 4, std::numeric_limits<double>::max())) {
-    const double id = row[0];
-    const Eigen::Vector3d p(row[1], row[2], row[3]);
-    if (!(id >= 0.0 && id <= 1e9) || id != std::floor(id)) {
-      k.refuse("markers_m", "a marker's id must be a whole number from 0 to 1e9");
-      return;
-    }
-    if (!(p.cwiseAbs().maxCoeff() <= kFarthestMarker_m)) {
-      k.refuse("markers_m", "a marker is more than 10 m from its body; write metres");
-      return;
-    }
-    const auto number = static_cast<std::uint32_t>(id);
-    if (std::ranges::any_of(body.markers, [&](const BodyMarker& m) { return m.id == number; }))
-      k.refuse("markers_m", fmt::format("marker {} is there twice; number them apart", number));
-    body.markers.push_back({.id = number, .position_m = p});
-  }
-  if (body.markers.size() < kMinMarkers || body.markers.size() > kMaxMarkers) {
-    k.refuse("markers_m", fmt::format("a body takes 4 to {} markers; 6 or more, not in a plane, "
-                                      "are advised",
-                                      kMaxMarkers));
-  }
-}
-
-void read_body(TrackingKeys& k, TrackingSetup& out) {
-  if (!has_room(k, out.bodies.size())) return;
-  MarkerBody body;
-  k.only({"name", "role", "markers_m", "tip_m"});
-  read_name(k, body.name);
-  read_role(k, out, body);
-  read_markers(k, body);
-  if (k.has("tip_m")) {
-    if (body.role != BodyRole::kTool)
-      k.refuse("tip_m", "only role = \"tool\" has tip_m; leave it out");
-    const std::vector<double> tip_m = k.numbers("tip_m", 3, kFarthestMarker_m);
-    body.tip_m = Eigen::Vector3d(tip_m[0], tip_m[1], tip_m[2]);
-  }
-  out.bodies.push_back(std::move(body));
-}
-
-void check_base(TrackingKeys& k, const TrackingSetup& out) {
-  const bool has_base =
-      std::ranges::any_of(out.bodies, [](const MarkerBody& body) { return !body.role; });
-  for (const TrackingCamera& camera : out.cameras) {
-    if (camera.pose || has_base) continue;
-    k.refuse("camera",
+/// After the bodies: a camera without a pose needs the base.
+void read_camera(Keys& k, TrackingSetup& out) {
+  TrackingCamera camera;
+  read_name(k, camera.name);
+  read_lens(k, camera);
+  camera.pose = read_pose(k, Need::kOptional);
+  if (std::ranges::find(out.cameras, camera.name, &TrackingCamera::name) != out.cameras.end())
+    k.refuse({"name"}, fmt::format("two cameras are called {}; rename one", camera.name));
+  const auto has_role = [](const MarkerBody& body) { return body.role.has_value(); };
+  if (!camera.pose && std::ranges::all_of(out.bodies, has_role)) {
+    k.refuse({"name"},
              fmt::format("camera {} has no position_m and rotation_wxyz; write them, or add a body "
                          "with role = \"base\"",
                          camera.name));
   }
+  out.cameras.push_back(std::move(camera));
 }
 
-void read_operator(TrackingKeys& k, TrackingSetup& out) {
-  k.only({"shoulder_m"});
-  const std::vector<double> p_m = k.numbers("shoulder_m", 3, kFarthestShoulder_m);
-  out.shoulder_m = Eigen::Vector3d(p_m[0], p_m[1], p_m[2]);
+void read_role(Keys& k, const TrackingSetup& out, MarkerBody& body) {
+  std::size_t role = kBase;
+  k.choice("role", kRoles, "what of the operator carries it", role);
+  // The base has no role of the operator: it is the tracker's own frame.
+  if (role != kBase) body.role = static_cast<BodyRole>(role);
+  for (const MarkerBody& other : out.bodies) {
+    if (other.name == body.name) k.refuse({"name"}, "two bodies have this name; rename one");
+    if (other.role == body.role) k.refuse({"role"}, "two bodies have this role; leave one out");
+  }
 }
 
-void read_registration(TrackingKeys& k, const std::string& path, TrackingSetup& out) {
-  k.section("registration", [&](TrackingKeys& section) {
-    section.only({"position_m", "rotation_wxyz"});
-    out.registration = section.pose();
-    out.registered_by = path;
-  });
+void read_markers(Keys& k, MarkerBody& body) {
+  std::vector<std::array<double, 4>> rows;
+  k.points("markers_m", {-1e9, 1e9}, "id and place, body's axes", rows);
+  for (const auto& [id, x_m, y_m, z_m] : rows) {
+    const Eigen::Vector3d p_m(x_m, y_m, z_m);
+    if (id < 0.0 || id != std::floor(id))
+      return k.refuse({"markers_m"}, "a marker's id must be a whole number from 0 to 1e9");
+    if (p_m.cwiseAbs().maxCoeff() > kFarthestMarker_m)
+      return k.refuse({"markers_m"}, "a marker is more than 10 m from its body; write metres");
+    const auto number = static_cast<std::uint32_t>(id);
+    if (std::ranges::find(body.markers, number, &BodyMarker::id) != body.markers.end())
+      k.refuse({"markers_m"}, fmt::format("marker {} is there twice; number them apart", number));
+    body.markers.push_back({.id = number, .position_m = p_m});
+  }
+  if (body.markers.size() < kMinMarkers || body.markers.size() > kMaxMarkers) {
+    k.refuse({"markers_m"}, fmt::format("a body takes 4 to {} markers; 6 or more, not in a plane, "
+                                        "are advised",
+                                        kMaxMarkers));
+  }
 }
 
-/// From the file beside the description, if there is one.
-std::optional<Error> read_registration_beside(TrackingSetup& out) {
-  const std::string path = registration_path(out.path);
-  std::error_code unreadable;
-  if (!fs::exists(path, unreadable)) return std::nullopt;
-  const Result<toml::table> file = parse_toml_file(path);
-  if (!file) return file.error();
-  std::optional<Error> error;
-  TrackingKeys keys(*file, path, error);
-  keys.only({"registration"});
-  read_registration(keys, path, out);
-  return error;
+void read_body(Keys& k, TrackingSetup& out) {
+  MarkerBody body;
+  read_name(k, body.name);
+  read_role(k, out, body);
+  read_markers(k, body);
+  body.tip_m = read_point(k, "tip_m", kFarthestMarker_m, "the point whose place the device knows",
+                          Need::kOptional);
+  if (body.tip_m && body.role != BodyRole::kTool)
+    k.refuse({"tip_m"}, "only role = \"tool\" has tip_m; leave it out");
+  out.bodies.push_back(std::move(body));
+}
+
+void read_registration(Keys& k, Need need, const std::string& path, TrackingSetup& out) {
+  k.section(
+      "registration", "tracker's frame to the device's",
+      [&](Keys& section) {
+        out.registration = read_pose(section, Need::kRequired).value_or(Pose{});
+        out.registered_by = path;
+      },
+      need);
+}
+
+std::optional<Error> read_description(const std::string& path, const Keys::Inside& inside) {
+  const auto text = model::io::read_file(
+      path, "give the path of a tracking description of at most 1 MB", kMaxFile_bytes);
+  if (!text) return text.error();
+  auto root = model::io::parse_toml(*text, path);
+  if (!root) return root.error();
+  const model::reader::SceneDocument document{.path = path, .root = std::move(*root), .hash = {}};
+  model::reader::SceneVisit visit(&document);
+  Keys::visit_root(visit, inside);
+  return visit.problem();
 }
 
 }  // namespace
 
-const char* name_of(BodyRole role) { return kRoleNames[static_cast<std::size_t>(role)]; }
+const char* name_of(BodyRole role) { return kRoles[static_cast<std::size_t>(role)].name.data(); }
 
 const MarkerBody* TrackingSetup::body_of(BodyRole role) const {
   const auto found = std::ranges::find(bodies, role, &MarkerBody::role);
@@ -209,25 +230,28 @@ std::string registration_path(const std::string& tracking_path) {
 }
 
 Result<TrackingSetup> load_tracking_setup(const std::string& path) {
-  const Result<toml::table> root = parse_toml_file(path);
-  if (!root) return root.error();
   TrackingSetup out;
   out.path = path;
-  std::optional<Error> error;
-  TrackingKeys k(*root, path, error);
-  k.only({"input", "camera", "body", "operator", "registration"});
-  k.section("input", [&](TrackingKeys& keys) { read_input(keys, out); });
-  k.sections("camera", [&](TrackingKeys& keys) { read_camera(keys, out); });
-  k.sections("body", [&](TrackingKeys& keys) { read_body(keys, out); });
-  check_base(k, out);
-  if (k.has("operator"))
-    k.section("operator", [&](TrackingKeys& keys) { read_operator(keys, out); });
-  // The description's own section goes first; a file beside it is not even opened then.
-  if (k.has("registration"))
-    read_registration(k, path, out);
-  else if (!error)
-    error = read_registration_beside(out);
+  const auto error = read_description(path, [&](Keys& k) {
+    k.section("input", "where observations come from", [&](Keys& in) { read_input(in, out); });
+    k.entries("body", {1, kMaxSections}, "markers", [&](Keys& in) { read_body(in, out); });
+    k.entries("camera", {1, kMaxSections}, "lens and place",
+              [&](Keys& in) { read_camera(in, out); });
+    const auto shoulder = [&](Keys& in) {
+      out.shoulder_m = read_point(in, "shoulder_m", kFarthestShoulder_m, "right, device's frame",
+                                  Need::kRequired);
+    };
+    k.section("operator", "where the figure stands", shoulder, Need::kOptional);
+    read_registration(k, Need::kOptional, path, out);
+  });
   if (error) return *error;
+  // The description's own section goes first; a file beside it is not even opened then.
+  const std::string beside = registration_path(path);
+  std::error_code unreadable;
+  if (!out.registered_by.empty() || !fs::exists(beside, unreadable)) return out;
+  const auto wrong = read_description(
+      beside, [&](Keys& k) { read_registration(k, Need::kRequired, beside, out); });
+  if (wrong) return *wrong;
   return out;
 }
 

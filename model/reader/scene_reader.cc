@@ -97,7 +97,20 @@ void Keys::per_arm(std::string_view key, Range each, std::string_view meaning,
   const std::string fallback =
       need == Need::kOptional ? fmt::format("[{:.5g}]", fmt::join(out, ", ")) : "";
   const toml::node* node = take(key, "[a, b, c], each " + range_text(each, key), meaning, fallback);
-  if (node) store(*node, key, as_per_arm(*node, each), out);
+  if (node) store(*node, key, as_numbers<3>(*node, each, "123"), out);
+}
+
+void Keys::quaternion(std::string_view key, std::string_view meaning, std::array<double, 4>& out,
+                      Need need) {
+  const std::string fallback = need == Need::kOptional ? "none" : "";
+  const toml::node* node = take(key, "[w, x, y, z]", meaning, fallback);
+  if (node) store(*node, key, as_numbers<4>(*node, {-1e6, 1e6}, "wxyz"), out);
+}
+
+void Keys::points(std::string_view key, Range each, std::string_view meaning,
+                  std::vector<std::array<double, 4>>& out) {
+  const toml::node* node = take(key, "[[number, x, y, z], ..]", meaning);
+  if (node) store(*node, key, as_rows(*node, each), out);
 }
 
 void Keys::choice(std::string_view key, std::span<const Choice> choices, std::string_view meaning,

@@ -87,6 +87,12 @@ class Keys {
               Need need = Need::kRequired);
   void per_arm(std::string_view key, Range each, std::string_view meaning,
                std::array<double, 3>& out, Need need = Need::kRequired);
+  /// A rotation: [w, x, y, z], of any length.
+  void quaternion(std::string_view key, std::string_view meaning, std::array<double, 4>& out,
+                  Need need = Need::kRequired);
+  /// A list of [number, x, y, z]: points with a number each.
+  void points(std::string_view key, Range each, std::string_view meaning,
+              std::vector<std::array<double, 4>>& out);
   /// `out` becomes the index of the choice. Many choices get a row each in the reference.
   void choice(std::string_view key, std::span<const Choice> choices, std::string_view meaning,
               std::size_t& out, Need need = Need::kRequired);

@@ -8,24 +8,6 @@
 #include "model/reader/scene_words.h"
 
 namespace tact::model::reader {
-namespace {
-
-/// `names`: one letter for each of the three.
-Result<std::array<double, 3>> as_three(const toml::node& node, Range each, std::string_view names) {
-  const toml::array* array = node.as_array();
-  if (!array) return Error{fmt::format("is {}, not three numbers", type_name(node))};
-  if (array->size() != 3) return Error{fmt::format("has {} elements, not three", array->size())};
-  std::array<double, 3> value{};
-  for (std::size_t i = 0; i < value.size(); ++i) {
-    const Result<double> given = as_number(*array->get(i), each);
-    if (!given) return Error{fmt::format("{} {}", names[i], given.error().sentence)};
-    value[i] = *given;
-  }
-  return value;
-}
-
-}  // namespace
-
 std::string_view type_name(const toml::node& node) {
   switch (node.type()) {
     case toml::node_type::table:
@@ -74,14 +56,41 @@ Result<std::size_t> as_count(const toml::node& node, CountRange range) {
   return static_cast<std::size_t>(*given);
 }
 
-Result<Vec3> as_vector(const toml::node& node, Range each) {
-  const Result<std::array<double, 3>> xyz = as_three(node, each, "xyz");
-  if (!xyz) return xyz.error();
-  return Vec3{(*xyz)[0], (*xyz)[1], (*xyz)[2]};
+template <std::size_t n>
+Result<std::array<double, n>> as_numbers(const toml::node& node, Range each,
+                                         const char (&names)[n + 1]) {
+  constexpr const char* kCount = n == 3 ? "three" : "four";
+  const toml::array* array = node.as_array();
+  if (!array) return Error{fmt::format("is {}, not {} numbers", type_name(node), kCount)};
+  if (array->size() != n)
+    return Error{fmt::format("has {} elements, not {}", array->size(), kCount)};
+  std::array<double, n> value{};
+  for (std::size_t i = 0; i < n; ++i) {
+    const Result<double> given = as_number(*array->get(i), each);
+    if (!given) return Error{fmt::format("{} {}", names[i], given.error().sentence)};
+    value[i] = *given;
+  }
+  return value;
+}
+template Result<std::array<double, 3>> as_numbers(const toml::node&, Range, const char (&)[4]);
+template Result<std::array<double, 4>> as_numbers(const toml::node&, Range, const char (&)[5]);
+
+Result<std::vector<std::array<double, 4>>> as_rows(const toml::node& node, Range each) {
+  const toml::array* array = node.as_array();
+  if (!array) return Error{fmt::format("is {}, not a list", type_name(node))};
+  std::vector<std::array<double, 4>> rows;
+  for (const toml::node& row : *array) {
+    const auto given = as_numbers<4>(row, each, "1234");
+    if (!given) return Error{fmt::format("entry {}: {}", rows.size(), given.error().sentence)};
+    rows.push_back(*given);
+  }
+  return rows;
 }
 
-Result<std::array<double, 3>> as_per_arm(const toml::node& node, Range each) {
-  return as_three(node, each, "123");
+Result<Vec3> as_vector(const toml::node& node, Range each) {
+  const Result<std::array<double, 3>> xyz = as_numbers<3>(node, each, "xyz");
+  if (!xyz) return xyz.error();
+  return Vec3{(*xyz)[0], (*xyz)[1], (*xyz)[2]};
 }
 
 Result<std::string> as_text(const toml::node& node) {

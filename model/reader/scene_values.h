@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "model/result.h"
 #include "model/types.h"
@@ -36,7 +37,12 @@ std::string_view type_name(const toml::node& node);
 Result<double> as_number(const toml::node& node, Range range);
 Result<std::size_t> as_count(const toml::node& node, CountRange range);
 Result<Vec3> as_vector(const toml::node& node, Range each);
-Result<std::array<double, 3>> as_per_arm(const toml::node& node, Range each);
+/// `names`: one letter for each number, which an error tells.
+template <std::size_t n>
+Result<std::array<double, n>> as_numbers(const toml::node& node, Range each,
+                                         const char (&names)[n + 1]);
+/// A list of [a, b, c, d].
+Result<std::vector<std::array<double, 4>>> as_rows(const toml::node& node, Range each);
 Result<std::string> as_text(const toml::node& node);
 Result<bool> as_flag(const toml::node& node);
 

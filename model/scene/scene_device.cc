@@ -138,12 +138,6 @@ void visit_can(reader::Keys& k, std::string_view kind, CanSettings& can) {
 }
 
 void visit_falcon(reader::Keys& k, FalconSettings& f) {
-  constexpr std::array kTransports{
-      reader::Choice{"usbfs", "the kernel's own requests, none allocated"},
-      reader::Choice{"libusb", "the library's transfers, in its thread"}};
-  auto transport = static_cast<std::size_t>(f.transport);
-  k.choice("transport", kTransports, "who carries the packets", transport, kOptional);
-  f.transport = static_cast<UsbTransport>(transport);
   k.text("bus_path", "which one, as 1-2.3; empty: the only one", f.bus_path, kOptional);
   k.text("firmware", "file of the firmware that you own; empty: it runs already", f.firmware_path,
          kOptional);

@@ -19,8 +19,6 @@ SHIPPED, TESTS = ("model", "hal", "firmware", "host", "tools"), ("tests",)
 LIMITS = {SHIPPED: 100, TESTS: 200}
 # Pairs that share more, the tokens of all such runs together, and why that is no function of its own.
 EXCUSED = {
-    ("hal/falcon_usb/libusb_pipe.h", "hal/falcon_usb/usbfs_pipe.h"):
-        (193, "declare the same interface, one by libusb, one by usbfs; each override is one line"),
     ("hal/gpio/libgpiod_1.cc", "hal/gpio/libgpiod_2.cc"):
         (252, "one of the two is built, for the libgpiod that is installed"),
     ("hal/moteus/moteus_delta.cc", "hal/odrive/odrive_delta.cc"):

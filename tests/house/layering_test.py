@@ -32,7 +32,7 @@ VOUCHES = {
         re.compile(r'ignored\s+"-Wfunction-effects"|-Wno-function-effects'),
         {"firmware/loop/clock.cc", "firmware/loop/ring.cc", "hal/monotonic.h",
          "hal/gpio/libgpiod_1.cc", "hal/gpio/libgpiod_2.cc", "hal/can/can_socket.cc",
-         "hal/falcon_usb/usbfs_port.cc", "hal/falcon_usb/libusb_pipe.cc",
+         "hal/falcon_usb/usbfs_port.cc",
          # broken devices and a fake kernel, which only tests have
          "tests/support/watched_loop.h", "tests/hal/falcon_usb/usbfs_bus.h"}),
     "hides a call from the real-time sanitizer": (

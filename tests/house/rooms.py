@@ -59,7 +59,7 @@ ROOMS = {
                      "firmware/watch", "firmware/telemetry", "firmware/black_box", "firmware/pc",
                      "firmware/console", "firmware/guardian", "firmware/admission"],
     "host/pose": [],
-    "host/tracking": ["model", "model/io", "host/pose"],
+    "host/tracking": ["model", "model/io", "model/reader", "host/pose"],
     "host/figure": ["host/pose", "host/tracking"],
     "host/record": ["model", "model/io", *OPERATOR, "firmware/telemetry"],
     "host/net": [],

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "hal/device_lock.h"
 
 tact::tests::FakeUsb* tact::tests::fake_usb = nullptr;
@@ -112,74 +114,5 @@ int LIBUSB_CALL libusb_bulk_transfer(libusb_device_handle*, unsigned char endpoi
                        falcon.pending.begin() + static_cast<std::ptrdiff_t>(size));
   *moved = static_cast<int>(size) + 2;
   return 0;
-}
-libusb_transfer* LIBUSB_CALL libusb_alloc_transfer(int) {
-  ++fake_usb->transfers;
-  return static_cast<libusb_transfer*>(std::calloc(1, sizeof(libusb_transfer)));
-}
-void LIBUSB_CALL libusb_free_transfer(libusb_transfer* transfer) {
-  if (transfer != nullptr) --fake_usb->transfers;
-  std::free(transfer);
-}
-int LIBUSB_CALL libusb_submit_transfer(libusb_transfer* transfer) {
-  const std::lock_guard lock(fake_usb->mutex);
-  if (fake_usb->submit_error != 0) return fake_usb->submit_error;
-  if (transfer->endpoint == tact::hal::falcon::kFalconEndpointIn) {
-    EXPECT_EQ(transfer->length, 64);
-    fake_usb->in.push_back(transfer);
-    return 0;
-  }
-  EXPECT_EQ(transfer->length, 16);
-  fake_usb->commands.emplace_back(transfer->buffer, transfer->buffer + transfer->length);
-  if (!fake_usb->keeps_out && fake_usb->out_stalls == 0)
-    fake_usb->taken.push_back(fake_usb->commands.back());
-  if (fake_usb->keeps_out)
-    fake_usb->out.push_back(transfer);
-  else if (fake_usb->out_stalls > 0)
-    fake_usb->complete(transfer, LIBUSB_TRANSFER_STALL);
-  else
-    fake_usb->complete(transfer, LIBUSB_TRANSFER_COMPLETED,
-                       tact::tests::Bytes(transfer->buffer, transfer->buffer + transfer->length));
-  return 0;
-}
-int LIBUSB_CALL libusb_clear_halt(libusb_device_handle*, unsigned char endpoint) {
-  const std::lock_guard lock(fake_usb->mutex);
-  fake_usb->cleared.push_back(endpoint);
-  if (endpoint == tact::hal::falcon::kFalconEndpointOut && fake_usb->out_stalls > 0)
-    --fake_usb->out_stalls;
-  return 0;
-}
-int LIBUSB_CALL libusb_cancel_transfer(libusb_transfer* transfer) {
-  const std::lock_guard lock(fake_usb->mutex);
-  for (auto* queue : {&fake_usb->in, &fake_usb->out}) {
-    const auto found = std::ranges::find(*queue, transfer);
-    if (found == queue->end()) continue;
-    queue->erase(found);
-    fake_usb->complete(transfer, LIBUSB_TRANSFER_CANCELLED);
-  }
-  return 0;
-}
-int LIBUSB_CALL libusb_handle_events_timeout_completed(libusb_context*, timeval*, int*) {
-  std::deque<libusb_transfer*> done;
-  {
-    const std::lock_guard lock(fake_usb->mutex);
-    ++fake_usb->event_calls;
-    done.swap(fake_usb->done);
-    char bytes[64];
-    if (!done.empty() && !fake_usb->hang_up)
-      static_cast<void>(::read(fake_usb->event_fd, bytes, done.size()));
-  }
-  for (libusb_transfer* transfer : done) transfer->callback(transfer);
-  return 0;
-}
-const libusb_pollfd** LIBUSB_CALL libusb_get_pollfds(libusb_context*) {
-  auto** list = new const libusb_pollfd*[2];
-  list[0] = new libusb_pollfd{.fd = fake_usb->event_fd, .events = 1};
-  list[1] = nullptr;
-  return list;
-}
-void LIBUSB_CALL libusb_free_pollfds(const libusb_pollfd** list) {
-  delete list[0];
-  delete[] list;
 }
 }  // extern "C"

@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // fake_libusb.h - libusb's functions with a script behind them, for this room's test program.
 //
-// A program that defines them takes these instead of the library's. Synchronous transfers meet the
-// Falcon of falcon_device.h; what asynchronous ones meet is told by the test.
+// A program that defines them takes these instead of the library's. Transfers meet the Falcon of
+// falcon_device.h.
 #pragma once
 
 #include <libusb-1.0/libusb.h>
-#include <unistd.h>
 
-#include <algorithm>
-#include <cstdlib>
-#include <deque>
-#include <mutex>
+#include <cstdint>
 #include <vector>
 
 #include "tests/support/falcon_device.h"
@@ -33,25 +29,6 @@ struct FakeUsb {
   std::vector<hal::falcon::FtdiRequest> controls;
   bool another_has_it = false;
   int contexts = 0, handles = 0, lists = 0, claims = 0, detach = -1;  // still held
-  // Asynchronous
-  std::mutex mutex;
-  std::deque<libusb_transfer*> in, out, done;
-  std::vector<Bytes> commands;
-  int submit_error = 0, event_calls = 0, transfers = 0;
-  bool hang_up = false, keeps_out = false;
-  int out_stalls = 0;  // so many clears until OUT carries again
-  std::vector<unsigned> cleared;
-  std::vector<Bytes> taken;           // by the device
-  int event_fd = -1, other_end = -1;  // a socket pair: what the library waits for
-
-  void complete(libusb_transfer* transfer, libusb_transfer_status status, const Bytes& bytes = {}) {
-    std::ranges::copy(bytes, transfer->buffer);
-    transfer->actual_length = static_cast<int>(bytes.size());
-    transfer->status = status;
-    done.push_back(transfer);
-    const char one = 1;
-    static_cast<void>(::write(other_end, &one, 1));
-  }
 };
 extern FakeUsb* fake_usb;  // of the test that runs
 

@@ -183,7 +183,7 @@ TEST_F(FalconUsbTest, TheSceneIsNamedInWhatAPersonReads) {
 }
 
 TEST_F(FalconUsbTest, UsbfsTakesOverOnlyWhenLibusbHasLetGo) {
-  model::FalconSettings settings;  // usbfs; the node of the fake does not exist
+  model::FalconSettings settings;  // the node of the fake does not exist
   const auto device = falcon_usb::open_falcon_device(settings);
   ASSERT_FALSE(device);
   EXPECT_NE(device.error().sentence.find("/dev/bus/usb/001/004"), std::string::npos);

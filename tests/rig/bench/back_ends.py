@@ -104,26 +104,17 @@ CIA402 = on_can("cia402", "can-cia402", drives("cia402"))
 MOTEUS = on_can("moteus", "can-moteus", drives("moteus", "--timeout-mode 0"))
 
 
-# The bus's own thread waits, reaps and submits; libusb's needs more for the same.
-USB_CALLS = {
-    "usbfs": {("tact-loop", "sys_ioctl"): 1, ("tact-usb", "sys_ioctl"): 3},
-    "libusb": {("tact-loop", "sys_write"): 1, ("tact-usb", "sys_read"): 1, ("tact-usb", "sys_poll"): 5,
-               ("tact-usb", "sys_ioctl"): 6},
-}
-
-
-def falcon(transport, boot="--running", setup=""):
-    """usbfs: the loop submits, the bus's thread reaps; libusb: the thread does both."""
-    return BackEnd(f"falcon-{transport}",
-                   settings=('device.kind="falcon"', f'device.falcon.transport="{transport}"', SLIDE),
+def falcon(boot="--running", setup=""):
+    """The loop submits, the bus's own thread reaps and submits again."""
+    return BackEnd("falcon", settings=('device.kind="falcon"', SLIDE),
                    setup=f"{setup}usb up\nstart_emulator tact-rig-falcon {boot} $EMULATOR\nusb raise",
                    programs=("tact-rig-falcon",),
-                   system_calls=SLEEP | USB_CALLS[transport])
+                   system_calls=SLEEP | {("tact-loop", "sys_ioctl"): 1, ("tact-usb", "sys_ioctl"): 3})
 
 
-FALCON_USBFS, FALCON_LIBUSB = falcon("usbfs"), falcon("libusb")
+FALCON = falcon()
 # In its boot ROM. It takes any image of this size; the digest is that of these bytes.
-FALCON_COLD = falcon("usbfs", boot="--image-bytes 8492", setup=(
+FALCON_COLD = falcon(boot="--image-bytes 8492", setup=(
     "head -c 8492 /dev/zero | tr '\\0' 'T' >/tmp/firmware.bin\n"
     "DEVICE+=(--set 'device.falcon.firmware=\"/tmp/firmware.bin\"' --set "
     "\"device.falcon.firmware_sha256='$(sha256sum </tmp/firmware.bin | cut -d' ' -f1)'\")\n"))

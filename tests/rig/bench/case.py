@@ -23,7 +23,7 @@ class BackEnd:
 
     @property
     def bus(self):
-        """Of drives on CAN "can", of another device its own name: each Falcon transport is a bus."""
+        """Of drives on CAN "can", of another device its own name: a Falcon is a bus of its own."""
         return "can" if any(setting.startswith('device.kind="can-') for setting in self.settings) else self.name
 
     @property

@@ -10,8 +10,7 @@ TOLD = {
     "odrive05": ("`can-odrive`, 0.5", "recvmmsg, sendmmsg"),
     "cia402": ("`can-cia402`", "recvmmsg, sendmmsg"),
     "moteus": ("`can-moteus`", "recvmmsg, sendmmsg"),
-    "falcon-usbfs": ("`falcon`, usbfs", "1 ioctl; its thread 3"),
-    "falcon-libusb": ("`falcon`, libusb", "1 write; its thread 12"),
+    "falcon": ("`falcon`", "1 ioctl; its thread 3"),
     "force-dimension": ("`force-dimension`, stub", "0; its thread the library's"),
     "phantom": ("`phantom`, stub", "0; its thread the library's"),
 }

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Safety lines on the kernel's simulated GPIO chip, beside the simulated delta."""
 from bench import checks, estop_times
-from bench.back_ends import (CIA402, CLUTCH, FALCON_USBFS, GRIP, MOTEUS, ODRIVE06, SIM_DELTA_LINES, with_lines,
+from bench.back_ends import (CIA402, CLUTCH, FALCON, GRIP, MOTEUS, ODRIVE06, SIM_DELTA_LINES, with_lines,
                              with_switches)
 from bench.case import Case
 from bench.faults import Latches, RidesThrough, attempt
@@ -94,6 +94,6 @@ CASES = [
     *(estop_at_any_phase(with_lines(back_end), pressing_s=1.1, seconds=1.3, bus_us=50.0,
                          emulator="--hand-tempo 2.5", long_only=True) for back_end in (CIA402, MOTEUS)),
     # Two microframes of the emulated bus lie between the write and the motors.
-    estop_at_any_phase(with_lines(FALCON_USBFS), pressing_s=1.3, seconds=1.5, bus_us=250.0, long_only=True,
+    estop_at_any_phase(with_lines(FALCON), pressing_s=1.3, seconds=1.5, bus_us=250.0, long_only=True,
                        emulator="--homing-ms 100 --hand-tempo 2.5"),
 ]

@@ -4,7 +4,7 @@ import dataclasses
 import math
 
 from bench import checks
-from bench.back_ends import FALCON_USBFS, ODRIVE06, SIM_DELTA
+from bench.back_ends import FALCON, ODRIVE06, SIM_DELTA
 from bench.case import Case
 from bench.faults import Latches, RidesThrough, attempt
 
@@ -64,7 +64,7 @@ class FeltOn:
 
 def on_hardware(back_end, name, sentence, harm, proofs):
     """The same while a device on a real bus is pressed."""
-    quick = "--homing-ms 100 --hand-tempo 2.5" if back_end is FALCON_USBFS else "--hand-tempo 2.5"
+    quick = "--homing-ms 100 --hand-tempo 2.5" if back_end is FALCON else "--hand-tempo 2.5"
     return Case(f"{back_end.name}-{name}", sentence, back_end,
                 f"control $SECONDS_OF_RUN\nsleep .9\n{harm}\nfinish",
                 (checks.hard_real_time, checks.no_late_tick, *proofs),
@@ -110,7 +110,7 @@ CASES = [
           "date -s '2001-01-01'; prove 'it was 2001' [ $(date +%Y) = 2001 ]",
           RidesThrough(), (*UNMOVED, checks.proved("it was 2031", "it was 2001"))),
     *(on_hardware(back_end, name, sentence, harm, proofs)
-      for back_end in (ODRIVE06, FALCON_USBFS)
+      for back_end in (ODRIVE06, FALCON)
       for name, sentence, harm, proofs in (
           ("hog-cpu", "ordinary load takes nothing from the loop", HOG, (checks.proved("the load ran"),)),
           ("memory-pressure", "memory that is short elsewhere is never short in the loop", PRESSURE, SHORT))),

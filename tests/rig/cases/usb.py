@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A Falcon on USB, by both transports, and the makers' libraries of the others as stubs."""
+"""A Falcon on USB, and the makers' libraries of the others as stubs."""
 from bench import checks
-from bench.back_ends import FALCON_COLD, FALCON_LIBUSB, FALCON_USBFS, FORCE_DIMENSION, PHANTOM
+from bench.back_ends import FALCON, FALCON_COLD, FORCE_DIMENSION, PHANTOM
 from bench.case import Case
 
 SOUND = (checks.hard_real_time, checks.no_fault, checks.no_late_tick, checks.touched)
@@ -27,12 +27,11 @@ def calls(back_end):
 
 
 CASES = [
-    alive(FALCON_USBFS, checks.pressed_by_hand),
-    alive(FALCON_LIBUSB, checks.pressed_by_hand),
+    alive(FALCON, checks.pressed_by_hand),
     alive(FORCE_DIMENSION),
     alive(PHANTOM, seeds=(1, 2, 3)),  # one seed may fall on another timer of the kernel: the middle counts
-    swept(FALCON_USBFS),
-    *(calls(back_end) for back_end in (FALCON_USBFS, FALCON_LIBUSB, FORCE_DIMENSION, PHANTOM)),
+    swept(FALCON),
+    *(calls(back_end) for back_end in (FALCON, FORCE_DIMENSION, PHANTOM)),
     Case("falcon-upload", "a Falcon without firmware gets its owner's file, and is homed", FALCON_COLD,
          "control $SECONDS_OF_RUN\nfinish", (checks.hard_real_time, checks.no_fault), seeds=(1, 1), seconds=2.5,
          variables={"EMULATOR": "--homing-ms 100 --hand-tempo 2.5"}),

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What goes wrong on USB, while tactd presses 10 mm deep, 0.9 s after homing; by both transports."""
+"""What goes wrong on USB, while tactd presses 10 mm deep, 0.9 s after homing."""
 from bench import checks
-from bench.back_ends import FALCON_LIBUSB, FALCON_USBFS
+from bench.back_ends import FALCON
 from bench.case import Case
 from bench.faults import Latches, RidesThrough, StoppedByGuardian, attempt
 
@@ -12,11 +12,11 @@ WATCH_IT_GO = ("for i in {1..200}; do [ -e /sys/bus/usb/devices/1-1 ] || break; 
                "[ -e /sys/bus/usb/devices/1-1 ] || echo $((${EPOCHREALTIME/./} * 1000 + clock_offset_ns))")
 
 
-def fault(back_end, kind, sentence, required, also=(), meanwhile="", long_only=False):
+def fault(back_end, kind, sentence, required, also=(), meanwhile=""):
     name = kind.partition("@")[0].replace(":", "-")
     return Case(f"{back_end.name}-{name}", sentence, back_end,
                 f"control $SECONDS_OF_RUN\n{meanwhile}\nsleep 1.5\n{attempt(required)}\nfinish", (*REAL_TIME, *also),
-                fault=required, seconds=2.1, long_only=long_only,
+                fault=required, seconds=2.1,
                 variables={"EMULATOR": f"{QUICK} --fault {kind}"})
 
 
@@ -61,30 +61,18 @@ def killed(back_end):
                 (), fault=StoppedByGuardian(), seconds=2.1, variables={"EMULATOR": QUICK})
 
 
-def in_both(kind, sentence, required):
-    """By usbfs in every run, by libusb with --long: what a packet says is judged by the same code."""
-    return (fault(FALCON_USBFS, kind, sentence, required),
-            fault(FALCON_LIBUSB, kind, sentence, required, long_only=True))
-
-
 CASES = [
-    held_loop(FALCON_USBFS),
-    held_loop(FALCON_LIBUSB),
-    stopped(FALCON_USBFS),
-    killed(FALCON_USBFS),
-    killed(FALCON_LIBUSB),
-    unplug(FALCON_USBFS),
-    unplug(FALCON_LIBUSB),
-    fault(FALCON_USBFS, f"stall@{AT}", "a stalled endpoint stops the force for good",
+    held_loop(FALCON),
+    stopped(FALCON),
+    killed(FALCON),
+    unplug(FALCON),
+    fault(FALCON, f"stall@{AT}", "a stalled endpoint stops the force for good",
           Latches("device failed", detect_ms=3, motors_ms=5)),
-    fault(FALCON_LIBUSB, f"stall@{AT}", "a stalled endpoint stops the force for good",
-          Latches("device failed", detect_ms=3, motors_ms=5)),
-    *in_both(f"short@{AT}", "a packet cut short is no sample", RidesThrough()),
-    *in_both(f"garbage@{AT}+60", "bytes that say nothing: faded, then a latched fault",
-             Latches("device garbled", detect_ms=24, faded_ms=13, motors_ms=15)),
-    *in_both(f"no-reply:1@{AT}", "an answer 1 ms late is held over", RidesThrough()),
-    *in_both(f"no-reply:3@{AT}", "an answer 3 ms late fades and comes back", RidesThrough(fades=True)),
-    fault(FALCON_USBFS, f"no-reply:30@{AT}", "an answer that stays out for 30 ms: a latched fault", lost()),
-    fault(FALCON_LIBUSB, f"no-reply:30@{AT}", "an answer that stays out for 30 ms: a latched fault", lost()),
-    *in_both(f"duplicate@{AT}", "an answer that comes twice is one sample", RidesThrough()),
+    fault(FALCON, f"short@{AT}", "a packet cut short is no sample", RidesThrough()),
+    fault(FALCON, f"garbage@{AT}+60", "bytes that say nothing: faded, then a latched fault",
+          Latches("device garbled", detect_ms=24, faded_ms=13, motors_ms=15)),
+    fault(FALCON, f"no-reply:1@{AT}", "an answer 1 ms late is held over", RidesThrough()),
+    fault(FALCON, f"no-reply:3@{AT}", "an answer 3 ms late fades and comes back", RidesThrough(fades=True)),
+    fault(FALCON, f"no-reply:30@{AT}", "an answer that stays out for 30 ms: a latched fault", lost()),
+    fault(FALCON, f"duplicate@{AT}", "an answer that comes twice is one sample", RidesThrough()),
 ]
