@@ -108,12 +108,11 @@ PcRow interrupt_row(const PcQuestion& q) {
                         : fmt::format("{} of {} come to core {}: {}{}", here, there, q.core, named,
                                       here > 4 ? ", ..." : "");
   const std::string others = other_cpus(q);
-  row.cure = others.empty()
-                 ? boot_parameters(q)
-                 : fmt::format(
-                       "{}, or until the next boot: for i in {}; do echo {} | sudo tee "
-                       "/proc/irq/$i/smp_affinity_list; done",
-                       kRtPackageCure, numbers, others);
+  row.cure = others.empty() ? boot_parameters(q)
+                            : fmt::format(
+                                  "{}, or until the next boot: for i in {}; do echo {} | sudo tee "
+                                  "/proc/irq/$i/smp_affinity_list; done",
+                                  kRtPackageCure, numbers, others);
   return row;
 }
 
