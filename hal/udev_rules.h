@@ -20,6 +20,6 @@ inline constexpr const char* kGpioRule =
 
 /// The cure of every missing permission, to follow the rule that is missing.
 inline constexpr const char* kRuleCure =
-    "sudo tools/deploy/install installs it; then sudo adduser $USER haptics, and log in again";
+    "sudo apt install ./tact_*.deb installs it; then sudo adduser $USER haptics, and log in again";
 
 }  // namespace tact::hal

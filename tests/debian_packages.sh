@@ -17,7 +17,7 @@ ls "$packages"/tact_*.deb >/dev/null || { echo "debian_packages.sh: run tools/pa
 if [ -n "$cache" ] && [ -e "$cache" ]; then
   tar xf "$cache" -C "$base"
 else
-  mmdebstrap --quiet --variant=apt --include=systemd,udev,man-db "$name" "$base" \
+  mmdebstrap --quiet --variant=apt --include=systemd,udev,man-db,bash-completion "$name" "$base" \
     "deb http://deb.debian.org/debian $name main" \
     "deb http://deb.debian.org/debian-security $name-security main"
   if [ -n "$cache" ]; then mkdir -p "$1" && tar cf "$cache" --one-file-system -C "$base" .; fi
@@ -58,10 +58,11 @@ inside 'for program in $(dpkg -L tact tact-view tact-tools tact-lab | grep ^/usr
   $program --version && man -w ${program##*/} >/dev/null; done'
 step "bash completes the options of every program"
 inside 'for program in $(dpkg -L tact tact-view tact-tools tact-lab | grep ^/usr/bin/); do
-  name=${program##*/} function=_$(tr - _ <<<${program##*/})
-  [ $name != tact-guardian ] && [ $name != tact-mcap ] || continue
-  bash -euc "source /usr/share/bash-completion/completions/$name
-    COMP_WORDS=($name --vers) COMP_CWORD=1; $function; [ \${COMPREPLY[*]} = --version ]"; done'
+  name=${program##*/}
+  [ $name != tact-guardian ] || continue
+  bash -c "source /usr/share/bash-completion/bash_completion; source /usr/share/bash-completion/completions/$name
+    COMP_LINE=\"$name --vers\" COMP_WORDS=($name --vers) COMP_CWORD=1; COMP_POINT=\${#COMP_LINE}
+    _longopt $name --vers $name; [ \"\${COMPREPLY[*]}\" = --version ]" || exit 1; done'
 step "the user tact runs a scene of /etc/tact and finds what belongs to it"
 inside 'id tact | grep -q haptics
 runuser -u tact -- tactd /etc/tact/liver.toml --check
@@ -82,15 +83,20 @@ tact-view --open /root/seen/r --export /root/frames.csv | grep -v " 0 frames"
 ! runuser -u tact-view -g haptics -- tactctl /etc/tact/liver.toml stop --folder /run/tact || exit 1
 ! runuser -u tact-view -g haptics -- test -w "$(echo /run/tact/control-*)" || exit 1
 tactctl /etc/tact/liver.toml status && tactctl /etc/tact/liver.toml stop && wait $tactd'
-step "tact-rt keeps a core for the loop, and tact-doctor --fix has no more to write"
+step "tact-rt keeps a core for the loop, and sets CPU speed and interrupts at every boot"
 inside 'grep "^quiet isolcpus=domain,managed_irq,3 nohz_full=3 rcu_nocbs=3 irqaffinity=0-2$" /boot/grub/grub.cfg
 systemctl is-enabled tact-rt
-mkdir -p /root/pc/proc /root/pc/sys/devices/system/cpu /root/pc/etc && cd /root/pc
-echo "#1 SMP PREEMPT_RT" >proc/version && echo quiet >proc/cmdline && echo 0-3 >sys/devices/system/cpu/online
-echo >sys/devices/system/cpu/isolated && mkdir -p proc/irq/36/eth0 && echo 0-3 >proc/irq/36/smp_affinity_list
-for of in etc/default/grub.d lib/systemd/system etc/security/limits.d; do mkdir -p $of && cp -L /$of/*tact* $of/; done
-tact-doctor --root /root/pc --fix --yes | tee /root/fixed
-[ "$(grep -c " is up to date\$" /root/fixed)" = 3 ] && grep "^nothing to write" /root/fixed'
+grep -q "^@haptics - rtprio 85$" /etc/security/limits.d/tact.conf'
+step "for the core of a file that comes first, too"
+inside 'echo TACT_CORE=1 >/etc/default/grub.d/50-core.cfg && update-grub && rm /etc/default/grub.d/50-core.cfg
+grep "^quiet isolcpus=domain,managed_irq,1 nohz_full=1 rcu_nocbs=1 irqaffinity=0,2-3$" /boot/grub/grub.cfg'
+step "a service follows its device, until it is disabled"
+inside 'mkdir /etc/systemd/system/tactd@liver.service.d
+sed "s/=sys-.*/=tact-falcon.device/" /usr/share/tact/pc/tactd-device.conf >/etc/systemd/system/tactd@liver.service.d/device.conf
+systemctl enable tactd@liver
+systemd-analyze verify --man=no tactd@liver.service 2>&1 | tee /root/verify && test ! -s /root/verify
+test -L /etc/systemd/system/tact-falcon.device.wants/tactd@liver.service
+systemctl disable tactd@liver && rm -r /etc/systemd/system/tactd@liver.service.d'
 step "the units are sound"
 inside 'systemd-analyze verify --man=no tactd@liver.service tact-view.service tact-rt.service 2>&1 | tee /root/verify
 test ! -s /root/verify'

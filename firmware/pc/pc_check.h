@@ -37,11 +37,6 @@ std::vector<PcRow> check_pc(const PcQuestion& question);
 /// The core that the rows speak of.
 int core_in_question(const PcQuestion& question);
 
-/// The other online CPUs, for commands: "0-2"; empty where there is none.
-std::string other_cpus(const PcQuestion& question);
-/// Of the kernel, so that the core is the loop's alone; empty where there is no other CPU.
-std::string isolation_parameters(const PcQuestion& question);
-
 /// The red ones in a line, for a program that starts; empty when none is red.
 std::string name_red_rows(const std::vector<PcRow>& rows);
 /// [{"name","verdict","found","why","cure"}]

@@ -21,14 +21,21 @@ std::vector<int> cpu_list(const PcFiles& files, const std::string& name) {
   return parse_cpu_list(files.line(fmt::format("{}/{}", kCpus, name)).value_or(""));
 }
 
-/// The cure of whatever only a boot can change.
+/// The other online CPUs, for commands: "0-2"; empty where there is none.
+std::string other_cpus(const PcQuestion& q) {
+  std::vector<int> cpus = cpu_list(q.files, "online");
+  cpus.erase(std::remove(cpus.begin(), cpus.end(), q.core), cpus.end());
+  return make_cpu_list(cpus);
+}
+
+/// The cure of what only a boot can change: the parameters are those of tools/deploy/rt.
 std::string boot_parameters(const PcQuestion& q) {
-  const std::string parameters = isolation_parameters(q);
-  if (parameters.empty()) return "a PC with two cores or more: one for the loop, one for all else";
+  const std::string others = other_cpus(q);
+  if (others.empty()) return "a PC with two cores or more: one for the loop, one for all else";
   return fmt::format(
-      "sudo tact-doctor --fix and boot, or: add {} to GRUB_CMDLINE_LINUX in /etc/default/grub, "
-      "sudo update-grub, boot",
-      parameters);
+      "{1} and boot, or: add isolcpus=domain,managed_irq,{0} nohz_full={0} rcu_nocbs={0} "
+      "irqaffinity={2} to GRUB_CMDLINE_LINUX in /etc/default/grub, sudo update-grub, boot",
+      q.core, kRtPackageCure, others);
 }
 
 /// RT-6: a core of its own.
@@ -101,12 +108,11 @@ PcRow interrupt_row(const PcQuestion& q) {
                         : fmt::format("{} of {} come to core {}: {}{}", here, there, q.core, named,
                                       here > 4 ? ", ..." : "");
   const std::string others = other_cpus(q);
-  row.cure = others.empty()
-                 ? boot_parameters(q)
-                 : fmt::format(
-                       "for i in {}; do echo {} | sudo tee /proc/irq/$i/smp_affinity_list; "
-                       "done",
-                       numbers, others);
+  row.cure = others.empty() ? boot_parameters(q)
+                            : fmt::format(
+                                  "{}, or until the next boot: for i in {}; do echo {} | sudo tee "
+                                  "/proc/irq/$i/smp_affinity_list; done",
+                                  kRtPackageCure, numbers, others);
   return row;
 }
 
@@ -121,9 +127,9 @@ PcRow governor_row(const PcQuestion& q) {
                                : Verdict::kRed,
           .found = governor.value_or("the kernel does not set the CPU's speed"),
           .why = "a CPU that slows down between ticks begins each at its lowest speed",
-          .cure = governor ? fmt::format("echo performance | sudo tee {}/cpu*/cpufreq/"
-                                         "scaling_governor",
-                                         kCpus)
+          .cure = governor ? fmt::format("{}, or until the next boot: echo performance | sudo tee "
+                                         "{}/cpu*/cpufreq/scaling_governor",
+                                         kRtPackageCure, kCpus)
                            : "set the highest speed in the firmware (BIOS) or on the host"};
 }
 
@@ -172,19 +178,6 @@ PcRow sibling_row(const PcQuestion& q) {
 }
 
 }  // namespace
-
-std::string other_cpus(const PcQuestion& q) {
-  std::vector<int> cpus = cpu_list(q.files, "online");
-  cpus.erase(std::remove(cpus.begin(), cpus.end(), q.core), cpus.end());
-  return make_cpu_list(cpus);
-}
-
-std::string isolation_parameters(const PcQuestion& q) {
-  const std::string others = other_cpus(q);
-  if (others.empty()) return {};
-  return fmt::format("isolcpus=domain,managed_irq,{0} nohz_full={0} rcu_nocbs={0} irqaffinity={1}",
-                     q.core, others);
-}
 
 void check_core(const PcQuestion& q, std::vector<PcRow>& rows) {
   rows.push_back(isolation_row(q));

@@ -13,13 +13,18 @@ struct Reason {
   const char* why;
   const char* cure;
 };
+/// Kernel parameters, CPU speed and interrupts: what the package tact-rt sets.
+inline constexpr const char* kRtPackageCure = "sudo apt install ./tact_*.deb ./tact-rt_*.deb";
+/// The group's rights: what the package tact sets.
+inline constexpr const char* kGroupCure =
+    "sudo apt install ./tact_*.deb, sudo adduser $USER haptics, then log in again";
+
 inline constexpr Reason kKernelReason{"any driver can delay a tick by milliseconds",
                                       "sudo apt install linux-image-rt-amd64, then boot it"};
 inline constexpr Reason kMemoryReason{"a page fault can stop the loop for milliseconds",
-                                      "sudo tools/deploy/install, then log in again"};
-inline constexpr Reason kPriorityReason{"other programs can hold up the loop",
-                                        "sudo tools/deploy/install, then log in again"};
+                                      kGroupCure};
+inline constexpr Reason kPriorityReason{"other programs can hold up the loop", kGroupCure};
 inline constexpr Reason kPowerReason{"the CPU may sleep deeply between ticks and wake late",
-                                     "sudo tools/deploy/install, then log in again"};
+                                     kGroupCure};
 
 }  // namespace tact::firmware::pc

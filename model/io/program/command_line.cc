@@ -8,8 +8,6 @@
 #include <string>
 #include <string_view>
 
-#include "model/io/program/completion.h"
-
 namespace tact::model::io {
 
 namespace {
@@ -42,10 +40,6 @@ std::optional<int> parse_command_line(CLI::App& options, const char* program, in
     fmt::print(stderr, "{0}: argument {1} is empty: is a variable not set? See {0} --help\n",
                program, empty - argv);
     return 2;
-  }
-  if (argc == 2 && std::string_view(argv[1]) == "--bash-completion") {  // for packagers
-    fmt::print("{}", bash_completion(options, program));
-    return 0;
   }
   try {
     options.parse(argc, argv);

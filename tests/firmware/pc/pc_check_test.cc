@@ -147,8 +147,8 @@ TEST_F(PcCheck, ThrottlingIsRedWhenTheLoopCouldMeetIt) {
 
 TEST_F(PcCheck, LimitsAreRedUnlessACapabilityFreesFromThem) {
   put("/proc/self/limits", limits("84", "8388608", "200000"));
-  expect_red("real-time priority", "up to 84 of 85", "tools/deploy/install");
-  expect_red("locked memory", "8388608 bytes", "tools/deploy/install");
+  expect_red("real-time priority", "up to 84 of 85", "sudo adduser $USER haptics");
+  expect_red("locked memory", "8388608 bytes", "sudo adduser $USER haptics");
   expect_red("real-time time limit", "200000 us", "ulimit -R unlimited");
   put("/proc/self/status", "CapEff:\t0000000000800000\n");  // CAP_SYS_NICE alone
   EXPECT_EQ(row("real-time priority").verdict, Verdict::kGreen);
@@ -164,7 +164,8 @@ TEST_F(PcCheck, TheCoreOfTheLoopIsTheLastIsolatedOneUnlessAnotherIsAskedFor) {
   EXPECT_EQ(row("isolated core", 1).verdict, Verdict::kRed);
   put(cpus + "isolated", "\n");
   expect_red("isolated core", "core 3 is not isolated",
-             "isolcpus=domain,managed_irq,3 nohz_full=3 rcu_nocbs=3 irqaffinity=0-2");
+             "tact-rt_*.deb and boot, or: add isolcpus=domain,managed_irq,3 nohz_full=3 "
+             "rcu_nocbs=3 irqaffinity=0-2");
   put(cpus + "nohz_full", "1\n");
   expect_red("timer tick", "core 3", "nohz_full=3");
 }
@@ -184,7 +185,7 @@ TEST_F(PcCheck, ACpuThatSlowsDownSleepsDeeplyOrIsSharedIsRed) {
   put(cpus + "cpu3/cpuidle/state0/latency", "2\n");
   EXPECT_EQ(row("sleep states").verdict, Verdict::kGreen) << "a state this shallow does not count";
   put(cpus + "cpu3/cpuidle/state1/latency", "900\n");
-  expect_red("sleep states", "wakes in 900 us", "tools/deploy/install");
+  expect_red("sleep states", "wakes in 900 us", "sudo adduser $USER haptics");
   put(cpus + "cpu3/cpuidle/state1/disable", "1\n");
   EXPECT_EQ(row("sleep states").verdict, Verdict::kGreen);
   put(cpus + "cpu3/topology/thread_siblings_list", "1,3\n");

@@ -168,7 +168,7 @@ TEST_F(ListDevices, AMissingPermissionPrintsTheRuleOfThatDevice) {
   usb("1-2", "0403", "cb48");
   EXPECT_TRUE(has(only().lacking, kFalconRule));
   EXPECT_TRUE(has(only().lacking, "/dev/bus/usb/001/007"));
-  EXPECT_TRUE(has(only().cure, "deploy/install"));
+  EXPECT_TRUE(has(only().cure, "adduser $USER haptics"));
   usb("1-2", "1451", "0402");
   EXPECT_TRUE(has(only().lacking, kForceDimensionRule));
 }

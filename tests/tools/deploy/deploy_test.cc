@@ -8,22 +8,27 @@
 #include <fstream>
 #include <sstream>
 #include <string>
-#include <tuple>
+#include <utility>
 
 #include "hal/udev_rules.h"
 #include "tests/support/files.h"
+#include "tests/support/program.h"
 
 namespace {
 
 namespace fs = std::filesystem;
 using tact::tests::content;
+using tact::tests::run_command;
 
 const std::string kDeploy = TACT_SOURCE_DIR "/tools/deploy/";
 
-/// Status of the install script; what it said goes to `said`.
-int install(const std::string& arguments, const std::string& said) {
-  const int ended = std::system((kDeploy + "install " + arguments + " >" + said + " 2>&1").c_str());
-  return WEXITSTATUS(ended);
+/// What update-grub reads from the drop-in of tact-rt on a PC with these CPUs, after `before`.
+std::string kernel_line(const std::string& online, const std::string& before = "quiet",
+                        const std::string& core = "") {
+  return run_command("env GRUB_CMDLINE_LINUX='" + before + "' TACT_ONLINE=" + online +
+                     " TACT_CORE=" + core + " sh -euc '. " + kDeploy +
+                     "rt/tact-rt.cfg; echo \"$GRUB_CMDLINE_LINUX\"'")
+      .output;
 }
 
 class Deploy : public testing::Test {
@@ -134,145 +139,97 @@ TEST_F(Deploy, AUnitIsExposedToNoMoreThanTwoOfTen) {
   }
 }
 
-TEST_F(Deploy, InstallCopiesEveryFileOnce) {
-  EXPECT_EQ(install("--can --into " + folder + "/root", said), 0) << content(said);
-  for (const char* path :
-       {"/etc/udev/rules.d/60-tact.rules", "/etc/security/limits.d/haptics.conf",
-        "/etc/systemd/network/80-can0.network", "/etc/systemd/network/80-can0.link"})
-    EXPECT_EQ(content(folder + "/root" + path),
-              content(kDeploy + fs::path(path).filename().string()))
-        << path;
-  EXPECT_EQ(install("--can --into " + folder + "/root", said), 0);
-  EXPECT_EQ(content(said).find("install -D"), std::string::npos) << "the second time nothing";
+// The parameters that tact-doctor advises (firmware_pc_test): the last core is the loop's.
+TEST_F(Deploy, TheKernelKeepsTheLastCoreOfEachPc) {
+  EXPECT_EQ(kernel_line("0-3"),
+            "quiet isolcpus=domain,managed_irq,3 nohz_full=3 rcu_nocbs=3 irqaffinity=0-2\n");
+  EXPECT_EQ(kernel_line("0-1"),
+            "quiet isolcpus=domain,managed_irq,1 nohz_full=1 rcu_nocbs=1 irqaffinity=0\n");
+  EXPECT_EQ(kernel_line("0-3", "quiet", "2"),
+            "quiet isolcpus=domain,managed_irq,2 nohz_full=2 rcu_nocbs=2 irqaffinity=0-1,3-3\n");
+  EXPECT_EQ(kernel_line("0"), "quiet\n") << "one core is nobody's alone";
+  EXPECT_EQ(kernel_line("0-3", "isolcpus=1"), "isolcpus=1\n") << "another file has decided";
 }
 
-TEST_F(Deploy, ADryRunOnlyTalks) {
-  EXPECT_EQ(install("--dry-run --into " + folder + "/root", said), 0);
-  EXPECT_NE(content(said).find("60-tact.rules"), std::string::npos);
-  EXPECT_FALSE(fs::exists(folder + "/root"));
-}
-
-class DeployService : public Deploy {
- protected:
-  /// Installs for a scene of this device; what it wrote, as far as it is asked for.
-  void install_for(const std::string& device, int status = 0) {
-    fs::create_directories(root + "/etc/tact");
-    std::ofstream(root + "/etc/tact/liver.toml") << "[contact]\nkind = \"none\"\n[device]\n"
-                                                 << device;
-    EXPECT_EQ(install("--service liver --into " + root, said), status) << content(said);
-  }
-  std::string drop_in() const {
-    return content(root + "/etc/systemd/system/tactd@liver.service.d/device.conf");
-  }
-  std::string rules() const { return content(root + "/etc/udev/rules.d/61-tactd-liver.rules"); }
-  std::string root = folder + "/root";
-};
-
-TEST_F(DeployService, WaitsForTheCanInterfaceOfItsSceneAndGoesWithIt) {
-  install_for("kind = \"can-moteus\"  # three of them\n[device.can]\ninterface = \"can-left\"\n");
-  const std::string unit = R"(sys-subsystem-net-devices-can\x2dleft.device)";
-  EXPECT_EQ(drop_in(), "[Unit]\nBindsTo=" + unit + "\nAfter=" + unit + "\n");
-  EXPECT_EQ(rules(),
-            "SUBSYSTEM==\"net\", KERNEL==\"can-left\", TAG+=\"systemd\", "
-            "ENV{SYSTEMD_WANTS}+=\"tactd@liver.service\"\n");
-  install_for("kind = \"can-odrive\"\n");
-  EXPECT_NE(rules().find("KERNEL==\"can0\""), std::string::npos) << "as the scene without the key";
-}
-
-TEST_F(DeployService, ReadsBothQuotesAndRefusesALineThatItCannotRead) {
-  install_for("kind = 'can-moteus'  # \"three\"\n[ device.can ]\ninterface = 'can1'\n");
-  EXPECT_NE(rules().find("KERNEL==\"can1\""), std::string::npos) << rules();
-  for (const char* line : {"[device.can]\ninterface = can2", "[device.can]\ninterface = \"\"",
-                           "\ncan.interface = 'can2'", "\ncan = {interface = \"can2\"}"}) {
-    install_for("kind = \"can-moteus\"\n" + std::string(line) + "\n", 2);
-    EXPECT_NE(content(said).find("liver.toml:6: this line cannot be read here; write interface = "
-                                 "\"...\" below a line [device.can]"),
-              std::string::npos)
-        << content(said);
-  }
-  EXPECT_NE(rules().find("KERNEL==\"can1\""), std::string::npos) << "nothing was written";
-}
-
-TEST_F(DeployService, TakesEffectForWhatIsPluggedInAlready) {
-  for (const auto& [device, there] :
-       {std::pair{"kind = \\\"falcon\\\"", "--subsystem-match=usb"},
-        std::pair{"kind = \\\"can-odrive\\\"", "--subsystem-match=net --sysname-match=can0"}}) {
-    if (std::system("unshare -rm mount -t tmpfs none /etc 2>/dev/null") != 0)
-      GTEST_SKIP() << "no user namespaces, so no /etc of its own";
-    const std::string command =
-        "unshare -rm env -u SUDO_USER bash -c 'AWK=$(readlink -f $(command -v awk)) "
-        "&& mount -t tmpfs none /etc && mkdir /etc/tact /etc/alternatives && "
-        "ln -s $AWK /etc/alternatives/awk "
-        "&& printf \"[device]\n" +
-        std::string(device) + "\n\" >/etc/tact/liver.toml && " + kDeploy +
-        "install --service liver --dry-run' >" + said + " 2>&1";
-    EXPECT_EQ(std::system(command.c_str()), 0) << content(said);
-    EXPECT_NE(content(said).find("  udevadm control --reload\n  udevadm trigger " +
-                                 std::string(there) + "\n"),
-              std::string::npos)
-        << content(said);
-  }
-}
-
-TEST_F(DeployService, IsStartedByItsUsbDevice) {
-  const auto ids_of = [](const std::string& rule) {
-    const auto from = rule.find("ATTR{idVendor}");
-    return rule.substr(from, rule.find(", GROUP") - from);
+// Its commands on a small PC of files: the paths of /proc and /sys are the only change.
+TEST_F(Deploy, TheUnitSetsTheGovernorAndMovesTheInterrupts) {
+  const std::string cpus = folder + "/sys/devices/system/cpu/";
+  const auto put = [](const std::string& path, const std::string& text) {
+    fs::create_directories(fs::path(path).parent_path());
+    std::ofstream(path) << text;
   };
-  for (const auto& [kind, rule, unit] :
-       {std::tuple{"falcon", tact::hal::kFalconRule, "tact-falcon.device"},
-        std::tuple{"force-dimension", tact::hal::kForceDimensionRule,
-                   "tact-forcedimension.device"}}) {
-    install_for("kind = \"" + std::string(kind) + "\"\n");
-    EXPECT_NE(rules().find(ids_of(rule)), std::string::npos) << rules();
-    EXPECT_NE(rules().find("ENV{SYSTEMD_WANTS}+=\"tactd@liver.service\""), std::string::npos);
-    EXPECT_NE(drop_in().find("BindsTo=" + std::string(unit)), std::string::npos) << drop_in();
-    EXPECT_NE(drop_in().find("After=" + std::string(unit)), std::string::npos);
-    std::string path = unit;  // the alias is the path of that unit
-    path = "/" + path.replace(path.find('-'), 1, "/").substr(0, path.find(".device"));
-    EXPECT_NE(rules().find("ENV{SYSTEMD_ALIAS}+=\"" + path + "\""), std::string::npos) << rules();
+  std::istringstream lines(content(kDeploy + "rt/tact-rt.service"));
+  std::string script;
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with("ExecStart=")) script += line.substr(10) + "\n";
+  for (const auto& [from, to] : {std::pair<std::string, std::string>{"$$", "$"},
+                                 {"/sys/devices", folder + "/sys/devices"},
+                                 {"/proc/irq", folder + "/proc/irq"}})
+    for (std::size_t at = 0; (at = script.find(from, at)) != std::string::npos; at += to.size())
+      script.replace(at, from.size(), to);
+  put(folder + "/script", script);
+  for (const char* core : {"cpu0", "cpu1", "cpu2"}) fs::create_directories(cpus + core);
+  put(cpus + "cpu3/cpufreq/scaling_governor", "powersave\n");
+  put(cpus + "online", "0-3\n");
+  const std::string affinity = folder + "/proc/irq/36/smp_affinity_list";
+  put(affinity, "0-3\n");
+  for (const auto& [isolated, core, others] :
+       {std::tuple{"\n", "", "0,1,2\n"}, {"1\n", "", "0,2,3\n"}, {"1\n", "0", "1,2,3\n"}}) {
+    put(cpus + "isolated", isolated);
+    const auto ended =
+        run_command("TACT_CORE=" + std::string(core) + " sh -eu " + folder + "/script");
+    EXPECT_EQ(ended.status, 0) << ended.output;
+    EXPECT_EQ(content(affinity), others);
   }
+  EXPECT_EQ(content(cpus + "cpu3/cpufreq/scaling_governor"), "performance\n");
 }
 
-TEST_F(DeployService, APhantomOnFireWireIsNotWaitedFor) {
-  install_for("kind = \"phantom\"\n");
-  EXPECT_NE(rules().find("ATTR{idVendor}==\"2988\""), std::string::npos);
-  EXPECT_EQ(drop_in(), "");
+// tactd-device.conf by systemctl itself, in a folder.
+TEST_F(Deploy, AServiceThatFollowsItsDeviceIsWantedByItAlone) {
+  if (run_command("command -v systemctl").status != 0) GTEST_SKIP() << "no systemd";
+  const std::string units = folder + "/etc/systemd/system/";
+  const std::string wants = units + "tact-falcon.device.wants/tactd@liver.service";
+  fs::create_directories(units + "tactd@liver.service.d");
+  fs::copy(kDeploy + "tactd@.service", units);
+  const std::string text = content(kDeploy + "tactd-device.conf");
+  for (const char* line : {"BindsTo=", "After=", "WantedBy="})
+    EXPECT_NE(text.find("\n" + std::string(line) + "sys-subsystem-net-devices-can0.device\n"),
+              std::string::npos)
+        << line;
+  ASSERT_EQ(run_command("sed 's/=sys-.*/=tact-falcon.device/' " + kDeploy + "tactd-device.conf >" +
+                        units + "tactd@liver.service.d/device.conf")
+                .status,
+            0);
+  const auto systemctl = [this](const std::string& word) {
+    return run_command("systemctl --root=" + folder + " " + word + " tactd@liver");
+  };
+  const auto enabled = systemctl("enable");
+  EXPECT_EQ(enabled.status, 0) << enabled.output;
+  EXPECT_TRUE(fs::is_symlink(wants)) << enabled.output;
+  EXPECT_FALSE(fs::exists(units + "multi-user.target.wants")) << "it would wait for it at boot";
+  EXPECT_EQ(systemctl("disable").status, 0);
+  EXPECT_FALSE(fs::is_symlink(wants));
 }
 
-TEST_F(DeployService, WhatIsWrittenNeverArms) {
-  for (const char* kind : {"can-odrive", "falcon", "force-dimension", "phantom"}) {
-    install_for("kind = \"" + std::string(kind) + "\"\n");
-    for (const std::string& text : {drop_in(), rules()}) {
-      EXPECT_EQ(text.find("arm"), std::string::npos) << text;
-      EXPECT_EQ(text.find("Exec"), std::string::npos) << text;
-      EXPECT_EQ(text.find("RUN"), std::string::npos) << text;
-    }
+// "/tact/falcon" of a rule is tact-falcon.device; each is named in the drop-in that a person edits.
+TEST_F(Deploy, EveryUsbDeviceCanBeFollowed) {
+  std::istringstream rules(content(kDeploy + "60-tact.rules"));
+  std::string followed;
+  for (std::string line; std::getline(rules, line);) {
+    const auto alias = line.find("ENV{SYSTEMD_ALIAS}+=\"/tact/");
+    if (alias == std::string::npos) continue;
+    EXPECT_NE(line.find("TAG+=\"systemd\""), std::string::npos) << line;
+    EXPECT_NE(line.find("ENV{DEVTYPE}==\"usb_device\""), std::string::npos) << line;
+    const std::string name = line.substr(alias + 27, line.rfind('"') - alias - 27);
+    EXPECT_NE(content(kDeploy + "tactd-device.conf").find("tact-" + name + ".device"),
+              std::string::npos)
+        << name;
+    const auto ids = line.find("ATTR{idVendor}");
+    followed += line.substr(ids, line.find(", TAG") - ids) + "\n";
   }
-}
-
-TEST_F(DeployService, NeedsASceneThatNamesItsDevice) {
-  install_for("kind = \"sim-delta\"\n");
-  EXPECT_NE(content(said).find("nothing to wait for"), std::string::npos);
-  EXPECT_EQ(drop_in() + rules(), "");
-  install_for("", 2);
-  EXPECT_NE(content(said).find("needs a line kind"), std::string::npos);
-  EXPECT_EQ(install("--service ../liver --into " + root, said), 2);
-  EXPECT_EQ(install("--service kidney --into " + root, said), 2);
-  EXPECT_NE(content(said).find("there is no scene"), std::string::npos);
-}
-
-TEST_F(Deploy, AnUnknownOptionIsBadUsage) {
-  EXPECT_EQ(install("--froce", said), 2);
-  EXPECT_NE(content(said).find("--help"), std::string::npos);
-  EXPECT_EQ(install("--user", said), 2);
-}
-
-TEST_F(Deploy, AnEmptyFolderOrNameIsNotThisMachine) {
-  for (const char* option : {"--into", "--user"}) {
-    EXPECT_EQ(install(std::string("--dry-run ") + option + " ''", said), 2);
-    EXPECT_NE(content(said).find(std::string(option) + " needs a value"), std::string::npos);
-  }
+  EXPECT_EQ(followed,
+            "ATTR{idVendor}==\"0403\", ATTR{idProduct}==\"cb48\"\nATTR{idVendor}==\"1451\"\n"
+            "ATTR{idVendor}==\"2988\"\nATTR{idVendor}==\"0301\", ATTR{idProduct}==\"2988\"\n");
 }
 
 }  // namespace

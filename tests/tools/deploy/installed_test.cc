@@ -85,7 +85,7 @@ TEST_F(Installed, TheFilesOfAPCLieWhereSystemdLooks) {
   install("tact");
   for (const char* path : {"lib/udev/rules.d/60-tact.rules", "lib/sysusers.d/tact.conf",
                            "lib/systemd/system/tactd@.service", "share/tact/pc/80-can0.network",
-                           "share/tact/pc/haptics.conf", "share/tact/pc/install"})
+                           "share/tact/pc/haptics.conf", "share/tact/pc/tactd-device.conf"})
     EXPECT_TRUE(fs::exists(prefix_ + "/" + path)) << path;
 }
 

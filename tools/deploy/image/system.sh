@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # system.sh - sourced by tools/image: the files of the PC's root, by mmdebstrap and the packages.
-# shellcheck shell=bash disable=SC2154  # own, uuid, device are of tools/image
+# shellcheck shell=bash disable=SC2154  # uuid, device are of tools/image
 
 # No recommended packages: linux-image-rt-amd64 of tact-rt is named here.
 IMAGE_DEBIAN=(systemd systemd-sysv udev dbus linux-image-rt-amd64 initramfs-tools zstd e2fsprogs
@@ -22,8 +22,20 @@ make_system() {
     "$suite" "$pc" "deb http://deb.debian.org/debian $suite main" \
     "deb http://deb.debian.org/debian $suite-updates main" \
     "deb http://deb.debian.org/debian-security $suite-security main"
-  cp "$own/grub" "$pc/etc/default/grub"
-  cp "$own/image.cfg" "$pc/etc/default/grub.d/"
+  put /etc/default/grub <<'EOT'
+# Screen and first serial port. Drop-ins add to it; then update-grub.
+GRUB_DEFAULT=0
+GRUB_TIMEOUT=1
+GRUB_DISTRIBUTOR=tact
+GRUB_CMDLINE_LINUX_DEFAULT="quiet"
+GRUB_CMDLINE_LINUX="console=ttyS0,115200 console=tty0"
+GRUB_DISABLE_OS_PROBER=true
+EOT
+  put /etc/default/grub.d/image.cfg <<'EOT'
+# The image does not know its PC, so it keeps core 1 for the loop: every PC with two cores has it.
+# Remove this file, update-grub and boot: then it is the last core.
+TACT_ONLINE=0-1
+EOT
   mkdir "$pc/root/tact"
   cp "$@" "$pc/root/tact/"
   cp /etc/resolv.conf "$work/resolv.conf"
@@ -41,16 +53,44 @@ inside() {
       PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin sh -euc "$1"' "$pc" "$1" "${2:-}"
 }
 
+# put PATH: what comes on standard input, a file of the PC
+put() { install -D -m 644 /dev/stdin "$pc$1"; }
+
 # settle FOLDER: what the packages leave to the PC's owner
 settle() {
   local pc=$1
   echo haptics-pc >"$pc/etc/hostname"
   printf '127.0.0.1 localhost\n127.0.1.1 haptics-pc\n' >"$pc/etc/hosts"
   : >"$pc/etc/machine-id"  # the first boot makes one
-  install -D -m 644 "$own/80-wired.network" "$pc/etc/systemd/network/80-wired.network"
-  install -D -m 644 "$own/journal.conf" "$pc/etc/systemd/journald.conf.d/tact.conf"
-  install -D -m 644 "$own/resolved.conf" "$pc/etc/systemd/resolved.conf.d/tact.conf"
-  install -D -m 644 "$own/root.conf" "$pc/etc/repart.d/50-root.conf"
+  put /etc/systemd/network/80-wired.network <<'EOT'
+# Any wired port that gets an address is taken; nothing waits for it.
+[Match]
+Type=ether
+
+[Network]
+DHCP=yes
+
+[Link]
+RequiredForOnline=no
+EOT
+  put /etc/systemd/journald.conf.d/tact.conf <<'EOT'
+# What tactd has said outlives a power cut.
+[Journal]
+Storage=persistent
+SystemMaxUse=500M
+SyncIntervalSec=10s
+EOT
+  put /etc/systemd/resolved.conf.d/tact.conf <<'EOT'
+# No port is open: names come from the DNS server alone.
+[Resolve]
+LLMNR=no
+MulticastDNS=no
+EOT
+  put /etc/repart.d/50-root.conf <<'EOT'
+# The root partition takes the whole disk at the first boot (systemd-repart).
+[Partition]
+Type=root-x86-64
+EOT
   inside 'useradd --create-home --shell /bin/bash --groups sudo,haptics lab
     passwd --quiet --delete lab && passwd --quiet --expire lab
     systemctl enable systemd-networkd tactd@liver'
