@@ -15,11 +15,11 @@ namespace {
 using Cholesky = Eigen::SimplicialLLT<StiffnessMatrix, Eigen::Lower,
                                       Eigen::MetisOrdering<StiffnessMatrix::StorageIndex>>;
 
-/// L x = f, then L' x = f, for `Width` loads side by side: x[row * Width + load].
-template <int Width>
+/// L x = f, then L' x = f, for all loads side by side: x[row * kLoadsAtOnce + load].
 void solve_factored(const StiffnessMatrix& l, double* x) {
-  using Loads = Eigen::Array<double, Width, 1>;
-  const auto at = [x](std::int64_t row) { return Eigen::Map<Loads>(x + row * Width); };
+  constexpr int kWidth = kLoadsAtOnce;
+  using Loads = Eigen::Array<double, kWidth, 1>;
+  const auto at = [x](std::int64_t row) { return Eigen::Map<Loads>(x + row * kWidth); };
   // Own loops over L: Eigen would read it anew for each
   // load, and it is what does not fit into a cache.
   const std::int32_t* start = l.outerIndexPtr();
@@ -59,24 +59,24 @@ struct LinearSolver::Factor {
   std::vector<std::int32_t> position;  // of each unknown in L
   std::vector<double> work;
 
-  // Where component i of the node stands in `work`, in loads; only for free nodes.
+  // Where component i of the node begins in `work`; only for free nodes.
   std::size_t place(std::uint32_t node, std::size_t i) const {
-    return static_cast<std::size_t>(
-        position[static_cast<std::size_t>(free.first_unknown[node]) + i]);
+    const auto unknown = static_cast<std::size_t>(free.first_unknown[node]) + i;
+    return static_cast<std::size_t>(position[unknown]) * kLoadsAtOnce;
   }
   bool is_fixed(std::uint32_t node) const { return free.first_unknown[node] == FreeNodes::kFixed; }
-  void add(std::span<const NodeLoad> load, std::size_t width, std::size_t column) {
+  void add(std::span<const NodeLoad> load, std::size_t column) {
     for (const NodeLoad& one : load) {
       if (is_fixed(one.node)) continue;
-      work[place(one.node, 0) * width + column] += one.force_N.x;
-      work[place(one.node, 1) * width + column] += one.force_N.y;
-      work[place(one.node, 2) * width + column] += one.force_N.z;
+      work[place(one.node, 0) + column] += one.force_N.x;
+      work[place(one.node, 1) + column] += one.force_N.y;
+      work[place(one.node, 2) + column] += one.force_N.z;
     }
   }
-  Vec3 displacement_m(std::uint32_t node, std::size_t width, std::size_t column) const {
+  Vec3 displacement_m(std::uint32_t node, std::size_t column) const {
     if (is_fixed(node)) return {};
-    return {work[place(node, 0) * width + column], work[place(node, 1) * width + column],
-            work[place(node, 2) * width + column]};
+    return {work[place(node, 0) + column], work[place(node, 1) + column],
+            work[place(node, 2) + column]};
   }
 };
 
@@ -85,36 +85,18 @@ LinearSolver::LinearSolver(LinearSolver&&) noexcept = default;
 LinearSolver& LinearSolver::operator=(LinearSolver&&) noexcept = default;
 LinearSolver::~LinearSolver() = default;
 
-std::size_t LinearSolver::nodes() const { return factor_->free.first_unknown.size(); }
-std::size_t LinearSolver::unknowns() const { return factor_->position.size(); }
-std::size_t LinearSolver::factor_entries() const {
-  return static_cast<std::size_t>(factor_->lower.nonZeros());
-}
-std::size_t LinearSolver::memory_bytes() const {
-  return factor_entries() * (sizeof(double) + sizeof(std::int32_t));
-}
-
-void LinearSolver::solve(std::span<const NodeLoad> load, std::span<Vec3> displacement_m) {
-  Factor& f = *factor_;
-  f.work.assign(unknowns(), 0.0);
-  f.add(load, 1, 0);
-  solve_factored<1>(f.lower, f.work.data());
-  for (std::uint32_t node = 0; node < displacement_m.size(); ++node)
-    displacement_m[node] = f.displacement_m(node, 1, 0);
-}
-
 void LinearSolver::solve(std::span<const std::vector<NodeLoad>> loads,
                          std::span<const std::uint32_t> wanted,
                          std::span<std::vector<Vec3>> displacement_m) {
   Factor& f = *factor_;
   // All columns, those without a load too: the width is fixed, so that the compiler can unroll it.
-  f.work.assign(unknowns() * kLoadsAtOnce, 0.0);
-  for (std::size_t c = 0; c < loads.size(); ++c) f.add(loads[c], kLoadsAtOnce, c);
-  solve_factored<kLoadsAtOnce>(f.lower, f.work.data());
+  f.work.assign(f.position.size() * kLoadsAtOnce, 0.0);
+  for (std::size_t c = 0; c < loads.size(); ++c) f.add(loads[c], c);
+  solve_factored(f.lower, f.work.data());
   for (std::size_t c = 0; c < loads.size(); ++c) {
     displacement_m[c].resize(wanted.size());
     for (std::size_t i = 0; i < wanted.size(); ++i)
-      displacement_m[c][i] = f.displacement_m(wanted[i], kLoadsAtOnce, c);
+      displacement_m[c][i] = f.displacement_m(wanted[i], c);
   }
 }
 

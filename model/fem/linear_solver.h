@@ -31,14 +31,8 @@ class LinearSolver {
   LinearSolver& operator=(LinearSolver&&) noexcept;
   ~LinearSolver();
 
-  std::size_t nodes() const;
-  std::size_t unknowns() const;
-  std::size_t factor_entries() const;  // of L
-  std::size_t memory_bytes() const;    // of L
-
-  /// One load: displacement of every node, m. Forces on fixed nodes do nothing.
-  void solve(std::span<const NodeLoad> load, std::span<Vec3> displacement_m);
-  /// At most kLoadsAtOnce loads: displacement_m[load] has one entry per node of `wanted`.
+  /// At most kLoadsAtOnce loads: displacement_m[load] has one entry per node of `wanted`. Forces on
+  /// fixed nodes do nothing.
   void solve(std::span<const std::vector<NodeLoad>> loads, std::span<const std::uint32_t> wanted,
              std::span<std::vector<Vec3>> displacement_m);
 

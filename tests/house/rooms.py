@@ -75,7 +75,7 @@ TOOLS = {
     "condense": ["program", "ground_truth", "mesh"],
     "reference": ["program", "ground_truth", "mesh"],
     "fit": ["program", "report", "ground_truth"],
-    "chart": ["program", "report", "condense", "ground_truth", "mesh"],
+    "chart": ["program", "report", "ground_truth"],
     "plan": ["program", "report", "chart"],
     "new_scene": ["program", "mesh", "ground_truth", "condense"],
     **dict.fromkeys(["figures", "stability"], ["program", "report", "printed"]),
@@ -96,8 +96,7 @@ PARTS = {
     "tools/chart": {
         "subject": [],
         "measure": ["subject"],
-        "peers": ["subject", "measure"],
-        "compare": ["subject", "measure", "peers"],
+        "compare": ["subject", "measure"],
         "report": ["compare"],
     },
     "tools/jitter": {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tact-chart: speed against accuracy of every law of a scene, and of other ways to do the same.
+// tact-chart: speed against accuracy of every law of a scene, beside other ways to do the same.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -27,9 +27,9 @@ using tact::model::scene::Scene;
 struct Options {
   program::SceneArguments scene;
   program::SweepArguments sweep;
-  std::string out, reference, tool_reference, accuracy;
+  std::string out, reference, tool_reference, accuracy, peers;
   ChartOptions chart;
-  bool no_peers = false, json = false;
+  bool json = false;
 };
 
 void add_options(CLI::App& app, Options& o) {
@@ -45,18 +45,23 @@ void add_options(CLI::App& app, Options& o) {
                  "with it alone: also this file, SCENE.accuracy, which tactd --check tells")
       ->needs("--tool-reference")
       ->excludes("--reference");
-  app.add_option("--laws", o.chart.wish.laws, "only these laws and peers")
+  app.add_option("--laws", o.chart.wish.laws, "only these laws")
       ->delimiter(',')
       ->check(CLI::IsMember(all_families()));
-  app.add_flag("--no-peers", o.no_peers, "laws of tact alone");
-  o.sweep.add_to(app, "row", "fewer sizes, no peers, fewer ticks");
+  o.sweep.add_to(app, "row", "fewer sizes, fewer ticks");
+  app.add_option(
+         "--peers", o.peers,
+         "show these rows of a chart.json, measured before, beside the laws; the liver's, in "
+         "the sources: tools/results/peers.json")
+      ->needs("--reference")
+      ->excludes("--shard");
   app.add_flag("--json", o.json, "print the table as JSON");
 }
 
-/// Of all that was given, in this order.
-std::string hash_of_references(const Options& o) {
+/// Of all that were given, in this order.
+std::string hash_of_files(std::initializer_list<std::string> paths) {
   tact::model::reader::TextHash hash;
-  for (const std::string& path : {o.reference, o.tool_reference}) {
+  for (const std::string& path : paths) {
     if (path.empty()) continue;
     const auto text = tact::model::io::read_file(path);
     // A file that cannot be read is told by whoever needs it, with its name.
@@ -67,7 +72,7 @@ std::string hash_of_references(const Options& o) {
 
 Provenance provenance_of(const Scene& scene, const Options& o) {
   return {.scene_hash = scene.hash,
-          .reference_hash = hash_of_references(o),
+          .reference_hash = hash_of_files({o.reference, o.tool_reference}),
           .revision = tact::firmware::pc::read_environment({}).git_revision,
           .machine = tact::model::scene::machine_name()};
 }
@@ -134,7 +139,7 @@ Result<report::Table> table_of(const Options& o, const Scene& scene,
   if (!rows) return rows.error();
   report::Table table = empty_chart(all, o.chart.shard);
   const auto failed = [](const ChartRow& row) { return !row.failure.empty(); };
-  // One sentence instead of a table of failures; a shard may be all peers that are missing here.
+  // One sentence instead of a table of failures.
   if (std::all_of(rows->begin(), rows->end(), failed) && o.chart.shard.is_whole())
     return Error{rows->front().failure};
   for (const ChartRow& row : *rows) table.add(table_row(row, provenance));
@@ -169,12 +174,20 @@ int make_chart(const program::Program& program, const Options& o) {
   const auto reference = ground_truth::read_reference(o.reference);
   if (!reference) return program.fail(reference.error());
   Provenance provenance = provenance_of(*scene, o);
-  const auto table = table_of(o, *scene, *reference, provenance);
+  const auto add_peers = [&o](const report::Table& laws) -> Result<report::Table> {
+    if (o.peers.empty()) return laws;
+    return with_peers(laws, o.peers, hash_of_files({o.reference}));
+  };
+  // Before the work, which a file that does not fit would make vain.
+  if (const auto peers = add_peers(empty_chart(0, {})); !peers) return program.fail(peers.error());
+  auto table = table_of(o, *scene, *reference, provenance);
   if (!table) return program.fail(table.error());
   if (!o.sweep.merge.empty()) {  // the rows know better where they come from
     provenance.machine = machines_of(*table);
     provenance.revision = table->word(table->rows()[0], "revision");
   }
+  table = add_peers(*table);
+  if (!table) return program.fail(table.error());
   const bool is_whole = o.chart.shard.is_whole();
   auto files = write_chart(*table, is_whole, program.command(), provenance, o.out);
   if (!files) return program.fail(files.error());
@@ -195,19 +208,18 @@ int main(int argc, char** argv) {
   program::Program program(
       "tact-chart",
       "Measure every law of the scene in several sizes: force and shape error against\n"
-      "the reference, time and memory of a tick; and, on the same mesh, finite elements\n"
-      "solved every tick, a whole mesh of springs, and Bullet's soft body.",
+      "the reference, time and memory of a tick. --peers shows beside them what was measured\n"
+      "before: finite elements solved every tick, a mesh of springs, Bullet's soft body.",
       "Errors are ratios of the peak force and of the depth, times us, memory bytes. A\n"
       "reference is linear elastic, so relaxation is off for the errors and on for the\n"
-      "times, and compliance.large_strain is off. The peer fem needs gmsh, the pictures\n"
-      "gnuplot. It fails a check when a peer is ahead of tact's front.");
+      "times, and compliance.large_strain is off. The pictures need gnuplot. It fails a\n"
+      "check when a peer is ahead of tact's front.");
   Options o;
   add_options(program.options(), o);
   if (const auto status = program.parse(argc, argv)) return *status;
   if (const auto error = o.sweep.prepare(o.out)) return program.fail(*error);
   o.chart.shard = o.sweep.shard;
   o.chart.wish.quick = o.sweep.quick;
-  o.chart.wish.peers = !o.no_peers && !o.sweep.quick;
   if (o.sweep.quick) o.chart.timing = {.ticks = 5000, .rounds = 2, .limit_s = 1.0};
   if (o.reference.empty() && o.tool_reference.empty())
     return program.fail(Error{"no reference given; --reference or --tool-reference is needed"});

@@ -52,8 +52,6 @@ Result<std::vector<Candidate>> measure(const Options& o, const Scene& scene) {
     options.tool_reference = &*whole_tool;
   }
   options.label = "tact-plan";
-  // tactd has no peers to choose.
-  options.wish.peers = false;
   // Chosen: minutes, not hours; no instructions, as a plan is chosen by time.
   options.timing = {.ticks = 20000, .rounds = 2, .limit_s = 2.0, .instructions = false};
   const auto rows = measure_chart(scene, *reference, options);

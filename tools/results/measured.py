@@ -82,7 +82,7 @@ LAW_SIZES = {"compliance": "17 curves", "hex_sheet": "15 rings", "disc_stack": "
 
 def chart():
     """RMS error of one sphere over all places of the reference."""
-    command = ["build/tact-chart", LIVER, "--reference", LIVER_REFERENCE, "--no-peers"]
+    command = ["build/tact-chart", LIVER, "--reference", LIVER_REFERENCE]
     values = {}
     for row in json_in_file(*command, option="--out", name="chart.json")["rows"]:
         if row["size"] == LAW_SIZES.get(row["family"]):
@@ -122,22 +122,16 @@ def stability():
 
 
 def tracking():
-    """Errors of poses and joint updates; the times are bench's."""
-    pose = ["build/tact-pose-bench", "--json"]
-    figure = ["build/tact-figure-bench", "model/scenes/maintenance.toml", "--json"]
-    poses, played = (json.loads(told_by(*command, status=(0, 1))) for command in (pose, figure))
-    values = {"one_camera": poses["errors"], "two_cameras": poses["joint_errors"]}
-    for start in ("shoulder_first", "full_chain"):
-        values[start] = {key: played[start][key] for key in ("joint_updates", "sweeps")}
-        values[start]["worst_error_mm"] = played[start]["worst_error_m"] * 1e3
-    values["updates_ratio"] = played["updates_ratio"]
-    values["reach"] = {
-        motion: {"alone_missed": told["formula_alone"]["unreached_frames"],
-                 "alone_worst_mm": told["formula_alone"]["worst_error_m"] * 1e3,
-                 "sweeps": told["with_ccd"]["sweeps"],
-                 "worst_mm": told["with_ccd"]["worst_error_m"] * 1e3}
-        for motion, told in played["reach"].items()}
-    return f"{' '.join(pose)}; {' '.join(figure)}", values
+    """Errors of poses and joint updates, by benchmark; the times are bench's."""
+    command = ["build/tact-tracking-bench", "model/scenes/maintenance.toml", "--benchmark_format=json"]
+    values = {}
+    for row in json.loads(told_by(*command, "--benchmark_filter=errors|scene|far|turned"))["benchmarks"]:
+        told = values[row["name"].split("/")[0]] = {}
+        for name in (name for name in row if name.endswith("_mm") or name in ("joint_updates", "sweeps", "missed")):
+            part, _, at = name.rpartition(".")
+            (told.setdefault(part, {}) if part else told)[at] = row[name] if row[name] % 1 else int(row[name])
+    values["updates_ratio"] = values["scene_full_chain"]["joint_updates"] / values["scene_shoulder_first"]["joint_updates"]
+    return " ".join(command), values
 
 
 def coupling():

@@ -92,14 +92,17 @@ TEST(Condensation, IsTheSolutionOfItsOwnLoads) {
   const auto patch = hertz_weights(organ.body, skin, v, 0.02);
   const std::array<Vec3, 3> axis{organ.surface.vertex_normal[v], {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}};
   std::array<std::array<double, 3>, 3> c{};
-  std::vector<Vec3> u_m(organ.body.node_m.size());
-  for (std::size_t q = 0; q < 3; ++q) {
-    std::vector<NodeLoad> load;
-    for (const NodeWeight& w : patch) load.push_back({w.node, w.weight * axis[q]});
-    solver->solve(load, u_m);
+  std::vector<std::uint32_t> nodes;
+  for (const NodeWeight& w : patch) nodes.push_back(w.node);
+  std::vector<std::vector<NodeLoad>> loads(3);
+  std::vector<std::vector<Vec3>> u_m(3);
+  for (std::size_t q = 0; q < 3; ++q)
+    for (const NodeWeight& w : patch) loads[q].push_back({w.node, w.weight * axis[q]});
+  solver->solve(loads, nodes, u_m);
+  for (std::size_t q = 0; q < 3; ++q)
     for (std::size_t p = 0; p < 3; ++p)
-      for (const NodeWeight& w : patch) c[p][q] += w.weight * dot(axis[p], u_m[w.node]);
-  }
+      for (std::size_t i = 0; i < patch.size(); ++i)
+        c[p][q] += patch[i].weight * dot(axis[p], u_m[q][i]);
   const double scale = c[0][0];
   const double r = c[0][0] - hertz_normal_m_per_N({1.0, 0.45}, 0.02);
   EXPECT_NEAR(static_cast<double>(map->regular_times_E_per_m[v]), r, 1e-6 * scale);

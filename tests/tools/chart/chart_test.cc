@@ -7,7 +7,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <random>
 #include <sstream>
 
@@ -82,7 +81,7 @@ report::Table chart_of(const model::scene::Scene& scene,
 }
 
 ChartOptions quick() {
-  return {.wish = {.laws = {}, .quick = true, .peers = false}, .shard = {}, .timing = kShort};
+  return {.wish = {.laws = {}, .quick = true}, .shard = {}, .timing = kShort};
 }
 
 TEST(Errors, MatchPenAndPaper) {
@@ -241,11 +240,12 @@ TEST(Chart, ShardsMergeToTheSameBytes) {
 TEST(Chart, SaysWhenAPeerIsAhead) {
   const auto row = [](bool peer, double tick_us, double error) {
     ChartRow r;
-    if (peer) r.variant.peer = PeerKind::kFem;
     r.variant.sizes.law = LawKind::kRhombus;
     r.timing.median_us = tick_us;
     r.errors.force_rms_ratio = error;
-    return table_row(r, {"s", "t", "r", "m"});
+    report::Row out = table_row(r, {"s", "t", "r", "m"});
+    if (peer) out[empty_chart(0, {}).column("kind")] = "peer";
+    return out;
   };
   report::Table table = empty_chart(4, {});
   table.add(row(false, 1.0, 0.1));
@@ -260,28 +260,6 @@ TEST(Chart, SaysWhenAPeerIsAhead) {
   for (const auto& [tick_us, error] : {std::pair{1.0, 0.4}, {1.09, 0.3}, {1.18, 0.2}, {1.28, 0.1}})
     slope.add(row(false, tick_us, error));
   EXPECT_EQ(front_rows(slope), (std::vector<std::size_t>{1, 3}));
-}
-
-TEST(Chart, IsReadBackAsItWasWritten) {
-  const std::string folder = scratch_folder("chart_json");
-  const Provenance provenance{"scene", "truth", "r1", "here, now"};
-  report::Table table = empty_chart(1, {});
-  ChartRow row;
-  row.variant.sizes = {
-      .law = LawKind::kDiscStack, .layers = 7, .disc_form = model::indent::DiscForm::kLinear};
-  row.errors.force_rms_ratio = 0.125;
-  table.add(table_row(row, provenance));
-  ASSERT_TRUE(write_chart(table, true, "tact-chart x", provenance, folder));
-  const auto read = read_chart(folder + "/chart.json");
-  ASSERT_TRUE(read) << read.error().sentence;
-  EXPECT_EQ(read->to_csv(), table.to_csv());
-  std::ifstream csv(folder + "/chart.csv");
-  std::string head;
-  std::getline(csv, head);
-  EXPECT_EQ(head, "# command: tact-chart x");
-  std::ofstream(folder + "/bad.json") << R"({"format": "tact-chart", "version": 3, "rows": [{}]})";
-  EXPECT_FALSE(read_chart(folder + "/bad.json"));
-  EXPECT_FALSE(read_chart(folder + "/none.json"));
 }
 
 TEST(Chart, RefusesAReferenceOfAnotherMeshOrTip) {

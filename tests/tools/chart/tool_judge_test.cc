@@ -136,7 +136,7 @@ TEST(Chart, JudgesEverySizeByTheWholeToolWhereItIsKnown) {
   one_sphere.sites[0].cases = {
       {.depth_m = 0.001, .force_N = 1.25 * k * 0.001, .profile_m = {0.001, 0.0}}};
   ToolReference whole_tool = linear_truth(scene, 0.5 * k);
-  ChartOptions options{.wish = {.laws = {}, .quick = true, .peers = false},
+  ChartOptions options{.wish = {.laws = {}, .quick = true},
                        .shard = {},
                        .timing = kShort,
                        .tool_reference = &whole_tool};

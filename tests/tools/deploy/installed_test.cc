@@ -103,17 +103,16 @@ TEST_F(Installed, AMeshIsJudgedByTheToolsAndRepairedWithTheLab) {
   EXPECT_EQ(run(mesh + " --smooth").status, 0);
 }
 
-/// Targets of a build that finds neither the peers nor the solvers.
+/// Targets of a build that finds no solver.
 TEST_F(Installed, TheLightToolsNeedNoSolver) {
-  const Outcome configured = run_command(
-      "cmake -S " TACT_SOURCE_DIR " -B " + prefix_ +
-      "/build -G Ninja -DTACT_LAB=OFF -DBUILD_TESTING=OFF -DCMAKE_DISABLE_FIND_PACKAGE_Bullet=ON "
-      "-DCMAKE_DISABLE_FIND_PACKAGE_benchmark=ON");
+  const Outcome configured = run_command("cmake -S " TACT_SOURCE_DIR " -B " + prefix_ +
+                                         "/build -G Ninja -DTACT_LAB=OFF -DBUILD_TESTING=OFF "
+                                         "-DCMAKE_DISABLE_FIND_PACKAGE_benchmark=ON");
   ASSERT_EQ(configured.status, 0) << configured.output;
   const std::string steps = run_command("cat " + prefix_ + "/build/build.ninja").output;
   for (const char* tool : {"doctor", "jitter", "limits", "mesh", "verify", "calibrate"})
     EXPECT_NE(steps.find("build tact-" + std::string(tool) + ":"), std::string::npos) << tool;
-  for (const char* absent : {"metis", "Bullet", "build tact-chart:", "build tact-reference:"})
+  for (const char* absent : {"metis", "build tact-chart:", "build tact-reference:"})
     EXPECT_EQ(steps.find(absent), std::string::npos) << absent;
 }
 
@@ -122,8 +121,7 @@ TEST_F(Installed, TheLightToolsAskForNoSolverAndNoOtherCompiler) {
       run_command("bash -c '. " TACT_SOURCE_DIR
                   "/tools/packages.sh; echo ${BUILD_PACKAGES[@]} ${LIGHT_TOOL_PACKAGES[@]}'");
   EXPECT_NE(asked.output.find("libfmt-dev"), std::string::npos) << asked.output;
-  for (const char* absent :
-       {"gmsh", "calculix", "metis", "bullet", "clang", "qemu", "nodejs", "vtk"})
+  for (const char* absent : {"gmsh", "calculix", "metis", "clang", "qemu", "nodejs", "vtk"})
     EXPECT_EQ(asked.output.find(absent), std::string::npos) << absent;
   EXPECT_NE(run_command(TACT_SOURCE_DIR "/tools/run --help").output.find("--tools"),
             std::string::npos);

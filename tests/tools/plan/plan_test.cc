@@ -134,14 +134,18 @@ TEST(Plan, GoesByTheWholeToolWhereTheChartHasIt) {
 TEST(Plan, ReadsTactsRowsOfAChart) {
   report::Table table = chart::empty_chart(3, {});
   const chart::Provenance here{"0123456789abcdef", "truth", "r1", model::scene::machine_name()};
-  chart::ChartRow law, peer, failed;
+  chart::ChartRow law, failed;
   law.variant.sizes = {
       .law = LawKind::kDiscStack, .layers = 7, .disc_form = model::indent::DiscForm::kLinear};
   law.errors.force_rms_ratio = 0.125;
-  peer.variant.peer = chart::PeerKind::kFem;
   failed.variant.sizes.law = LawKind::kRhombus;
   failed.failure = "no meaning";
-  for (const chart::ChartRow& row : {law, peer, failed}) table.add(table_row(row, here));
+  report::Row peer = table_row(law, here);
+  peer[table.column("kind")] = "peer";
+  peer[table.column("machine")] = "another";
+  table.add(table_row(law, here));
+  table.add(std::move(peer));
+  table.add(table_row(failed, here));
   const auto candidates = candidates_of(table);
   ASSERT_EQ(candidates.size(), 1U);
   EXPECT_EQ(candidates[0].sizes.law, LawKind::kDiscStack);

@@ -28,7 +28,7 @@ REFERENCES = ROOT / "tests/data/reference"
 BOX = ("--set elastic.youngs_modulus_Pa=5000 elastic.poisson_ratio=0.45 elastic.fixed_min_m=[-1,-1,-1] "
        "elastic.fixed_max_m=[1,1,-0.0199] --mesh-size-m 0.03")
 KINDS = ("status", "frame", "figure")  # of /live
-FEW = "--quick --no-peers --no-pictures --laws"
+FEW = "--quick --no-pictures --laws"
 VECTORS = ROOT / "tests/data/vectors"
 # format: the programs that write it, with arguments; {t} is a folder that goes in the end
 COMMANDS = {
@@ -48,9 +48,6 @@ COMMANDS = {
     "tact-sweep": [f"tact-sweep {ROOT}/tests/data/scenes/plain.toml --depth-m 0.002 --limit-N-per-m 1 --no-pictures "
                    "--out {t}/sweep --json"],
     "tact-doctor": ["tact-doctor --json"],
-    "tact-figure-bench": [f"tact-figure-bench {SCENES}/maintenance.toml --seconds 0.5 --json"],
-    "tact-arm-bench": ["tact-arm-bench --json"],
-    "tact-pose-bench": ["tact-pose-bench --views 20 --json"],
     "tact-track-send": ["tact-track-send {t}/looks.jsonl --port 39999 --speed 100 --json"],
     "tact-mcap": ["tact-mcap {t}/run.tactlog {t}/run.mcap --json"],
     "tact-condense": [f"tact-condense {ROOT}/tests/data/scenes/plain.toml {BOX} --out {{t}}/map --json"],

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "tools/chart/peers/chart_peers.h"
 #include "tools/ground_truth/reference_fits.h"
 #include "tools/program/run_program.h"
 
@@ -19,21 +18,10 @@ using model::scene::Scene;
 
 constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
-struct Made {
-  ChartRow row;
-  std::unique_ptr<Subject> subject;  // what is timed
-};
-
 std::string without_commas(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](char c) { return c == ',' || c == '"' || c == '\n'; }, ';');
   return text;
-}
-
-Result<std::unique_ptr<Subject>> make_subject(const Scene& scene, const Variant& variant,
-                                              const std::vector<ProbeCase>& cases) {
-  if (variant.is_peer()) return make_peer({scene, cases}, variant);
-  return make_law_subject(scene, variant.sizes);
 }
 
 Scene sized(const Scene& scene, const Variant& variant) {
@@ -42,38 +30,29 @@ Scene sized(const Scene& scene, const Variant& variant) {
   return own;
 }
 
-/// Judged without relaxation and at small strain, as the reference is linear elastic; timed with
-/// the scene's relaxation.
-Made make_and_judge(const Scene& scene, const Scene& elastic, const Variant& variant,
-                    const std::vector<ProbeCase>& cases, double pitch_m,
-                    const ground_truth::ToolReference* tool_reference) {
-  Made made{.row = {.variant = variant}, .subject = nullptr};
-  auto subject = make_subject(elastic, variant, cases);
+/// Judged without relaxation and at small strain, as the reference is linear elastic; the memory is
+/// that with the scene's relaxation.
+ChartRow judge_errors_of(const Scene& scene, const Scene& elastic, const Variant& variant,
+                         const std::vector<ProbeCase>& cases, double pitch_m,
+                         const ground_truth::ToolReference* tool_reference) {
+  ChartRow row{.variant = variant};
+  auto subject = make_subject(elastic, variant.sizes);
+  if (subject) {
+    const Accuracy accuracy = measure_accuracy(**subject, cases, pitch_m);
+    row.errors = accuracy.errors;
+    row.settle_ticks = accuracy.settle_ticks;
+    if (!scene.relaxation.empty()) subject = make_subject(scene, variant.sizes);
+  }
   if (!subject) {
-    made.row.failure = subject.error().sentence;
-    return made;
+    row.failure = subject.error().sentence;
+    return row;
   }
-  // Judged first, on the elastic scene; what is timed is made anew with the scene's relaxation.
-  const Accuracy accuracy = measure_accuracy(**subject, cases, pitch_m);
-  made.row.errors = accuracy.errors;
-  made.row.settle_ticks = accuracy.settle_ticks;
-  made.row.given = (*subject)->given();
-  if (!variant.is_peer() && !scene.relaxation.empty()) {
-    subject = make_subject(scene, variant, cases);
-    if (!subject) {
-      made.row.failure = subject.error().sentence;
-      return made;
-    }
-  }
-  if (!variant.is_peer() && tool_reference != nullptr) {
-    const auto judged = judge_errors(sized(scene, variant), *tool_reference);
-    made.row.failure = judged ? judged->failure : judged.error().sentence;
-    if (!made.row.failure.empty()) return made;
-    made.row.tool = judged->errors;
-  }
-  made.row.memory_bytes = (*subject)->memory_bytes();
-  made.subject = std::move(*subject);
-  return made;
+  row.memory_bytes = (*subject)->memory_bytes();
+  if (tool_reference == nullptr) return row;
+  const auto judged = judge_errors(sized(scene, variant), *tool_reference);
+  row.failure = judged ? judged->failure : judged.error().sentence;
+  if (row.failure.empty()) row.tool = judged->errors;
+  return row;
 }
 
 std::vector<SpeedAndError> points_of(const report::Table& table,
@@ -112,33 +91,28 @@ Result<std::vector<ChartRow>> measure_chart(const Scene& scene,
   Scene elastic = scene;
   elastic.relaxation.clear();
   elastic.compliance.large_strain = false;
-  std::vector<Made> made(variants.size());
+  std::vector<ChartRow> all(variants.size());
   const program::SweepOptions sweep_options{.label = options.label + ", accuracy",
                                             .shard = options.shard};
   const bool judged = run_jobs(variants.size(), sweep_options, [&](std::size_t job) {
-    made[job] = make_and_judge(scene, elastic, variants[job], *cases, reference.ring_pitch_m,
+    all[job] = judge_errors_of(scene, elastic, variants[job], *cases, reference.ring_pitch_m,
                                options.tool_reference);
   });
   if (!judged) return program::interruption();
-  const auto path = moving_probe(scene, cases->front());
   // One after the other: a second one on another core would share cache and memory with the first.
   const program::SweepOptions one_by_one{
       .label = options.label + ", time", .shard = options.shard, .threads = 1};
   const bool timed = run_jobs(variants.size(), one_by_one, [&](std::size_t job) {
-    if (!made[job].subject) return;
-    if (variants[job].is_peer())
-      made[job].row.timing = measure_time(*made[job].subject, path, options.timing);
-    else if (const auto timing = time_tool(sized(scene, variants[job]), options.timing))
-      made[job].row.timing = *timing;
+    if (!all[job].failure.empty()) return;
+    if (const auto timing = time_tool(sized(scene, variants[job]), options.timing))
+      all[job].timing = *timing;
     else
-      made[job].row.failure = timing.error().sentence;
-    // Its memory goes before the next one is timed.
-    made[job].subject.reset();
+      all[job].failure = timing.error().sentence;
   });
   if (!timed) return program::interruption();
   std::vector<ChartRow> rows;
-  for (std::size_t job = options.shard.index; job < made.size(); job += options.shard.count)
-    rows.push_back(std::move(made[job].row));
+  for (std::size_t job = options.shard.index; job < all.size(); job += options.shard.count)
+    rows.push_back(std::move(all[job]));
   return rows;
 }
 
@@ -208,7 +182,7 @@ report::Row table_row(const ChartRow& row, const Provenance& provenance) {
   const auto or_dash = [](const std::string& text) {
     return report::Cell(text.empty() ? "-" : without_commas(text));
   };
-  return {report::Cell(row.variant.is_peer() ? "peer" : "tact"),
+  return {report::Cell("tact"),
           report::Cell(row.variant.family()),
           report::Cell(row.variant.size()),
           report::Cell(form),
@@ -236,7 +210,7 @@ report::Row table_row(const ChartRow& row, const Provenance& provenance) {
           number(e.cases),
           number(row.settle_ticks),
           number(row.memory_bytes),
-          or_dash(row.given),
+          report::Cell("parameters of the scene"),
           or_dash(row.failure),
           report::Cell(provenance.scene_hash),
           report::Cell(provenance.reference_hash),

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// chart.h - speed against accuracy: one row for every law and size of a scene, and for the peers.
+// chart.h - speed against accuracy: one row for every law and size of a scene. Rows of kind "peer",
+// other ways to do the same, come from a file alone (report.h).
 //
 // First all rows are made and judged on all cores, then timed one after the other, so that they do
 // not disturb each other. The errors are the same on every machine; times belong to the row's
 // machine. The time of a law is the tick that a user gets: touch, feel and judge of the scene's
-// whole tool (tool_judge.h). That of a peer is its own answer to one sphere alone, without touch
-// and judge.
+// whole tool (tool_judge.h).
 #pragma once
 
 #include <functional>
@@ -25,11 +25,10 @@ struct ChartRow {
   Variant variant{};
   std::string failure{};             // empty: it was measured
   ErrorSummary errors{};             // of one sphere
-  std::optional<ToolErrors> tool{};  // of the whole tool; none: no reference, or a peer
+  std::optional<ToolErrors> tool{};  // of the whole tool; none: no reference
   int settle_ticks = 0;
   Timing timing{};
   std::size_t memory_bytes = 0;
-  std::string given{};
 };
 
 /// Where numbers come from; part of every row, so that merged tables stay honest.

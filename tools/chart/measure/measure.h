@@ -3,11 +3,10 @@
 //
 // Errors are quasi-static: a stepped subject ticks at one depth until its force stays within
 // 0.1 % over 50 ticks, or for kMaxSettleTicks. Relaxation is not asked: the reference is elastic.
-// Time is that of a probe that moves, one site, warm, each tick on its own, less what reading the
-// clock costs; the median of very short ticks is that of the mean of a few. What is asked is the
-// law, not the load of the machine: ticks in which the system ran another program are counted and
-// left out, ticks above 0.1 ms are timed by the processor time of the thread, and of some rounds
-// the least median and the least p99.9 count. The loop itself runs where nothing else does.
+// Time is that of warm ticks, each on its own, less what reading the clock costs; the median of
+// very short ticks is that of the mean of a few. What is asked is the law, not the load of the
+// machine: ticks in which the system ran another program are counted and left out, and of some
+// rounds the least median and the least p99.9 count. The loop itself runs where nothing else does.
 #pragma once
 
 #include <functional>
@@ -48,14 +47,10 @@ struct Accuracy {
 };
 Accuracy measure_accuracy(Subject& subject, const std::vector<ProbeCase>& cases, double pitch_m);
 
-/// A probe that goes round on the surface while it sinks in and comes back.
-std::vector<model::contact::Indentation> moving_probe(const model::scene::Scene& scene,
-                                                      const ProbeCase& at);
-
 struct TimingSettings {
   std::size_t ticks = 20000;  // a round
   int rounds = 3;
-  double limit_s = 12.0;  // a slow peer: fewer ticks
+  double limit_s = 12.0;  // a slow law: fewer ticks
   bool instructions = true;
 };
 
@@ -65,9 +60,6 @@ struct Timing {
   std::size_t ticks = 0;                  // a round
   std::size_t paused = 0;                 // of these, left out of the p99.9
 };
-Timing measure_time(Subject& subject, const std::vector<model::contact::Indentation>& path,
-                    const TimingSettings& settings);
-/// Of anything else that ticks.
 Timing measure_time(const std::function<void()>& tick, const TimingSettings& settings);
 
 }  // namespace tact::tools::chart

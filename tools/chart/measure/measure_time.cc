@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <sys/resource.h>
-#include <time.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
 
-#include "model/contact/site.h"
 #include "tools/chart/measure/instructions.h"
 #include "tools/chart/measure/measure.h"
 
@@ -15,25 +13,13 @@ namespace tact::tools::chart {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using model::Vec3;
-using model::contact::Indentation;
 
-// All chosen. The path is so wide that touch meets new triangles.
-constexpr std::size_t kPathTicks = 1000;  // one turn
-constexpr double kPathRadius_m = 0.004;
+// All chosen.
 constexpr std::size_t kMaxWarmTicks = 500;
 constexpr std::size_t kMinTicks = 100;
 constexpr std::size_t kCountedTicks = 20;
 constexpr double kBatch_s = 2e-6;       // a shorter tick is near the clock's own step
-constexpr double kLongTick_s = 100e-6;  // a longer one always meets other programs
-
-/// Time that this thread was given, whatever else ran: for ticks so long that others always come in
-/// between. Too dear and too coarse for short ones.
-double own_time_ns() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return 1e9 * static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec);
-}
+constexpr double kLongTick_s = 100e-6;  // a longer one has too many instructions to count
 
 double ns_between(Clock::time_point a, Clock::time_point b) {
   return static_cast<double>(std::chrono::duration_cast<std::chrono::nanoseconds>(b - a).count());
@@ -63,10 +49,9 @@ double clock_cost_ns() {
   return at_share(cost_ns, 0.5);
 }
 
-// Templates, so that what takes some nanoseconds is not called through a pointer.
+using Tick = std::function<void()>;
 
 /// Warms the caches; how long a tick takes about.
-template <typename Tick>
 double warm_tick_s(const Tick& tick, const TimingSettings& settings) {
   const auto warm_begin = Clock::now();
   std::size_t warm_ticks = 0;
@@ -80,17 +65,9 @@ double warm_tick_s(const Tick& tick, const TimingSettings& settings) {
 }
 
 /// Each tick that nothing else interrupted.
-template <typename Tick>
-void time_ticks(const Tick& tick, std::size_t ticks, bool is_long, double cost_ns,
-                std::vector<double>& tick_ns) {
+void time_ticks(const Tick& tick, std::size_t ticks, double cost_ns, std::vector<double>& tick_ns) {
   tick_ns.clear();
   for (std::size_t i = 0; i < ticks; ++i) {
-    if (is_long) {
-      const double begin_ns = own_time_ns();
-      tick();
-      tick_ns.push_back(own_time_ns() - begin_ns);
-      continue;
-    }
     const long pauses = pauses_so_far();
     const auto begin = Clock::now();
     tick();
@@ -102,7 +79,6 @@ void time_ticks(const Tick& tick, std::size_t ticks, bool is_long, double cost_n
 }
 
 /// The mean of each batch.
-template <typename Tick>
 void time_batches(const Tick& tick, std::size_t batches, std::size_t batch, double cost_ns,
                   std::vector<double>& batch_ns) {
   batch_ns.clear();
@@ -114,8 +90,9 @@ void time_batches(const Tick& tick, std::size_t batches, std::size_t batch, doub
   }
 }
 
-template <typename Tick>
-Timing time_of(const Tick& tick, const TimingSettings& settings) {
+}  // namespace
+
+Timing measure_time(const Tick& tick, const TimingSettings& settings) {
   const double tick_s = warm_tick_s(tick, settings);
   const double room = settings.limit_s / (tick_s * settings.rounds);
   const std::size_t ticks = std::clamp(static_cast<std::size_t>(std::min(room, 1e9)), kMinTicks,
@@ -130,7 +107,7 @@ Timing time_of(const Tick& tick, const TimingSettings& settings) {
               .ticks = ticks};
   std::vector<double> tick_ns, batch_ns;
   for (int round = 0; round < settings.rounds; ++round) {
-    time_ticks(tick, ticks, tick_s > kLongTick_s, cost_ns, tick_ns);
+    time_ticks(tick, ticks, cost_ns, tick_ns);
     time_batches(tick, batch > 1 ? ticks / batch : 0, batch, cost_ns, batch_ns);
     if (tick_ns.empty()) continue;
     const double p999_us = 1e-3 * at_share(tick_ns, 0.999);
@@ -143,44 +120,6 @@ Timing time_of(const Tick& tick, const TimingSettings& settings) {
   if (settings.instructions && tick_s < kLongTick_s)
     best.instructions = instructions_per_call(tick, std::min(ticks, kCountedTicks));
   return best;
-}
-
-}  // namespace
-
-std::vector<Indentation> moving_probe(const model::scene::Scene& scene, const ProbeCase& at) {
-  constexpr double kShallow_m = 0.001, kDeep_m = 0.009;
-  const auto view = scene.organ_mesh.view();
-  const Vec3 centre = point_of(view, at.in.place);
-  const Vec3 side = std::abs(at.in.normal.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-  const Vec3 e1 = normalized(cross(at.in.normal, side)), e2 = cross(at.in.normal, e1);
-  std::vector<Indentation> path(kPathTicks, at.in);
-  std::uint32_t triangle = at.in.place.triangle;
-  for (std::size_t i = 0; i < path.size(); ++i) {
-    const double turn_rad = 2.0 * M_PI * static_cast<double>(i) / kPathTicks;
-    const Vec3 away = std::cos(turn_rad) * e1 + std::sin(turn_rad) * e2;
-    path[i].place = follow(view, triangle, centre + kPathRadius_m * away).place;
-    triangle = path[i].place.triangle;
-    path[i].held = false;
-    path[i].dent_m = kShallow_m + (kDeep_m - kShallow_m) * 0.5 * (1.0 - std::cos(2.0 * turn_rad));
-  }
-  return path;
-}
-
-Timing measure_time(Subject& subject, const std::vector<Indentation>& path,
-                    const TimingSettings& settings) {
-  std::size_t at = 0;
-  const Timing timing = time_of(
-      [&] {
-        subject.tick(path[at]);
-        at = at + 1 == path.size() ? 0 : at + 1;
-      },
-      settings);
-  subject.release();
-  return timing;
-}
-
-Timing measure_time(const std::function<void()>& tick, const TimingSettings& settings) {
-  return time_of(tick, settings);
 }
 
 }  // namespace tact::tools::chart

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "tools/chart/compare/chart.h"
+#include "tools/chart/report/report.h"
 #include "tools/report/picture.h"
 
 namespace tact::tools::chart {
@@ -188,8 +189,8 @@ Result<std::vector<std::string>> draw_chart(const report::Table& table, const st
       "unset arrow 1\n"
       "set size 1,0.25\nset origin 0,0\n"
       "set xlabel \"time of a tick, median, us; of a law: touch, feel, judge of the whole tool\\n"
-      "beside a point: knots, layers, rings, nodes, curves; of fem mm, else iterations\"\n"
-      "set ylabel 'shape error, RMS, %'\n";
+      "beside a point: knots, layers, rings, nodes, curves; of fem mm, else iterations\\n" +
+      source_of_peers(table) + "\"\nset ylabel 'shape error, RMS, %'\n";
   script += plot_of(families, kShape);
   script += "unset multiplot\n";
   return report::draw({.name = "chart", .width_px = 1200, .height_px = 1200, .script = script},

@@ -100,6 +100,30 @@ Result<report::Table> read_chart(const std::string& path) {
   }
 }
 
+Result<report::Table> with_peers(const report::Table& laws, const std::string& path,
+                                 const std::string& reference_hash) {
+  const auto peers = read_chart(path);
+  if (!peers) return peers.error();
+  report::Table out = empty_chart(laws.rows().size() + peers->rows().size(), {});
+  for (const report::Row& row : laws.rows()) out.add(row);
+  for (const report::Row& row : peers->rows()) {
+    if (peers->word(row, "kind") != "peer" || peers->word(row, "reference_hash") != reference_hash)
+      return Error{fmt::format(
+          "{}: the row {} {} is no peer that was judged by this --reference; leave out --peers",
+          path, peers->word(row, "family"), peers->word(row, "size"))};
+    out.add(row);
+  }
+  return out;
+}
+
+std::string source_of_peers(const report::Table& table) {
+  for (const report::Row& row : table.rows())
+    if (table.word(row, "kind") == "peer")
+      return fmt::format("peers: measured before, by revision {}, on {}",
+                         table.word(row, "revision"), table.word(row, "machine"));
+  return {};
+}
+
 std::optional<Error> check_same_source(const report::Table& table, const Provenance& provenance) {
   const auto differs = [&](const char* column, const std::string& wanted) {
     return std::any_of(table.rows().begin(), table.rows().end(),
@@ -164,6 +188,7 @@ std::string chart_text(const report::Table& table, bool is_whole) {
     const bool on_front = std::find(front.begin(), front.end(), i) != front.end();
     out += row_text(table, table.rows()[i], on_front);
   }
+  if (const std::string peers = source_of_peers(table); !peers.empty()) out += peers + "\n";
   return out +
          "* on the front of tact: no other law is both faster and nearer to the reference.\n"
          "The reference is linear: compliance is judged with large_strain off.\n"

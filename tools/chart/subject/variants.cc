@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/chart/subject/variants.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <initializer_list>
@@ -13,22 +11,12 @@ namespace {
 using model::scene::LawKind;
 using model::scene::LawSizes;
 
-struct PeerName {
-  PeerKind kind;
-  const char* family;
-};
-constexpr std::array kPeers{PeerName{PeerKind::kFem, "fem"},
-                            PeerName{PeerKind::kSpringMesh, "spring_mesh"},
-                            PeerName{PeerKind::kBulletSurface, "bullet_surface"},
-                            PeerName{PeerKind::kBulletVolume, "bullet_volume"}};
-
 /// Sizes of one law: `whole` of them, `quick` fewer.
 class List {
  public:
   List(const model::scene::Scene& scene, const VariantWish& wish) : scene_(scene), wish_(wish) {}
 
   void laws();
-  void peers();
   std::vector<Variant> take() { return std::move(out_); }
 
  private:
@@ -39,9 +27,7 @@ class List {
   bool wants(LawKind kind) const {
     return scene_.describes(kind) && wants(std::string(name_of(kind)));
   }
-  void add(const LawSizes& sizes) {
-    out_.push_back({.sizes = sizes, .peer = PeerKind::kNone, .peer_size = 0});
-  }
+  void add(const LawSizes& sizes) { out_.push_back({.sizes = sizes}); }
   void each(std::initializer_list<std::size_t> whole, std::initializer_list<std::size_t> quick,
             LawKind kind, std::size_t LawSizes::* size) {
     for (const std::size_t n : wish_.quick ? quick : whole) {
@@ -86,29 +72,11 @@ void List::laws() {
     add({.law = LawKind::kCompliance, .table_knots = knots, .curves = scene_.compliance.curves});
 }
 
-void List::peers() {
-  const auto each_size = [&](PeerKind kind, std::initializer_list<std::size_t> sizes) {
-    for (const std::size_t size : sizes)
-      out_.push_back({.sizes = {}, .peer = kind, .peer_size = size});
-  };
-  // Sizes in um: edges of 12, 8 and 5 mm. Without [elastic] it has no material.
-  if (wants("fem") && scene_.elastic) each_size(PeerKind::kFem, {12000, 8000, 5000});
-  if (wants("spring_mesh")) each_size(PeerKind::kSpringMesh, {5, 10, 20});
-  if (wants("bullet_surface")) each_size(PeerKind::kBulletSurface, {4, 10, 20});
-  if (wants("bullet_volume")) each_size(PeerKind::kBulletVolume, {4, 10, 20});
-}
-
 }  // namespace
 
-std::string Variant::family() const {
-  for (const PeerName& name : kPeers)
-    if (name.kind == peer) return name.family;
-  return std::string(name_of(sizes.law));
-}
+std::string Variant::family() const { return std::string(name_of(sizes.law)); }
 
 std::string Variant::size() const {
-  if (peer == PeerKind::kFem) return fmt::format("{:g} mm", static_cast<double>(peer_size) * 1e-3);
-  if (is_peer()) return fmt::format("{} iterations", peer_size);
   const std::string whole = text_of(sizes);
   const std::size_t name = family().size();
   return whole.size() > name ? whole.substr(name + 1) : "as the scene says";
@@ -117,7 +85,6 @@ std::string Variant::size() const {
 std::vector<Variant> variants_of(const model::scene::Scene& scene, const VariantWish& wish) {
   List list(scene, wish);
   list.laws();
-  if (wish.peers) list.peers();
   return list.take();
 }
 
@@ -125,7 +92,6 @@ std::vector<std::string> all_families() {
   std::vector<std::string> out;
   for (const model::scene::LawName& law : model::scene::kLawNames)
     if (law.kind != LawKind::kAuto) out.emplace_back(law.name);
-  for (const PeerName& peer : kPeers) out.emplace_back(peer.family);
   return out;
 }
 

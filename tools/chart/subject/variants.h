@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// variants.h - what a chart compares: every law of the scene in several sizes, and the peers.
+// variants.h - what a chart compares: every law of the scene in several sizes.
 #pragma once
 
 #include <string>
@@ -10,23 +10,16 @@
 
 namespace tact::tools::chart {
 
-enum class PeerKind { kNone, kFem, kSpringMesh, kBulletSurface, kBulletVolume };
-
 struct Variant {
-  model::scene::LawSizes sizes{};  // of a law of tact
-  PeerKind peer = PeerKind::kNone;
-  std::size_t peer_size = 0;  // iterations a tick; of kFem the edge inside the organ, um
+  model::scene::LawSizes sizes{};
 
-  bool is_peer() const { return peer != PeerKind::kNone; }
-  std::string family() const;  // "rhombus", "fem"
+  std::string family() const;  // "rhombus"
   std::string size() const;    // "65 knots"
-  std::string name() const { return family() + " " + size(); }
 };
 
 struct VariantWish {
   std::vector<std::string> laws;  // families; empty: all
-  bool quick = false;             // fewer sizes, no peer whose set-up takes long
-  bool peers = true;
+  bool quick = false;             // fewer sizes
 };
 
 /// In the order of the table. Laws that the scene does not describe are left out.
