@@ -130,7 +130,7 @@ void LiveSession::take(const std::string& text) {
   if (const std::optional<HandWish> hand = parse_hand(text)) move_hand_(*hand);
   // Behind the hand's right: who may not move it chooses no scene.
   if (ask_scene_)
-    if (const std::optional<SceneWish> wish = parse_scene_wish(text)) ask_scene_(*wish);
+    if (const nlohmann::json wish = object_in(text, "wish"); !wish.is_null()) ask_scene_(wish);
 }
 
 }  // namespace tact::host::server
