@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // tact-view: shows what tactd does in a browser, records it, replays it, writes it as CSV.
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <boost/asio/posix/stream_descriptor.hpp>
+#include <boost/asio/read_until.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <csignal>
 #include <cstdio>
@@ -12,7 +15,6 @@
 
 #include "host/record/recording_csv.h"
 #include "host/run/command_line.h"
-#include "host/run/launcher.h"
 #include "host/run/operator_inputs.h"
 #include "host/run/register_tracker.h"
 #include "host/run/telemetry_client.h"
@@ -50,6 +52,34 @@ void warn_of_silence(double silence_s) {
 
 /// A file name with broken UTF-8 is mended instead of throwing.
 std::string to_text(const nlohmann::json& json) { return model::io::text_of(json); }
+
+/// The answers to wishes: lines of standard input, by the program that gave --scenes.
+class Answers {
+ public:
+  Answers(boost::asio::io_context& io, server::ScenePicker& picker) : input_(io), picker_(picker) {}
+
+  void start() {
+    boost::system::error_code wrong;
+    input_.assign(::dup(STDIN_FILENO), wrong);  // a copy: closing it closes nobody's input
+    read_next();
+  }
+
+ private:
+  void read_next() {
+    static constexpr std::size_t kMaxLine_bytes = 4096;  // as much as a pipe takes at once
+    boost::asio::async_read_until(input_, boost::asio::dynamic_buffer(text_, kMaxLine_bytes), '\n',
+                                  [this](boost::system::error_code wrong, std::size_t bytes) {
+                                    if (wrong) return;  // nobody is there who could answer
+                                    picker_.refuse(text_.substr(0, bytes - 1));
+                                    text_.erase(0, bytes);
+                                    read_next();
+                                  });
+  }
+
+  boost::asio::posix::stream_descriptor input_;
+  server::ScenePicker& picker_;
+  std::string text_;
+};
 
 /// Writes every frame of every run to its own file: FILE, then FILE.2, FILE.3.
 class Recorder {
@@ -113,6 +143,11 @@ int export_csv(const Options& options, const record::ReadResult& read) {
   return read.damage.empty() ? kGood : kCheckFailed;
 }
 
+void say_line(const std::string& line) {
+  fmt::print("{}\n", line);
+  std::fflush(stdout);  // a program that reads it by a pipe needs it now, not at the end
+}
+
 void say_ready(const Options& options, const server::ViewerServer& server) {
   if (options.json) {
     const nlohmann::json ready{{"format", "tact-view"},
@@ -120,12 +155,10 @@ void say_ready(const Options& options, const server::ViewerServer& server) {
                                {"url", server.url()},
                                {"port", server.port()},
                                {"token", server.token()}};
-    fmt::print("{}\n", to_text(ready));
+    say_line(to_text(ready));
   } else {
-    fmt::print("tact-view: {}\n", server.url());
+    say_line("tact-view: " + server.url());
   }
-  // Who waits for this line by a pipe needs it now, not at the end.
-  std::fflush(stdout);
 }
 
 /// Runs until a signal. `start` starts what feeds the view.
@@ -155,13 +188,12 @@ model::Result<model::io::Trust> trust_of(const Options& options) {
 
 /// What tactd tells goes to the page and into the recording, with the operator of that moment.
 TelemetryEvents show_and_record(server::LiveView& view, Recorder& recorder, OperatorInputs& inputs,
-                                const server::OperatorFigure& figure,
-                                std::optional<server::ScenePicker>& picker) {
+                                const server::OperatorFigure& figure, server::ScenePicker& picker) {
   return {.hello =
               [&](const record::Hello& hello, record::MeshBytes mesh) {
                 recorder.begin(hello, mesh);
                 view.begin(hello, std::move(mesh), server::Link::kLive);
-                if (picker) picker->begin();
+                picker.begin();
               },
           .frame =
               [&](const record::Frame& frame) {
@@ -199,15 +231,10 @@ int show_live(const Options& options) {
   if (const auto shoulder_m = inputs.shoulder_m()) figure.put_shoulder_at(*shoulder_m);
   if (options.figure || inputs.is_there()) view.accompany(&figure);
   Recorder recorder(options.record, inputs.is_there());
-  std::optional<server::ScenePicker> picker;
-  std::string scenes;  // as the page gets them
-  Launcher launcher(io, [&picker](const std::string& sentence) { picker->refuse(sentence); });
-  if (!options.scenes.empty()) {
-    auto offers = server::load_offers(options.scenes);
-    if (!offers) return fail(offers.error().sentence);
-    scenes = server::list_of(*offers);
-    picker.emplace(view, std::move(*offers), &Launcher::hand);
-  }
+  server::ScenePicker picker(view, say_line);
+  Answers answers(io, picker);
+  if (!options.scenes.empty())
+    if (const auto error = picker.load(options.scenes)) return fail(error->sentence);
   TelemetryClient client(io, options.socket,
                          show_and_record(view, recorder, inputs, figure, picker), *trust);
   server::ViewerServer server(
@@ -216,12 +243,12 @@ int show_live(const Options& options) {
         client.move_hand(wish.position_m, wish.rotation_rad, wish.grip_ratio);
       },
       warn);
-  if (picker)
-    server.let_choose([&picker](const server::SceneWish& wish) { picker->ask(wish); }, scenes);
+  if (!options.scenes.empty())
+    server.let_choose([&picker](const nlohmann::json& wish) { picker.ask(wish); }, picker.list());
   const int status = serve(options, io, server, [&] {
     client.start();
     inputs.start();
-    if (picker) launcher.start();
+    if (!options.scenes.empty()) answers.start();
     if (const auto port = inputs.igtl_port()) warn(fmt::format("OpenIGTLink on port {}", *port));
   });
   recorder.close();

@@ -21,11 +21,6 @@ using beast::error_code;
 constexpr std::size_t kMaxMessageBytes = 1024;
 constexpr double kFarthestHand_m = 1.0;  // beyond any device
 
-nlohmann::json parse(const std::string& text) {
-  auto json = model::io::parse_json(text, "request");
-  return json ? std::move(*json) : nlohmann::json();
-}
-
 }  // namespace
 
 std::optional<HandWish> parse_hand(const std::string& text) {
@@ -117,9 +112,10 @@ void LiveSession::read_next() {
 }
 
 void LiveSession::take(const std::string& text) {
-  const nlohmann::json message = parse(text);
-  if (message.is_object() && message.contains("seen") && message["seen"].is_number_unsigned()) {
-    const std::uint64_t seen = message["seen"].get<std::uint64_t>();
+  const auto message = model::io::parse_json(text, "request");
+  if (message && message->is_object() && message->contains("seen") &&
+      (*message)["seen"].is_number_unsigned()) {
+    const std::uint64_t seen = (*message)["seen"].get<std::uint64_t>();
     // Never back, and never more than were sent: a page cannot open its own window.
     seen_frames_ = std::clamp(seen, seen_frames_, sent_frames_);
     write_next();
@@ -130,7 +126,7 @@ void LiveSession::take(const std::string& text) {
   if (const std::optional<HandWish> hand = parse_hand(text)) move_hand_(*hand);
   // Behind the hand's right: who may not move it chooses no scene.
   if (ask_scene_)
-    if (const std::optional<SceneWish> wish = parse_scene_wish(text)) ask_scene_(*wish);
+    if (const nlohmann::json wish = object_in(text, "wish"); !wish.is_null()) ask_scene_(wish);
 }
 
 }  // namespace tact::host::server

@@ -7,7 +7,7 @@
 // sees fewer frames, never older ones, and holds up nobody. A page may send
 // {"hand":{"x_m":..,"y_m":..,"z_m":..,"turn_x_rad":..,"turn_y_rad":..,"turn_z_rad":..,
 // "grip_ratio":..}} for a simulated device, and to a replay what replay_wish.h says. Where the
-// scene of a simulation may be chosen (scene_picker.h) it may also send what scene_wish.h says.
+// scene of a simulation may be chosen (scene_picker.h) it may also send what is said there.
 // Nothing else is heard: no page arms, stops or resets a device.
 #pragma once
 
@@ -18,12 +18,12 @@
 #include <boost/beast/websocket.hpp>
 #include <functional>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
 #include "host/server/live_view.h"
 #include "host/server/replay_wish.h"
-#include "host/server/scene_wish.h"
 #include "host/server/seat.h"
 
 namespace tact::host::server {
@@ -35,6 +35,7 @@ struct HandWish {
   double grip_ratio = 0.0;      // 0 open, 1 closed
 };
 using MoveHand = std::function<void(const HandWish&)>;
+using AskScene = std::function<void(const nlohmann::json& wish)>;
 
 /// The hand target in a page's message; none if it has none, or a number is not sensible.
 std::optional<HandWish> parse_hand(const std::string& text);

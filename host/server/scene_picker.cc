@@ -1,29 +1,89 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/server/scene_picker.h"
 
-#include <nlohmann/json.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
 #include <utility>
 
 #include "host/record/telemetry_check.h"
+#include "model/io/json.h"
 
 namespace tact::host::server {
+namespace {
 
-ScenePicker::ScenePicker(LiveView& view, std::vector<OfferedScene> offers, Hand hand)
-    : view_(view), offers_(std::move(offers)), hand_(std::move(hand)) {}
+using model::Error;
+using model::io::text_of;
+using nlohmann::json;
 
-void ScenePicker::ask(const SceneWish& wish) {
-  // Never of hardware: there a person starts tactd, with the device before the eyes.
-  if (!is_simulated())
-    answer_ = "a scene is chosen here in simulation only";
-  else if (asked_)
-    answer_ = "a scene is being started; ask again when it runs";
-  else
-    answer_ = why_not(wish, offers_);
-  if (answer_.empty()) {
-    asked_ = wish;
-    hand_(line_of(wish));
+constexpr std::string_view kRemedy = "write it again: tactd SCENE --parameters --json FILE";
+
+bool is_offer(const json& told) {
+  const auto has_key = [](const json& row) { return row.is_object() && row.contains("key"); };
+  return told.is_object() && told.value("format", json()) == "tactd-parameters" &&
+         told.value("simulated", json()) == true && told.value("scene", json()).is_string() &&
+         told.contains("parameters") && std::ranges::all_of(told["parameters"], has_key);
+}
+
+}  // namespace
+
+std::optional<Error> ScenePicker::load(const std::string& folder) {
+  std::error_code wrong;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, wrong)) {
+    const std::string path = entry.path().string();
+    if (entry.path().extension() != ".json") continue;
+    const auto told = model::io::read_json(path, kRemedy);
+    if (!told) return told.error();
+    if (!is_offer(*told))
+      return Error{fmt::format("{}: not the parameters of a simulated scene; {}", path, kRemedy)};
+    offers_[(*told)["scene"].get<std::string>()] = *told;
   }
-  tell();
+  if (!offers_.empty()) return std::nullopt;
+  return Error{
+      fmt::format("--scenes {}: no folder with parameters of scenes; {}", folder, kRemedy)};
+}
+
+std::string ScenePicker::list() const {
+  json list = json::array();
+  for (const auto& [name, told] : offers_) list.push_back(told);
+  return text_of(list);
+}
+
+/// Only what tactd has named may become a word of a command line.
+std::optional<Error> ScenePicker::check(const Choice& choice) const {
+  const auto offer = offers_.find(choice.scene);
+  if (offer == offers_.end())
+    return Error{fmt::format("there is no scene {} here", text_of(json(choice.scene)))};
+  if (!choice.set.is_object()) return Error{"\"set\" has no numbers by key"};
+  for (const auto& [key, value] : choice.set.items()) {
+    const auto is_it = [&key](const json& row) { return row["key"] == key; };
+    if (std::ranges::none_of(offer->second["parameters"], is_it))
+      return Error{fmt::format("{} has no parameter {}", choice.scene, text_of(json(key)))};
+    if (!value.is_number()) return Error{fmt::format("{} = {} is no number", key, text_of(value))};
+  }
+  return std::nullopt;
+}
+
+void ScenePicker::ask(const json& wish) {
+  const json scene = wish.value("scene", json());
+  const Choice choice{scene.is_string() ? scene.get<std::string>() : "",
+                      wish.value("set", json::object())};
+  // Never of hardware: there a person starts tactd, with the device before the eyes.
+  if (!is_simulated()) {
+    answer_ = "a scene is chosen here in simulation only";
+  } else if (asked_) {
+    answer_ = "a scene is being started; ask again when it runs";
+  } else if (const auto error = check(choice)) {
+    answer_ = error->sentence;
+  } else {
+    answer_.clear();
+    asked_ = choice;
+    std::string line = "wish " + choice.scene;
+    for (const auto& [key, value] : choice.set.items()) line += " " + key + "=" + text_of(value);
+    send_(line);
+  }
+  publish();
 }
 
 bool ScenePicker::is_simulated() const { return view_.has_scene() && view_.hello().simulated == 1; }
@@ -36,17 +96,17 @@ void ScenePicker::begin() {
     shown_ = *asked;
   else if (shown_.scene != name)
     shown_ = {.scene = name};
-  tell();
+  publish();
 }
 
-void ScenePicker::refuse(const std::string& sentence) {
+void ScenePicker::refuse(const std::string& reason) {
   asked_.reset();
-  answer_ = sentence;
-  tell();
+  answer_ = reason;
+  publish();
 }
 
-void ScenePicker::tell() {
-  if (!is_simulated()) return view_.tell_picker(nullptr);
+void ScenePicker::publish() {
+  if (offers_.empty() || !is_simulated()) return view_.tell_picker(nullptr);
   view_.tell_picker({{"scene", shown_.scene},
                      {"set", shown_.set},
                      {"asked", asked_ ? asked_->scene : ""},

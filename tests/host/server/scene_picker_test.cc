@@ -5,16 +5,36 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <fstream>
 
 #include "tests/support/viewer_fixture.h"
 
 namespace tact::test::scene_picker_test {
 
 using host::server::Link;
-using host::server::OfferedScene;
+using nlohmann::json;
+
+constexpr const char* kHeart = R"({"format":"tactd-parameters","version":1,"scene":"heart",
+  "law":"disc_stack","simulated":true,"parameters":[
+  {"key":"disc_stack.layers","unit":"","value":20,"low":1,"high":31,"whole":true,"meaning":"n"},
+  {"key":"disc_stack.poisson_ratio","unit":"","value":0.3,"low":0,"high":0.495,"whole":false,
+   "meaning":"mu"}]})";
+constexpr const char* kLiver =
+    R"({"format":"tactd-parameters","scene":"liver","simulated":true,"parameters":[]})";
 
 class Picker : public ::testing::Test {
  protected:
+  Picker() : folder_(testing::TempDir() + "tact-picker-" + std::to_string(getpid())) {
+    fs::create_directories(folder_);
+    std::ofstream(folder_ + "/liver.json") << kLiver;
+    EXPECT_EQ(load(kHeart), "");
+  }
+  ~Picker() override { fs::remove_all(folder_); }
+
+  std::string load(const std::string& heart) {
+    std::ofstream(folder_ + "/heart.json") << heart;
+    return tests::sentence_of(picker_.load(folder_));
+  }
   void show(const char* scene, bool is_simulated, Link link = Link::kLive) {
     Hello hello = make_hello(3, 1, 3, 1);
     std::strncpy(hello.scene_name, scene, sizeof hello.scene_name - 1);
@@ -22,74 +42,96 @@ class Picker : public ::testing::Test {
     view_.begin(hello, TinyMeshes{}.bytes(), link);
     picker_.begin();
   }
-  nlohmann::json told() const {
-    const auto status = nlohmann::json::parse(*view_.status());
-    return status.value("picker", nlohmann::json());
-  }
+  void ask(const char* wish) { picker_.ask(json::parse(wish)); }
+  json told() const { return json::parse(*view_.status()).value("picker", json()); }
   std::string answer() const { return told().value("answer", "nothing is offered"); }
 
+  const std::string folder_;
   host::server::LiveView view_;
   std::vector<std::string> lines_;
-  host::server::ScenePicker picker_{
-      view_,
-      {OfferedScene{
-           .name = "heart", .numbers = {{"disc_stack.layers", {1.0, 31.0, true}}}, .told = "{}"},
-       OfferedScene{.name = "liver", .numbers = {}, .told = "{}"}},
-      [this](const std::string& line) { lines_.push_back(line); }};
+  host::server::ScenePicker picker_{view_,
+                                    [this](const std::string& line) { lines_.push_back(line); }};
 };
 
-TEST_F(Picker, HandsAGoodWishOnAndTellsWhenItRuns) {
+TEST_F(Picker, SendsAGoodWishAndTellsWhenItRuns) {
   show("liver", true);
   EXPECT_EQ(told()["scene"], "liver");
-  picker_.ask({"heart", {{"disc_stack.layers", 12.0}}});
-  EXPECT_EQ(lines_, std::vector<std::string>{"wish heart disc_stack.layers=12"});
+  ask(R"({"scene":"heart","set":{"disc_stack.layers":12,"disc_stack.poisson_ratio":1e-5}})");
+  EXPECT_EQ(lines_, std::vector<std::string>{
+                        "wish heart disc_stack.layers=12 disc_stack.poisson_ratio=1e-05"});
   EXPECT_EQ(told()["asked"], "heart");
   EXPECT_EQ(told()["scene"], "liver") << "it has not come yet";
   show("heart", true);
   EXPECT_EQ(told()["asked"], "");
   EXPECT_EQ(told()["scene"], "heart");
-  EXPECT_EQ(told()["set"], nlohmann::json({{"disc_stack.layers", 12.0}}));
+  EXPECT_EQ(told()["set"]["disc_stack.layers"], 12);
 }
 
-TEST_F(Picker, HandsOnNothingThatIsNotOffered) {
+TEST_F(Picker, RefusesWhatIsNotOfferedByName) {
   show("liver", true);
-  picker_.ask({"skin", {}});
-  EXPECT_EQ(answer(), "there is no scene \"skin\" here");
-  picker_.ask({"heart", {{"disc_stack.layers", 99.0}}});
-  EXPECT_NE(answer().find("out of range"), std::string::npos);
+  for (const auto& [wish, reason] :
+       {std::pair{R"({"scene":"skin"})", "there is no scene \"skin\" here"},
+        {R"({"scene":"../heart"})", "there is no scene \"../heart\" here"},
+        {R"({"scene":7})", "there is no scene \"\" here"},
+        {R"({})", "there is no scene \"\" here"},
+        {R"({"scene":"heart","set":{"limits.force_N":8}})",
+         "heart has no parameter \"limits.force_N\""},
+        {R"({"scene":"heart","set":[8]})", "\"set\" has no numbers by key"},
+        {R"({"scene":"heart","set":{"disc_stack.layers":"12 --arm"}})",
+         "disc_stack.layers = \"12 --arm\" is no number"}}) {
+    ask(wish);
+    EXPECT_EQ(answer(), reason);
+  }
   EXPECT_TRUE(lines_.empty());
 }
 
-TEST_F(Picker, OffersAndHandsOnNothingWhereTheDeviceIsNotSimulated) {
+TEST_F(Picker, OffersAndSendsNothingWhereTheDeviceIsNotSimulated) {
   show("liver", false);
   EXPECT_TRUE(told().is_null());
-  picker_.ask({"heart", {}});
+  ask(R"({"scene":"heart"})");
   EXPECT_TRUE(lines_.empty());
 }
 
-TEST_F(Picker, HandsOnNothingBeforeATactdIsThere) {
-  picker_.ask({"heart", {}});
+TEST_F(Picker, SendsNothingBeforeATactdIsThere) {
+  ask(R"({"scene":"heart"})");
   EXPECT_TRUE(lines_.empty());
 }
 
-TEST_F(Picker, HandsOnOneWishAtATime) {
+TEST_F(Picker, SendsOneWishAtATime) {
   show("liver", true);
-  picker_.ask({"heart", {}});
-  picker_.ask({"liver", {}});
+  ask(R"({"scene":"heart"})");
+  ask(R"({"scene":"liver"})");
   EXPECT_EQ(lines_.size(), 1u);
   EXPECT_NE(answer().find("is being started"), std::string::npos);
 }
 
-TEST_F(Picker, TellsWhyAWishCameToNothingAndHearsTheNext) {
+TEST_F(Picker, TellsWhyAWishWasRefusedAndTakesTheNext) {
   show("liver", true);
-  picker_.ask({"heart", {}});
+  ask(R"({"scene":"heart"})");
   picker_.refuse("tactd: too stiff \xff");
   EXPECT_EQ(answer(), "tactd: too stiff \xef\xbf\xbd") << "what is no UTF-8 is replaced";
   EXPECT_EQ(told()["scene"], "liver");
   EXPECT_EQ(told()["asked"], "");
-  picker_.ask({"heart", {}});
+  ask(R"({"scene":"heart"})");
   EXPECT_EQ(lines_.size(), 2u);
   EXPECT_EQ(answer(), "");
+}
+
+TEST_F(Picker, LoadsOnlyParametersOfSimulatedScenes) {
+  const std::string good = kHeart;
+  for (const auto& [what, instead] : {std::pair{"\"heart\"", "7"},
+                                      {"tactd-parameters", "tactd-faults"},
+                                      {"true,\"parameters", "false,\"parameters"},
+                                      {"\"simulated\":true,", ""},
+                                      {"\"key\"", "\"name\""},
+                                      {"}]}", ""}}) {
+    std::string bad = good;
+    bad.replace(bad.find(what), std::string_view(what).size(), instead);
+    EXPECT_NE(load(bad).find("--parameters --json"), std::string::npos) << what << " " << instead;
+  }
+  host::server::ScenePicker none(view_, nullptr);
+  EXPECT_NE(tests::sentence_of(none.load("/nowhere")).find("--parameters --json"),
+            std::string::npos);
 }
 
 /// What a page asks over its WebSocket.
@@ -98,7 +140,7 @@ class Chooser : public Viewer {
   /// Of a server that gives its pages this right over the hand: is a wish heard?
   bool is_heard(const host::server::MoveHand& move_hand) {
     host::server::ViewerServer server(io_, view_, move_hand);
-    server.let_choose([this](const host::server::SceneWish&) { ++wishes_; }, "[]");
+    server.let_choose([this](const json&) { ++wishes_; }, "[]");
     start();  // the thread, and a server beside
     EXPECT_FALSE(server.open({.port = 0, .page_folder = folder_}));
     server.start();
@@ -128,7 +170,7 @@ TEST_F(Chooser, IsHeardWhereTheHandMayBeMoved) {
 TEST_F(Chooser, IsNotHeardWhereNoHandMayBeMoved) { EXPECT_FALSE(is_heard(nullptr)); }
 
 TEST_F(Viewer, ShowsTheOfferedScenesByItsToken) {
-  server_.let_choose([](const host::server::SceneWish&) {}, "[]");
+  server_.let_choose([](const json&) {}, "[]");
   start();
   EXPECT_EQ(get("/scenes.json").body(), "[]");
   bearer_ = "";
