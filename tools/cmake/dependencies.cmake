@@ -30,7 +30,7 @@ endif()
 if(TACT_LAB)
   find_package(benchmark REQUIRED)
   find_library(METIS metis REQUIRED)
-  find_package(Bullet MODULE REQUIRED)  # a peer of tact-chart; no CONFIG: Debian's has no targets
+  find_package(Bullet MODULE REQUIRED)  # a peer of tact-lab chart; no CONFIG: Debian's has no targets
 endif()
 if(BUILD_TESTING)
   find_package(GTest REQUIRED)

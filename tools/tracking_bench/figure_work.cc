@@ -62,9 +62,7 @@ Result<FigureInput> load_figure_input(const std::string& tracking_path) {
   Result<host::tracking::ObservationFile> file =
       host::tracking::read_observation_file(setup->recording);
   if (!file) return file.error();
-  FigureInput out{.setup = std::move(*setup), .seen = {}};
-  for (host::tracking::PlayedLine& line : file->lines) out.seen.push_back(std::move(line.seen));
-  return out;
+  return FigureInput{.setup = std::move(*setup), .seen = std::move(file->seen)};
 }
 
 Result<std::vector<MotionFrame>> figure_motion(const model::scene::Scene& scene,

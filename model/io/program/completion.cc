@@ -13,9 +13,8 @@ namespace {
 constexpr const char* kScript = R"~(# bash completion of {0}, made by {0} --bash-completion
 {1}() {{
   local now=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD - 1]}} words=
-  case $before in
-{2}    *) case $now in -*) words='{3}' ;; *) words='{4}' ;; esac ;;
-  esac
+  case ${{COMP_WORDS[1]}}:$before in
+{2}  esac
   COMPREPLY=()
   [ -z "$words" ] || mapfile -t COMPREPLY < <(compgen -W "$words" -- "$now")
 }}
@@ -32,39 +31,37 @@ std::string listed_values(const CLI::Option& option) {
   return values;
 }
 
-struct Words {
+/// What is offered behind the subcommand `part`; of the program itself, "*".
+std::string cases_of(const CLI::App& app, const std::string& part) {
   std::string cases, options, others;
-
-  void add(const CLI::App& app) {
-    for (const CLI::Option* option : app.get_options()) add(*option);
-    for (const CLI::App* part : app.get_subcommands([](const CLI::App*) { return true; })) {
-      others += part->get_name() + " ";
-      add(*part);
-    }
+  for (const CLI::App* below : app.get_subcommands([](const CLI::App*) { return true; })) {
+    cases += cases_of(*below, below->get_name());
+    others += below->get_name() + " ";
   }
-  void add(const CLI::Option& option) {
-    const std::string values = listed_values(option);
+  for (const CLI::Option* option : app.get_options()) {
+    const std::string values = listed_values(*option);
     std::vector<std::string> names;
-    for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
-    for (const std::string& name : option.get_snames()) names.push_back("-" + name);
-    for (const std::string& name : names) options += name + " ";
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    for (const std::string& name : option->get_snames()) names.push_back("-" + name);
+    for (const std::string& name : names) {
+      options += name + " ";
+      if (option->get_items_expected_max() > 0)
+        cases += fmt::format("    {}:{}) words='{}' ;;\n", part, name, values);
+    }
     // A positional argument: its values stand where no option is asked for.
     if (names.empty()) others += values + (values.empty() ? "" : " ");
-    if (!names.empty() && option.get_items_expected_max() > 0)
-      cases += fmt::format("    {}) words='{}' ;;\n", fmt::join(names, " | "), values);
   }
-};
+  return cases + fmt::format("    {}:*) case $now in -*) words='{}' ;; *) words='{}' ;; esac ;;\n",
+                             part, options, others);
+}
 
 }  // namespace
 
 std::string bash_completion(const CLI::App& options, const std::string& program) {
-  Words words;
-  words.add(options);
   std::string function = "_" + program;
   // Not every shell takes dashes in the name of a function.
   std::ranges::replace(function, '-', '_');
-  return fmt::format(fmt::runtime(kScript), program, function, words.cases, words.options,
-                     words.others);
+  return fmt::format(fmt::runtime(kScript), program, function, cases_of(options, "*"));
 }
 
 }  // namespace tact::model::io

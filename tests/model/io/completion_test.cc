@@ -40,7 +40,7 @@ class Completion : public testing::Test {
 
 TEST_F(Completion, OffersTheOptionsThatBeginSo) {
   EXPECT_EQ(offers("--o"), "--out --once\n");
-  EXPECT_EQ(offers("x.toml --ga"), "--gate\n");
+  EXPECT_EQ(offers("x.toml --ga"), "\n") << "of a subcommand alone";
   EXPECT_EQ(offers("--none"), "\n");
 }
 
@@ -54,6 +54,11 @@ TEST_F(Completion, OffersWordsAndSubcommandsElsewhere) {
   EXPECT_EQ(offers("x.toml re"), "reset\n");
   EXPECT_EQ(offers("c"), "compare\n");
   EXPECT_EQ(offers("--once a"), "arm\n") << "a flag takes no value";
+}
+
+TEST_F(Completion, OffersOfASubcommandItsOwnOptions) {
+  EXPECT_EQ(offers("compare --"), "--help --gate\n");
+  EXPECT_EQ(offers("compare re"), "\n");
 }
 
 }  // namespace tact::model::io::completion_test

@@ -113,8 +113,7 @@ Result<std::vector<ChartRow>> measure_chart(const Scene& scene,
   elastic.relaxation.clear();
   elastic.compliance.large_strain = false;
   std::vector<Made> made(variants.size());
-  const program::SweepOptions sweep_options{.label = options.label + ", accuracy",
-                                            .shard = options.shard};
+  const program::SweepOptions sweep_options{.label = options.label + ", accuracy"};
   const bool judged = run_jobs(variants.size(), sweep_options, [&](std::size_t job) {
     made[job] = make_and_judge(scene, elastic, variants[job], *cases, reference.ring_pitch_m,
                                options.tool_reference);
@@ -122,8 +121,7 @@ Result<std::vector<ChartRow>> measure_chart(const Scene& scene,
   if (!judged) return program::interruption();
   const auto path = moving_probe(scene, cases->front());
   // One after the other: a second one on another core would share cache and memory with the first.
-  const program::SweepOptions one_by_one{
-      .label = options.label + ", time", .shard = options.shard, .threads = 1};
+  const program::SweepOptions one_by_one{.label = options.label + ", time", .threads = 1};
   const bool timed = run_jobs(variants.size(), one_by_one, [&](std::size_t job) {
     if (!made[job].subject) return;
     if (variants[job].is_peer())
@@ -137,13 +135,12 @@ Result<std::vector<ChartRow>> measure_chart(const Scene& scene,
   });
   if (!timed) return program::interruption();
   std::vector<ChartRow> rows;
-  for (std::size_t job = options.shard.index; job < made.size(); job += options.shard.count)
-    rows.push_back(std::move(made[job].row));
+  for (Made& one : made) rows.push_back(std::move(one.row));
   return rows;
 }
 
 // NOLINTNEXTLINE(readability-function-size): a table of columns
-report::Table empty_chart(std::size_t variants, const program::Shard& shard) {
+report::Table empty_chart() {
   const auto word = [](const char* name) { return report::Column{name, report::CellKind::kWord}; };
   const auto number = [](const char* name) {
     return report::Column{name, report::CellKind::kNumber};
@@ -187,9 +184,7 @@ report::Table empty_chart(std::size_t variants, const program::Shard& shard) {
            number("tick_p999_us"),
            number("instructions"),
            number("ticks"),
-           number("paused")},
-          variants,
-          shard};
+           number("paused")}};
 }
 
 // NOLINTNEXTLINE(readability-function-size): a table of columns
