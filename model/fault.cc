@@ -74,11 +74,12 @@ constexpr std::array kTable{
                "check power and cable, then start tactd again"},
     FaultEntry{Fault::kDeviceFailed, "device failed", "the device reported an error",
                "check power, cable and driver of the device, then start tactd again"},
-    FaultEntry{Fault::kLoopLate, "loop late",
-               "the loop missed its deadlines: 20 periods at once or 20 ticks in a row, 100 in a "
-               "row without hard real time",
-               "choose a smaller law (tact-plan names one) or a lower rate_Hz, and free the loop's "
-               "core of other work, then start tactd again"},
+    FaultEntry{
+        Fault::kLoopLate, "loop late",
+        "the loop missed its deadlines: 20 periods at once or 20 ticks in a row, 100 in a "
+        "row without hard real time",
+        "choose a smaller law (tact-lab plan names one) or a lower rate_Hz, and free the loop's "
+        "core of other work, then start tactd again"},
     FaultEntry{Fault::kLawBroke, "law broke",
                "the tissue's law blew up and gives no force that can be trusted",
                "make its step shorter or its springs softer (spring_patch.substeps, integrator), "

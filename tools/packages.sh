@@ -93,7 +93,7 @@ build_programs() {
   command -v ccache >/dev/null 2>&1 && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   for target in "$@"; do  # the measuring tools need more packages than the controller
     case $target in
-      tactd | tactctl | tact-guardian | tact-view | tact-track-send | tact-mesh | tact-rig-*) ;;
+      tactd | tactctl | tact-guardian | tact-view | tact-mesh | tact-rig-*) ;;
       tact-doctor | tact-jitter | tact-limits | tact-verify | tact-calibrate) tools=ON ;;
       *) tools=ON lab=ON ;;
     esac

@@ -132,7 +132,8 @@ std::string note_of(const model::scene::Scene& scene, const model::scene::PressS
   if (flawed.empty()) return {};
   return fmt::format(
       "{}: {} of {} presses of the whole tool are not sound, the worst at {}: {}; smooth or refine "
-      "the organ's mesh there (tact-mesh), or keep the tool from it; tact-sweep tries every vertex",
+      "the organ's mesh there (tact-mesh), or keep the tool from it; tact-lab sweep tries every "
+      "vertex",
       scene.path, flawed.size(), sweep.results.size(), name_of(flawed.front()->place),
       describe_flaws(*flawed.front(), sweep.settings));
 }

@@ -118,7 +118,7 @@ model::Result<TimeMargin> check_budget(const model::scene::Scene& scene,
   margin.judged_us = margin.tail_counts ? margin.measured.p999_us : margin.measured.median_us;
   if (margin.judged_us <= margin.budget_us) return margin;
   return model::Error{fmt::format(
-      "{}: {} needs {:.1f} us a tick here ({}), {} {:g} us; choose a smaller model (tact-plan "
+      "{}: {} needs {:.1f} us a tick here ({}), {} {:g} us; choose a smaller model (tact-lab plan "
       "names one), {} or take a faster machine",
       scene.path, (*twin)->title(), margin.judged_us,
       margin.tail_counts ? "p99.9" : "median: without hard real time the tail is the kernel's",

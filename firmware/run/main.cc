@@ -112,8 +112,8 @@ model::Result<std::vector<std::string>> recorded_overrides(const std::string& pa
   return log->header().overrides_of_run();
 }
 
-/// The scene to be felt. law = "auto" becomes what tact-plan chose on this machine, as --set values
-/// that a tick log keeps, so a recording is replayed without the plan.
+/// The scene to be felt. law = "auto" becomes what tact-lab plan chose on this machine, as
+/// --set values that a tick log keeps, so a recording is replayed without the plan.
 model::Result<model::scene::Scene> load(firmware::run::Options& options) {
   if (!options.replay_path.empty() && options.overrides.empty()) {
     auto recorded = recorded_overrides(options.replay_path);

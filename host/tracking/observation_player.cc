@@ -25,7 +25,7 @@ constexpr double kTurn_s = 1.0 / 60.0;  // from the last line to the first
 
 }  // namespace
 
-Result<ObservationFile> read_observation_file(const std::string& path, KeepText keep) {
+Result<ObservationFile> read_observation_file(const std::string& path) {
   auto text = model::io::read_file(
       path, "give a file of observations, one per line; cut a larger one into parts",
       kMaxRecording_bytes);
@@ -38,14 +38,12 @@ Result<ObservationFile> read_observation_file(const std::string& path, KeepText 
     // A file from Windows ends its lines with \r.
     if (line.empty() || line == "\r") continue;
     Result<Observation> seen = parse_observation(line);
-    if (seen) {
-      out.lines.push_back(
-          {.text = keep == KeepText::kYes ? line : std::string(), .seen = std::move(*seen)});
-    } else if (out.bad++ == 0) {
+    if (seen)
+      out.seen.push_back(std::move(*seen));
+    else if (out.bad++ == 0)
       out.first_bad = fmt::format("{}:{}: {}", path, number, seen.error().sentence);
-    }
   }
-  if (!out.lines.empty()) return out;
+  if (!out.seen.empty()) return out;
   if (out.bad > 0) return Error{out.first_bad};
   return Error{fmt::format("{}: it is empty; give a file of observations", path)};
 }
@@ -55,8 +53,7 @@ std::optional<Error> check_loop(const std::string& path, const ObservationFile& 
     double first_s = 0.0, last_s = 0.0;
   };
   std::map<std::pair<std::string, std::string>, Span> spans;  // by camera and body
-  for (const PlayedLine& line : file.lines) {
-    const Observation& seen = line.seen;
+  for (const Observation& seen : file.seen) {
     Span& span =
         spans.try_emplace({seen.camera, seen.body}, Span{seen.time_s, seen.time_s}).first->second;
     span.last_s = std::max(span.last_s, seen.time_s);
@@ -73,14 +70,6 @@ std::optional<Error> check_loop(const std::string& path, const ObservationFile& 
   return std::nullopt;
 }
 
-ObservationPlayer::ObservationPlayer(boost::asio::io_context& io, std::vector<PlayedLine> lines,
-                                     const Options& options, Take take, End end)
-    : timer_(io),
-      lines_(std::move(lines)),
-      options_(options),
-      take_(std::move(take)),
-      end_(std::move(end)) {}
-
 void ObservationPlayer::start() {
   next_ = 0;
   timer_.expires_after(std::chrono::nanoseconds(0));
@@ -92,8 +81,8 @@ void ObservationPlayer::stop() {
   timer_.cancel(ignored);
 }
 
-double ObservationPlayer::gap_s(std::size_t line) const {
-  return std::clamp(lines_[line].seen.time_s - lines_[line - 1].seen.time_s, 0.0, kLongestGap_s);
+double ObservationPlayer::gap_s(std::size_t next) const {
+  return std::clamp(seen_[next].time_s - seen_[next - 1].time_s, 0.0, kLongestGap_s);
 }
 
 void ObservationPlayer::play() {
@@ -101,16 +90,15 @@ void ObservationPlayer::play() {
     if (wrong) return;
     double wait_s = 0.0;
     while (!(wait_s > 0.0)) {  // all that belongs to this moment; ends: kTurn_s > 0
-      take_(lines_[next_++]);
-      if (next_ < lines_.size()) {
+      take_(seen_[next_++]);
+      if (next_ < seen_.size()) {
         wait_s = gap_s(next_);
       } else {
         next_ = 0;
         wait_s = kTurn_s;
-        if (!options_.loop) return end_ ? end_() : void();
       }
     }
-    const std::chrono::duration<double> wait(wait_s / options_.speed_ratio);
+    const std::chrono::duration<double> wait(wait_s);
     // absolute: small delays do not add up
     timer_.expires_at(timer_.expiry() +
                       std::chrono::duration_cast<std::chrono::steady_clock::duration>(wait));

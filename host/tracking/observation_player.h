@@ -18,56 +18,40 @@
 
 namespace tact::host::tracking {
 
-struct PlayedLine {
-  std::string text;  // as written, for who sends it on; empty with KeepText::kNo
-  Observation seen;
-};
-
 struct ObservationFile {
-  std::vector<PlayedLine> lines;
+  std::vector<Observation> seen;
   std::size_t bad = 0;
   std::string first_bad;  // file:line: what is wrong
 };
 
-enum class KeepText : std::uint8_t { kNo, kYes };
-
 inline constexpr std::uintmax_t kMaxRecording_bytes = 64'000'000;  // hours of a few cameras
 
 /// Error: why the file gives no observation at all. Larger than kMaxRecording_bytes: refused.
-model::Result<ObservationFile> read_observation_file(const std::string& path,
-                                                     KeepText keep = KeepText::kNo);
+model::Result<ObservationFile> read_observation_file(const std::string& path);
 
 /// Error: why the file cannot be played again and again. A camera looks at a body for so short a
 /// time that its second round is no new beginning (body_tracker.h) but out of order.
 std::optional<model::Error> check_loop(const std::string& path, const ObservationFile& file);
 
+/// From the start again at the end.
 class ObservationPlayer {
  public:
-  using Take = std::function<void(const PlayedLine&)>;
-  using End = std::function<void()>;
+  using Take = std::function<void(const Observation&)>;
 
-  struct Options {
-    double speed_ratio = 1.0;  // > 0
-    bool loop = true;          // from the start again at the end
-  };
-
-  /// `end` is called after the last line, if it does not loop.
-  ObservationPlayer(boost::asio::io_context& io, std::vector<PlayedLine> lines,
-                    const Options& options, Take take, End end = {});
+  ObservationPlayer(boost::asio::io_context& io, std::vector<Observation> seen, Take take)
+      : timer_(io), seen_(std::move(seen)), take_(std::move(take)) {}
 
   void start();
   void stop();
 
  private:
   void play();
-  /// From the line before to this one, s of the tracker's clock, >= 0.
-  double gap_s(std::size_t line) const;
+  /// From the observation before to this one, s of the tracker's clock, >= 0.
+  double gap_s(std::size_t next) const;
 
   boost::asio::steady_timer timer_;
-  std::vector<PlayedLine> lines_;
-  Options options_;
+  std::vector<Observation> seen_;
   Take take_;
-  End end_;
   std::size_t next_ = 0;
 };
 

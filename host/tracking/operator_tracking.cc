@@ -72,9 +72,8 @@ std::optional<Error> OperatorTracking::load(const std::string& recording) {
     refused_ = file->bad;
     say(fmt::format("{}; {} such lines are left out", file->first_bad, file->bad));
   }
-  player_ =
-      std::make_unique<ObservationPlayer>(io_, std::move(file->lines), ObservationPlayer::Options{},
-                                          [this](const PlayedLine& line) { take(line.seen); });
+  player_ = std::make_unique<ObservationPlayer>(io_, std::move(file->seen),
+                                                [this](const Observation& seen) { take(seen); });
   return std::nullopt;
 }
 

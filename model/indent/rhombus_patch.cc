@@ -10,8 +10,9 @@
 namespace tact::model::indent {
 namespace {
 
-// Both chosen. kRings: of its own displacements, which tact-fit compares (LW-2). kPastLimit: beyond
-// the limit of one chain those in the middle keep their force, while those at the rim still press.
+// Both chosen. kRings: of its own displacements, which tact-lab fit compares (LW-2). kPastLimit:
+// beyond the limit of one chain those in the middle keep their force, while those at the rim still
+// press.
 constexpr std::size_t kRings = 24;
 constexpr double kPastLimit = 2.0;  // of the chain's range
 

@@ -31,7 +31,7 @@ std::vector<double> numbers_of(const toml::table& table, const char* key) {
 
 std::string cure(const Scene& scene) {
   return fmt::format(
-      "tact-reference {0} --tool --out TRUTH.json solves the truth, tact-chart {0} "
+      "tact-lab reference {0} --tool --out TRUTH.json solves the truth, tact-lab chart {0} "
       "--tool-reference TRUTH.json --out DIR --accuracy {1} measures against it",
       scene.path, accuracy_path(scene));
 }
@@ -107,7 +107,8 @@ std::string accuracy_path(const Scene& scene) {
 
 std::string accuracy_text(const std::vector<Accuracy>& laws) {
   std::string out = fmt::format(
-      "# How true the force of the whole tool is: tact-chart --tool-reference\nschema = \"{}\"\n",
+      "# How true the force of the whole tool is: tact-lab chart --tool-reference\nschema = "
+      "\"{}\"\n",
       kSchema);
   for (const Accuracy& a : laws)
     out += fmt::format(
@@ -137,7 +138,7 @@ Result<Accuracy> read_accuracy(const Scene& scene) {
   if (!parsed) return Error{fmt::format("{}; {}", parsed.error().sentence, cure(scene))};
   const toml::table& root = *parsed;
   if (root["schema"].value_or<std::string>("") != kSchema)
-    return Error{fmt::format("{} is of another version of tact-chart; {}", path, cure(scene))};
+    return Error{fmt::format("{} is of another version of tact-lab chart; {}", path, cure(scene))};
   const toml::table* table = root[name].as_table();
   if (table == nullptr) return Error{fmt::format("{} has no [{}]; {}", path, name, cure(scene))};
   auto out = accuracy_of(*table, name);

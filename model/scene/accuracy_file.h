@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// accuracy_file.h - how true the force of a scene's whole tool is, as tact-chart measured it.
+// accuracy_file.h - how true the force of a scene's whole tool is, as tact-lab chart measured it.
 //
 // SCENE.accuracy stands beside SCENE.toml, a table for each law. tactd --check tells it. A
 // figure counts for what was measured alone: the hash is of forces, so another law, parameter,

@@ -89,9 +89,9 @@ bool all_finite(const tissue::ComplianceMap& map) {
 
 Result<tissue::ComplianceMap> read_compliance_map(const std::string& path) {
   const auto broken = [&path](const std::string& why) {
-    return Error{fmt::format("{}: {}; make it again with tact-condense", path, why)};
+    return Error{fmt::format("{}: {}; make it again with tact-lab condense", path, why)};
   };
-  const auto read = io::read_file(path, "make it again with tact-condense");
+  const auto read = io::read_file(path, "make it again with tact-lab condense");
   if (!read) return read.error();
   const std::string& content = *read;
   std::string_view bytes = content;

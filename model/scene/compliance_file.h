@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// compliance_file.h - a ComplianceMap as a file: what tact-condense writes and a scene names.
+// compliance_file.h - a ComplianceMap as a file: what tact-lab condense writes and a scene names.
 //
 //     "TACTCOMP"  version u32  vertices u32  rings u32  spare u32
 //     poisson_ratio  patch_radius_m  ring_pitch_m  fixed_min_m  fixed_max_m     9 f64

@@ -2,7 +2,7 @@
 // law_settings.h - which law a scene chooses, and the numbers of every law that it describes.
 //
 // A scene may describe several laws: the chosen one is felt, the others are there to be compared
-// (tact-chart) or to be chosen by tact-plan (law = "auto").
+// (tact-lab chart) or to be chosen by tact-lab plan (law = "auto").
 #pragma once
 
 #include <array>
@@ -44,7 +44,7 @@ inline constexpr std::array kLawNames{
     LawName{LawKind::kHuntCrossley, "hunt_crossley", "power law that resists speed as well"},
     LawName{LawKind::kSpringPatch, "spring_patch", "masses and springs near the contact"},
     LawName{LawKind::kCompliance, "compliance", "linear elastic organ, condensed offline"},
-    LawName{LawKind::kAuto, "auto", "the least law that meets [tolerance], by tact-plan"},
+    LawName{LawKind::kAuto, "auto", "the least law that meets [tolerance], by tact-lab plan"},
 };
 
 /// Its name in a scene.
@@ -58,13 +58,13 @@ struct ElasticSettings {
 };
 
 struct ComplianceSettings {
-  std::string map_path;          // absolute; written by tact-condense
+  std::string map_path;          // absolute; written by tact-lab condense
   double working_depth_m = 0.0;  // press and pull
   std::size_t curves = 17;       // of the family, soft to stiff
   bool large_strain = true;      // organ and tip; false: small strain, as a linear reference
 };
 
-/// What the scene accepts, for tact-plan and for tactd's start.
+/// What the scene accepts, for tact-lab plan and for tactd's start.
 struct ToleranceSettings {
   double force_error_ratio = 0.0;  // RMS, of the peak
   double shape_error_ratio = 0.0;  // RMS, of the depth
@@ -74,7 +74,7 @@ struct ToleranceSettings {
 /// A vertex of the organ where the reference is solved.
 struct ReferenceSite {
   std::size_t vertex = 0;
-  bool held_out = false;  // not used by tact-fit
+  bool held_out = false;  // not used by tact-lab fit
 };
 
 }  // namespace tact::model::scene

@@ -165,7 +165,7 @@ Result<std::string> plan_path(const std::string& scene_hash) {
 }
 
 std::string plan_text(const Plan& plan) {
-  std::string out = "# What tact-plan chose; tactd reads it for a scene with law = \"auto\".\n";
+  std::string out = "# What tact-lab plan chose; tactd reads it for a scene with law = \"auto\".\n";
   out += fmt::format("law = \"{}\"\n", name_of(plan.sizes.law));
   if (plan.sizes.disc_form)
     out += fmt::format("disc_form = \"{}\"\n", name_of(*plan.sizes.disc_form));
@@ -190,10 +190,10 @@ Result<std::string> write_plan(const Plan& plan, const std::string& path) {
 Result<Plan> read_plan(const std::string& path, const Scene& scene,
                        const std::vector<std::string>& overrides) {
   const auto broken = [&](const std::string& what) {
-    return Error{
-        fmt::format("{}: {}; run tact-plan {}{} --reference FILE, FILE from tact-reference {} "
-                    "--out FILE",
-                    path, what, scene.path, command_text(overrides), scene.path)};
+    return Error{fmt::format(
+        "{}: {}; run tact-lab plan {}{} --reference FILE, FILE from tact-lab reference {} "
+        "--out FILE",
+        path, what, scene.path, command_text(overrides), scene.path)};
   };
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return broken("no plan for this scene");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// plan_file.h - the law and size that tact-plan chose for a scene on this machine, as a small file.
+// plan_file.h - the law and size that tact-lab plan chose for a scene on this machine, as a file.
 //
 // A scene with law = "auto" is felt through it. The file stands in the user's cache, named by the
 // hash of the scene, so a changed scene has none; it also names the machine that was measured. A

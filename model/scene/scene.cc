@@ -81,7 +81,7 @@ void vary_on_the_own_organ_only(Scene& scene) {
   scene.varies_by_place = false;
   scene.note = fmt::format(
       "{}: {} is of another organ than {}, so varies_by_place is off: every place feels as a "
-      "half-space of this tissue; make a map: tact-condense {} --out FILE",
+      "half-space of this tissue; make a map: tact-lab condense {} --out FILE",
       scene.path, scene.compliance.map_path, scene.organ.mesh_path, scene.path);
 }
 
@@ -96,7 +96,7 @@ std::string whole_hash(const std::string& text_hash, const Scene& scene) {
     bytes(mesh->vertex_m);
     bytes(mesh->triangle);
   }
-  // law = "auto" counts as felt: tact-plan tries the compliance law, too.
+  // law = "auto" counts as felt: tact-lab plan tries the compliance law, too.
   if (needs_compliance(scene)) hash.add(compliance_checksum(scene.compliance.map_path));
   return hash.hex();
 }

@@ -152,7 +152,7 @@ void visit_spring_patch(reader::Keys& k, Scene& scene) {
 void visit_compliance(reader::Keys& k, SceneText& out) {
   ComplianceSettings& c = out.scene.compliance;
   out.compliance_map.place = k.place_of("map");
-  k.text("map", "file of tact-condense, absolute or from the folder of the scene",
+  k.text("map", "file of tact-lab condense, absolute or from the folder of the scene",
          out.compliance_map.file);
   k.number("working_depth_m", kDepth_m, "press and pull up to here", c.working_depth_m);
   k.count("curves", {2, 65}, "of the family, soft to stiff", c.curves, reader::Need::kOptional);
@@ -228,15 +228,16 @@ void visit_truth(reader::Keys& k, Scene& scene) {
     keys.vector("fixed_max_m", {-1e6, 1e6},
                 "high corner; both of the turned mesh, without position_m", elastic.fixed_max_m);
   };
-  if (k.section("elastic", "the organ as a linear elastic body, for tact-reference and compliance",
+  if (k.section("elastic",
+                "the organ as a linear elastic body, for tact-lab reference and compliance",
                 visit_elastic, reader::Need::kOptional)) {
     scene.elastic = elastic;
   }
-  k.entries("reference_site", {0, kMaxSites}, "a vertex where tact-reference solves",
+  k.entries("reference_site", {0, kMaxSites}, "a vertex where tact-lab reference solves",
             [&](reader::Keys& keys) {
               ReferenceSite& site = scene.reference_sites.emplace_back();
               keys.count("vertex", {0, kMaxSiteVertex}, "of the organ's mesh, from 0", site.vertex);
-              keys.flag("held_out", "not used by tact-fit, only to judge", site.held_out);
+              keys.flag("held_out", "not used by tact-lab fit, only to judge", site.held_out);
             });
   ToleranceSettings tolerance;
   const auto visit_tolerance = [&](reader::Keys& keys) {
@@ -247,7 +248,7 @@ void visit_truth(reader::Keys& k, Scene& scene) {
     keys.number("tick_budget_us", {0.1, 1e4}, "of the law, p99.9; non-rt: median",
                 tolerance.tick_budget_us);
   };
-  if (k.section("tolerance", "what is good enough: tact-plan chooses by it", visit_tolerance,
+  if (k.section("tolerance", "what is good enough: tact-lab plan chooses by it", visit_tolerance,
                 reader::Need::kOptional)) {
     scene.tolerance = tolerance;
   }

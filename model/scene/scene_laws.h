@@ -11,7 +11,7 @@ namespace tact::model::scene {
 void visit_laws(reader::Keys& root, SceneText& out);
 /// [pull] and [relaxation], of any law.
 void visit_law_options(reader::Keys& root, Scene& scene);
-/// [elastic], [[reference_site]] and [tolerance]: what tact-reference, tact-fit and tact-plan ask.
+/// [elastic], [[reference_site]] and [tolerance]: what reference, fit and plan of tact-lab ask.
 void visit_truth(reader::Keys& root, Scene& scene);
 
 }  // namespace tact::model::scene

@@ -16,7 +16,7 @@ namespace {
 std::string cure_of(const Scene& scene) {
   const std::filesystem::path own =
       std::filesystem::path(scene.path).replace_extension(".compliance");
-  std::string command = fmt::format("tact-condense {} --out {}", scene.path, own.string());
+  std::string command = fmt::format("tact-lab condense {} --out {}", scene.path, own.string());
   std::error_code failed;
   if (std::filesystem::absolute(own, failed).lexically_normal() == scene.compliance.map_path)
     return command;

@@ -2,7 +2,7 @@
 // The tracked operator in Chromium: does the figure hold the tool through the recorded motion, and
 // what does a person see when the tracker is gone?
 //
-//     node tests/browser/maintenance_test.mjs BUILD_DIR   (tactd, tact-view, tact-track-send, page/)
+//     node tests/browser/maintenance_test.mjs BUILD_DIR   (tactd, tact-view, page/)
 //
 // Takes long: run only by tools/check --long and --only browser.
 // CHROMIUM names another browser. Picture: BUILD_DIR/page-maintenance.png. Prints "N passed, M
@@ -18,7 +18,6 @@ import {
   play,
   sharp,
   size,
-  start,
   start_browser,
   start_tactd,
   start_view,
@@ -27,7 +26,7 @@ import {
 } from "./stage.mjs";
 import { most, path_m, watch } from "./drawn_operator.mjs";
 import { free_udp_port } from "./marker_body.mjs";
-import { description, kLeaning_s, write_looks_before, write_wild_looks } from "./recorded_looks.mjs";
+import { description, kLeaning_s, send_looks, write_looks_before, write_wild_looks } from "./recorded_looks.mjs";
 
 const kHold_m = 0.002;
 const kMotion_s = 30;
@@ -153,10 +152,9 @@ async function follow_the_recording(browser) {
 async function mislead_the_tracker(page, port, neutral) {
   const path = join(folder, "wild.jsonl");
   write_wild_looks(path);
-  const sender = start("tact-track-send", [path, "--port", String(port)]);
-  sender.stdout.resume();
+  const sent = send_looks(path, port);
   const samples = await watch(page, kLeaning_s[1] - kLeaning_s[0] + 5);
-  check("plays the wild looks", (await sender.ended) === 0);
+  await sent;
   const says = (words) => samples.filter((sample) => sample.shown.includes(words));
   const [jumps, old, well] = [
     says("lost (it jumps)"),
@@ -195,11 +193,10 @@ async function lose_the_tracker(browser) {
   check("stands without a tracker", await waits(page, () => window.tact.link === "live" && window.tact.drawn_figure_m !== null));
   const path = join(folder, "leaning.jsonl");
   write_looks_before(path, kSilent_s);
-  const sender = start("tact-track-send", [path, "--port", String(port)]);
-  sender.stdout.resume();
+  const sent = send_looks(path, port);
   check("hears the tracker by UDP", await waits(page, () => window.tact.tracking_words === ""));
   const samples = await watch(page, kSilent_s + 7);
-  check("plays the looks", (await sender.ended) === 0);
+  await sent;
   const well = samples.filter((sample) => sample.words === "");
   const [begin, before] = [well.find((sample) => sample.time_s > 1.5) ?? samples[0], well.at(-1) ?? samples[0]];
   check("leans with the operator", distance(before.head_m, begin.head_m) > 0.05, mm(distance(before.head_m, begin.head_m)));

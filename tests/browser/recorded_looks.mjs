@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // recorded_looks.mjs - looks of a tracker from the recording of the scene maintenance, and false ones after them.
+import { createSocket } from "node:dgram";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
+import { setTimeout as wait_ms } from "node:timers/promises";
 
 import { root } from "./stage.mjs";
 
@@ -14,6 +16,21 @@ export const kLeaning_s = [6.5, 9]; // of the recording
 export function write_looks_before(path, end_s) {
   const lines = readFileSync(observations, "utf8").trim().split("\n");
   writeFileSync(path, lines.filter((line) => JSON.parse(line).time_s < end_s).join("\n") + "\n");
+}
+
+/** Sends the looks of a file to a port, in their order and with their own timing, as a tracker would. */
+export async function send_looks(path, port) {
+  const socket = createSocket("udp4");
+  let due_ms = performance.now();
+  let before_s = Infinity; // a time that goes back comes at once
+  for (const line of readFileSync(path, "utf8").trim().split("\n")) {
+    const { time_s } = JSON.parse(line);
+    due_ms += 1e3 * Math.max(0, time_s - before_s);
+    before_s = time_s;
+    if (due_ms > performance.now()) await wait_ms(due_ms - performance.now());
+    await new Promise((done) => socket.send(line, port, "127.0.0.1", done));
+  }
+  socket.close();
 }
 
 /**

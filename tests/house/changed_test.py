@@ -17,7 +17,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 ASK = """root=$PWD build=$PWD/build
 tracked() { git -C "$root" "$@"; }
 . "$0"
-built_programs() { (cd build; find * -perm -u+x -type f ! -name 'tact-lab*' | sort); }
+built_programs() { (cd build; find * -perm -u+x -type f ! -name 'tact-old*' | sort); }
 objects_of() { printf "$build/%s\\n" "$@"; }
 changed_tests"""
 LAW, GATE, SCRIPTS = "^(model_law)([+]|$)", "^(firmware_gate)([+]|$)", "[+]programs"
@@ -29,7 +29,7 @@ CHANGES = {
     ("build/tactd",): f"{GATE}|{SCRIPTS}",  # which the tests of firmware_gate run
     ("build/libtact-stub-dhd.so", "build/tests/model_law_test"): f"{LAW}|{SCRIPTS}",
     ("build/install_manifest.txt",): "",
-    ("build/tact-lab",): "",  # of another configuration
+    ("build/tact-old",): "",  # of another configuration
     ("model/law/law.h",): "",  # its programs are newer as soon as they are built
     ("model/scenes/liver.toml",): ".",
     ("host/PROTOCOL.md",): ".",

@@ -69,7 +69,7 @@ ROOMS = {
 }
 # A tool measures every room above; of the other tools it may include these.
 TOOLS = {
-    **dict.fromkeys(["printed", "program", "track_send"], []),
+    **dict.fromkeys(["printed", "program"], []),
     **dict.fromkeys(["calibrate", "doctor", "ground_truth", "mesh", "report", "tracking_bench"], ["program"]),
     **dict.fromkeys(["jitter", "limits", "sweep"], ["program", "report"]),
     "condense": ["program", "ground_truth", "mesh"],
@@ -79,7 +79,9 @@ TOOLS = {
     "plan": ["program", "report", "chart"],
     "new_scene": ["program", "mesh", "ground_truth", "condense"],
     **dict.fromkeys(["figures", "stability"], ["program", "report", "printed"]),
-    "verify": ["printed"],
+    "verify": ["program", "printed"],
+    "lab": ["program", "report", "chart", "condense", "figures", "fit", "ground_truth", "mesh", "new_scene", "plan",
+            "reference", "stability", "sweep"],
 }
 # The parts of a room, and what each may include of the others. What stands in the room itself, as main.cc, includes
 # every part, and no part includes that. Other rooms take a room as a whole.

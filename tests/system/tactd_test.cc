@@ -129,7 +129,7 @@ TEST_F(Tactd, ARunOfAnAutomaticLawIsReplayedWithoutThePlan) {
   const std::string log = in_folder("auto.tactlog");
   const Outcome unplanned = tactd(kLiver + " --set law=auto --free-run --ticks 3");
   EXPECT_EQ(unplanned.status, 2);
-  EXPECT_TRUE(has(unplanned, "run tact-plan " + kLiver + " --reference FILE"));
+  EXPECT_TRUE(has(unplanned, "run tact-lab plan " + kLiver + " --reference FILE"));
   const auto scene = tact::model::scene::load_scene(kLiver, {"law=\"auto\""});
   ASSERT_TRUE(scene) << scene.error().sentence;
   ASSERT_TRUE(tact::model::scene::write_plan(

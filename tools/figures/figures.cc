@@ -14,15 +14,11 @@ std::vector<Figure> all_figures() {
 }
 
 Table numbers_of(const std::vector<Figure>& figures) {
-  std::size_t count = 0;
-  for (const Figure& figure : figures) count += figure.numbers.size();
-  Table table("numbers",
-              {{"figure", CellKind::kWord},
-               {"quantity", CellKind::kWord},
-               {"printed"},
-               {"tact"},
-               {"difference_percent"}},
-              count);
+  Table table("numbers", {{"figure", CellKind::kWord},
+                          {"quantity", CellKind::kWord},
+                          {"printed"},
+                          {"tact"},
+                          {"difference_percent"}});
   for (const Figure& figure : figures)
     for (const Printed& n : figure.numbers)
       table.add({figure.of, n.quantity, n.printed, n.ours, 100.0 * (n.ours / n.printed - 1.0)});
@@ -34,7 +30,7 @@ Table curves_of(const std::string& name, const std::vector<std::string>& columns
   std::vector<report::Column> named;
   named.reserve(columns.size());
   for (const std::string& column : columns) named.push_back({column});
-  Table table(name, std::move(named), rows.size());
+  Table table(name, std::move(named));
   for (report::Row& row : rows) table.add(std::move(row));
   return table;
 }

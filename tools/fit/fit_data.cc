@@ -99,11 +99,11 @@ Result<FitData> fit_data_of(const ground_truth::ReferenceData& reference,
     if (!site.samples.empty()) data.sites.push_back(std::move(site));
   }
   if (data.sites.empty())
-    return Error{
-        fmt::format("the reference has no case {} large strain; solve it again: tact-reference {}"
-                    "{} --out FILE",
-                    large_strain ? "with" : "without", scene.path,
-                    large_strain ? " --large-strain SITES" : "")};
+    return Error{fmt::format(
+        "the reference has no case {} large strain; solve it again: tact-lab reference {}"
+        "{} --out FILE",
+        large_strain ? "with" : "without", scene.path,
+        large_strain ? " --large-strain SITES" : "")};
   if (auto error = hold_out(data, held_out)) return std::move(*error);
   for (FitSite& site : data.sites)
     // Cases may know fewer rings: the others are unknown, not zero.

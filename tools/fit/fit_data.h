@@ -4,7 +4,7 @@
 //
 // Signs as in a law: depth > 0 presses, < 0 pulls; the force has the sign of the depth; ring k is
 // the displacement into the tissue at the radius ring_radius_m[k] from the site. It comes from the
-// reference (tact-reference) or from a bench (fit_csv.h).
+// reference (tact-lab reference) or from a bench (fit_csv.h).
 #pragma once
 
 #include <cmath>

@@ -170,7 +170,7 @@ std::string text_of(const FitReport& report) {
 }
 
 std::string toml_of(const FitReport& report) {
-  std::string out = "# By tact-fit";
+  std::string out = "# By tact-lab fit";
   if (report.data) out += ", from " + report.data->source;
   out += "\n";
   std::vector<std::string> written;

@@ -80,7 +80,7 @@ std::string text_of(const SolvedSite& site) {
 }  // namespace
 
 Result<ReferenceData> read_reference(const std::string& path) {
-  return read_json(path, kSchema, "tact-reference SCENE --out FILE", data_of, check);
+  return read_json(path, kSchema, "tact-lab reference SCENE --out FILE", data_of, check);
 }
 
 std::string reference_text(const ReferenceData& data) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// reference_data.h - what an elastic organ does at some sites, solved by tact-reference.
+// reference_data.h - what an elastic organ does at some sites, solved by tact-lab reference.
 //
 // Signs as in a law: depth > 0 presses, < 0 pulls; force has the sign of the depth; the profile is
 // the displacement into the tissue along the site's direction, averaged over the surface ring whose

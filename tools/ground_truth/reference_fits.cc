@@ -24,7 +24,7 @@ constexpr const char* kTool = "--tool ";
 
 /// `how`: the options of the command that solves such a reference.
 Error differs(const Scene& scene, const std::string& what, const char* how = "") {
-  return {fmt::format("{0}: {1}; solve it again: tact-reference {0} {2}--out FILE", scene.path,
+  return {fmt::format("{0}: {1}; solve it again: tact-lab reference {0} {2}--out FILE", scene.path,
                       what, how)};
 }
 

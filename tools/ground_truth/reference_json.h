@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// reference_json.h - what the files of tact-reference have in common.
+// reference_json.h - what the files of tact-lab reference have in common.
 #pragma once
 
 #include <fmt/format.h>

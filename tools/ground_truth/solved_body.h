@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// solved_body.h - the elastic body that every file of tact-reference is about.
+// solved_body.h - the elastic body that every file of tact-lab reference is about.
 #pragma once
 
 #include <string>

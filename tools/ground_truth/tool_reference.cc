@@ -122,7 +122,7 @@ Quat turn_between(const Vec3& from, const Vec3& to) {
 }
 
 Result<ToolReference> read_tool_reference(const std::string& path) {
-  return read_json(path, kToolSchema, "tact-reference SCENE --tool --out FILE", tool_data_of,
+  return read_json(path, kToolSchema, "tact-lab reference SCENE --tool --out FILE", tool_data_of,
                    check_tool);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tool_reference.h - what an elastic organ does under the whole tool, solved by tact-reference
+// tool_reference.h - what an elastic organ does under the whole tool, solved by tact-lab reference
 // --tool.
 //
 // All spheres of the tool are one rigid body without friction; the organ is linear elastic. Where:

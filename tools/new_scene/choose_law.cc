@@ -9,17 +9,18 @@ std::optional<model::Error> choose_law(
     const OutputNames& files, const std::string& log_path,
     const std::function<void(const char* step, const std::string& text)>& tell) {
   tell("reference", "one sphere, by CalculiX: minutes for thousands of vertices");
-  auto answer = ask("tact-reference", {files.scene, "--out", files.reference}, log_path);
+  auto answer = ask("tact-lab", {"reference", files.scene, "--out", files.reference}, log_path);
   if (!answer) return answer.error();
   tell("reference", "the whole tool, by finite elements: as long again");
   // Level 1: the places are nine, and a finer mesh changes their force by 2 %.
-  answer = ask("tact-reference",
-               {files.scene, "--tool", "--level", "1", "--out", files.tool_reference}, log_path);
+  answer = ask("tact-lab",
+               {"reference", files.scene, "--tool", "--level", "1", "--out", files.tool_reference},
+               log_path);
   if (!answer) return answer.error();
-  answer =
-      ask("tact-plan",
-          {files.scene, "--reference", files.reference, "--tool-reference", files.tool_reference},
-          log_path);
+  answer = ask("tact-lab",
+               {"plan", files.scene, "--reference", files.reference, "--tool-reference",
+                files.tool_reference},
+               log_path);
   if (!answer) return answer.error();
   for (const std::string& line : *answer) tell("plan", line);
   answer = ask("tactd", {files.scene, "--check"}, log_path);

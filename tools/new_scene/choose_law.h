@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// choose_law.h - the law of a new scene as tact-plan chooses it: references by tact-reference, then
-// tact-plan, which leaves its choice in the cache of this user for this PC.
+// choose_law.h - the law of a new scene: references by tact-lab reference, then tact-lab plan,
+// which leaves its choice in the cache of this user for this PC.
 #pragma once
 
 #include <functional>

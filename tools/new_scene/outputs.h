@@ -13,7 +13,7 @@ namespace tact::tools::new_scene {
 /// FOLDER/NAME.toml and what lies beside it.
 struct OutputNames {
   std::string scene, map, organ, tool;
-  std::string reference, tool_reference;  // of tact-reference, with --plan
+  std::string reference, tool_reference;  // of tact-lab reference, with --plan
   std::string name;                       // NAME
 };
 

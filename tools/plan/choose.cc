@@ -37,7 +37,7 @@ std::string lacks(const Candidate& c, const ToleranceSettings& t) {
   if (c.force_error_ratio > t.force_error_ratio)
     add(
         fmt::format("force error {:.3g} above tolerance.force_error_ratio = {:.3g}: fit the law "
-                    "(tact-fit), describe a nearer one ([compliance]) or allow {:.3g}",
+                    "(tact-lab fit), describe a nearer one ([compliance]) or allow {:.3g}",
                     c.force_error_ratio, t.force_error_ratio, c.force_error_ratio));
   if (c.own_error_ratio.value_or(0.0) > t.force_error_ratio)
     add(fmt::format("{:.3g} of the own force at the worst place, above tolerance.force_error_ratio",

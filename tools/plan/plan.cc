@@ -69,11 +69,11 @@ std::optional<Error> check_chart_fits(const report::Table& table, const model::s
     if (table.word(row, "scene_hash") != scene.hash)
       return Error{fmt::format(
           "{}: the chart of another scene, or of this one before a change; chart it again: "
-          "tact-chart {} --reference FILE --out DIR",
+          "tact-lab chart {} --reference FILE --out DIR",
           path, scene.path)};
     if (table.word(row, "machine") != machine)
       return Error{
-          fmt::format("{}: measured on another machine, {}; chart it here: tact-chart {} "
+          fmt::format("{}: measured on another machine, {}; chart it here: tact-lab chart {} "
                       "--reference FILE --out DIR",
                       path, table.word(row, "machine"), scene.path)};
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// plan.h - what tact-plan chooses from: the candidates of a chart, if it is of this scene and
+// plan.h - what tact-lab plan chooses from: the candidates of a chart, if it is of this scene and
 // machine.
 #pragma once
 

@@ -18,10 +18,12 @@ namespace fs = std::filesystem;
 using model::Error;
 using model::Result;
 
+constexpr const char* kStatus =
+    "\nExit status: 0 good, 1 a check failed or Ctrl-C, 2 bad usage or input.";
+
 Program::Program(std::string name, const std::string& purpose, const std::string& footer)
     : name_(std::move(name)), options_(std::make_unique<CLI::App>(purpose)) {
-  options_->footer(footer +
-                   "\nExit status: 0 good, 1 a check failed or Ctrl-C, 2 bad usage or input.");
+  options_->footer(footer + kStatus);
 }
 
 Program::~Program() = default;
@@ -36,9 +38,26 @@ std::optional<int> Program::parse(int argc, char** argv) {
   return std::nullopt;
 }
 
+CLI::App& Program::add_part(const std::string& name, const std::string& purpose,
+                            const std::string& footer) {
+  options_->require_subcommand(1);
+  options_->set_help_all_flag("--help-all", "this, and the options of every subcommand");
+  CLI::App* part = options_->add_subcommand(name, purpose);
+  part->footer(footer + kStatus);
+  return *part;
+}
+
+int Program::run(int argc, char** argv) {
+  if (const auto status = parse(argc, argv)) return *status;
+  const std::string part = options_->get_subcommands().front()->get_name();
+  part_ = " " + part;
+  const auto status = parts_.at(part)(*this);
+  return status ? *status : fail(status.error());
+}
+
 int Program::fail(const Error& error, std::string_view kept) const {
   const bool interrupted = was_interrupted(error);
-  fmt::print(stderr, "{}: {}\n", name_,
+  fmt::print(stderr, "{}{}: {}\n", name_, part_,
              interrupted ? fmt::format("interrupted; {}", kept) : error.sentence);
   return interrupted ? 1 : 2;
 }
@@ -53,25 +72,6 @@ Result<model::scene::Scene> SceneArguments::load() const {
   auto scene = model::scene::load_scene(path, overrides);
   if (scene) scene->device.trust_library = trust_library;
   return scene;
-}
-
-void SweepArguments::add_to(CLI::App& options, const std::string& row,
-                            const std::string& quick_means) {
-  auto* shard_option = options.add_option(
-      "--shard", shard_text_, fmt::format("i/n: every n-th {} from i on, 0 <= i < n", row));
-  options.add_option("--merge", merge, "CSVs of all shards: the table of one whole run")
-      ->excludes(shard_option);
-  options.add_flag("--quick", quick, quick_means);
-  options.add_flag("--no-pictures", no_pictures, "tables alone; needs no gnuplot");
-}
-
-std::optional<Error> SweepArguments::prepare(const std::string& out_directory) {
-  if (!shard_text_.empty()) {
-    const auto parsed = parse_shard(shard_text_);
-    if (!parsed) return parsed.error();
-    shard = *parsed;
-  }
-  return prepare_folder(out_directory);
 }
 
 std::optional<Error> prepare_folder(const std::string& directory) {

@@ -3,12 +3,19 @@
 //
 //     Exit status   0 good,   1 a check failed or Ctrl-C,   2 bad usage or input
 //
-//     Program program("tact-chart", "Measure every law of the scene ...", "Errors are ratios ...");
-//     SceneArguments scene;
-//     scene.add_to(program.options());
+//     Program program("tact-doctor", "Is this PC fit ...", "ns: nanoseconds ...");
+//     program.options().add_flag(...);
 //     if (const auto status = program.parse(argc, argv)) return *status;
+//
+// or, with subcommands, each with options of its own:
+//
+//     Program lab("tact-lab", "makes, measures ...", "Options of each: ...");
+//     lab.add<Options>("chart", "speed against accuracy", "Errors are ...", add_options, measure);
+//     return lab.run(argc, argv);
 #pragma once
 
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,7 +25,6 @@
 #include "model/result.h"
 #include "model/scene/scene.h"
 #include "tools/program/interrupt.h"
-#include "tools/program/sweep.h"
 
 namespace CLI {
 class App;
@@ -35,6 +41,19 @@ class Program {
   Program& operator=(const Program&) = delete;
 
   CLI::App& options() { return *options_; }
+  /// A subcommand: `purpose` is its line in --help of the program; its own --help adds the options
+  /// and `footer`. `act` gives the exit status, or an error, which is told in one line.
+  template <typename Options>
+  void add(const std::string& name, const std::string& purpose, const std::string& footer,
+           void (*add_options)(CLI::App&, Options&),
+           model::Result<int> (*act)(const Program&, Options&)) {
+    const auto options = std::make_shared<Options>();
+    add_options(add_part(name, purpose, footer), *options);
+    parts_[name] = [options, act](const Program& program) { return act(program, *options); };
+  }
+  /// Parses, and runs the subcommand that was named; the exit status.
+  int run(int argc, char** argv);
+
   /// From here on Ctrl-C is a question (interrupt.h). The exit status if the program ends here:
   /// after --help, or with a bad option.
   std::optional<int> parse(int argc, char** argv);
@@ -44,8 +63,12 @@ class Program {
   const std::string& command() const { return command_; }
 
  private:
-  std::string name_, command_;
+  CLI::App& add_part(const std::string& name, const std::string& purpose,
+                     const std::string& footer);
+
+  std::string name_, part_, command_;  // part_: " chart" once it was named
   std::unique_ptr<CLI::App> options_;
+  std::map<std::string, std::function<model::Result<int>(const Program&)>> parts_;
   std::optional<InterruptWatch> watch_;
 };
 
@@ -57,20 +80,6 @@ struct SceneArguments {
 
   void add_to(CLI::App& options, const std::string& needs = "");
   model::Result<model::scene::Scene> load() const;
-};
-
-/// --shard, --merge, --quick and --no-pictures of a sweep that many machines may share.
-struct SweepArguments {
-  Shard shard;
-  std::vector<std::string> merge;
-  bool quick = false, no_pictures = false;
-
-  void add_to(CLI::App& options, const std::string& row, const std::string& quick_means);
-  /// After parse(): the shard from its text, and a folder that can be written to.
-  std::optional<model::Error> prepare(const std::string& out_directory);
-
- private:
-  std::string shard_text_;
 };
 
 /// Makes the folder and tries to write there, before an hour of work; an error says what to do.

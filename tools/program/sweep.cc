@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <mutex>
@@ -17,12 +16,6 @@
 
 namespace tact::tools::program {
 namespace {
-
-bool parse_number(const std::string& text, std::size_t& number) {
-  const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, number);
-  return error == std::errc{} && rest == end;
-}
 
 /// One line that is written over itself, a few times a second.
 void show_progress(const std::string& label, const std::atomic<std::size_t>& done,
@@ -46,27 +39,14 @@ void show_progress(const std::string& label, const std::atomic<std::size_t>& don
 
 }  // namespace
 
-model::Result<Shard> parse_shard(const std::string& text) {
-  const auto slash = text.find('/');
-  Shard shard;
-  const bool good = slash != std::string::npos &&
-                    parse_number(text.substr(0, slash), shard.index) &&
-                    parse_number(text.substr(slash + 1), shard.count);
-  if (good && shard.index < shard.count) return shard;
-  return model::Error{fmt::format(
-      "shard \"{}\" is not i/n with 0 <= i < n; split in four, the shards are 0/4, 1/4, 2/4, 3/4",
-      text)};
-}
-
 bool run_jobs(std::size_t jobs, const SweepOptions& options,
               const std::function<void(std::size_t job)>& work) {
-  const std::size_t mine = options.shard.jobs_of(jobs);
   std::atomic<std::size_t> next{0}, done{0};
   const auto worker = [&] {
     while (!is_interrupted()) {
-      const std::size_t k = next.fetch_add(1);
-      if (k >= mine) return;
-      work(options.shard.job(k));
+      const std::size_t job = next.fetch_add(1);
+      if (job >= jobs) return;
+      work(job);
       done.fetch_add(1);
     }
   };
@@ -74,11 +54,11 @@ bool run_jobs(std::size_t jobs, const SweepOptions& options,
   const std::size_t wanted = options.threads > 0 ? options.threads : cores;
   {
     std::vector<std::jthread> threads;
-    threads.reserve(std::min(wanted, mine));
-    for (std::size_t i = 0; i < std::min(wanted, mine); ++i) threads.emplace_back(worker);
-    show_progress(options.label, done, mine);
+    threads.reserve(std::min(wanted, jobs));
+    for (std::size_t i = 0; i < std::min(wanted, jobs); ++i) threads.emplace_back(worker);
+    show_progress(options.label, done, jobs);
   }  // joined
-  return done.load() == mine;
+  return done.load() == jobs;
 }
 
 std::optional<model::Error> run_until_error(

@@ -16,6 +16,9 @@ namespace tact::tools::report {
 using model::Error;
 using model::Result;
 
+namespace {
+
+/// Between commas, without blanks around and quotes within.
 std::vector<std::string> split_cells(const std::string& line) {
   std::vector<std::string> cells;
   for (std::size_t at = 0; at <= line.size();) {
@@ -29,6 +32,8 @@ std::vector<std::string> split_cells(const std::string& line) {
   }
   return cells;
 }
+
+}  // namespace
 
 std::optional<double> number_in(const std::string& cell) {
   double value = 0.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// csv.h - rows of comma-separated cells: a table of this build, or a bench's file from elsewhere.
+// csv.h - rows of comma-separated cells, of a bench's file from elsewhere.
 #pragma once
 
 #include <optional>
@@ -10,8 +10,6 @@
 
 namespace tact::tools::report {
 
-/// Between commas, without blanks around and quotes within.
-std::vector<std::string> split_cells(const std::string& line);
 /// All of the cell; nan and inf too.
 std::optional<double> number_in(const std::string& cell);
 

@@ -82,7 +82,7 @@ LAW_SIZES = {"compliance": "17 curves", "hex_sheet": "15 rings", "disc_stack": "
 
 def chart():
     """RMS error of one sphere over all places of the reference."""
-    command = ["build/tact-chart", LIVER, "--reference", LIVER_REFERENCE]
+    command = ["build/tact-lab", "chart", LIVER, "--reference", LIVER_REFERENCE]
     values = {}
     for row in json_in_file(*command, option="--out", name="chart.json")["rows"]:
         if row["size"] == LAW_SIZES.get(row["family"]):
@@ -95,7 +95,7 @@ def chart():
 
 def tool():
     """The whole tool, as the scene says."""
-    command = ["build/tact-chart", LIVER, "--tool-reference", LIVER_TOOL,
+    command = ["build/tact-lab", "chart", LIVER, "--tool-reference", LIVER_TOOL,
                "--accuracy", "model/scenes/liver.accuracy"]
     values = {}
     for row in json_in_file(*command, option="--out", name="tool.json")["laws"]:
@@ -113,12 +113,12 @@ def stability():
     """The maps that tools/stability/README.md quotes, with the numbers of their findings."""
     values = {}
     for name in ("integrators", "loop", "loop_delta"):
-        command = ["build/tact-stability", "--only", name, "--no-pictures", "--json"]
+        command = ["build/tact-lab", "stability", "--only", name, "--no-pictures", "--json"]
         found = json.loads(told_by(*command, "--out", tempfile.mkdtemp(), status=(0, 1)))["maps"][0]
         values[name] = {"rows": found["rows"]}
         for finding in found["findings"]:
             values[name].update(finding["numbers"])
-    return "build/tact-stability --out DIR --no-pictures --json, of three maps", values
+    return "build/tact-lab stability --out DIR --no-pictures --json, of three maps", values
 
 
 def tracking():
@@ -142,7 +142,7 @@ def coupling():
 
 def measured():
     """Laws against measured silicone: one material is fitted, two judge by one factor each."""
-    command = ["build/tact-fit", LIVER, "--set", "varies_by_place=false", "rhombus.area_m2=0",
+    command = ["build/tact-lab", "fit", LIVER, "--set", "varies_by_place=false", "rhombus.area_m2=0",
                "--data", "tests/data/measured/silicone_compression.csv",
                "--depth-column", "compression_mm", "--depth-unit-m", "0.001",
                "--force-column", "load_mean_N", "--scale-by-site", "--held-out", "EF10_50T,EF30_50T",
@@ -175,7 +175,7 @@ def image():
 
 def finite_strain():
     """The shipped liver under its whole tool against finite elements at finite strain."""
-    command = ["build/tact-sweep", LIVER, "--reference", "tests/data/reference/finite_strain_liver.json"]
+    command = ["build/tact-lab", "sweep", LIVER, "--reference", "tests/data/reference/finite_strain_liver.json"]
     places = {
         place: {"worst_percent": 100.0 * told["worst_ratio"], "worst_mm": 1e3 * told["worst_depth_m"],
                 "sphere_percent": 100.0 * told["worst_sphere_ratio"]}

@@ -61,7 +61,7 @@ Result<PressSweep> sweep_on_all_cores(const model::scene::Scene& scene,
   PressSweep out{.settings = (*first)->settings(), .results = {}};
   Pressers pressers(scene, std::move(*first));
   auto results = program::sweep<model::scene::PressResult>(
-      places.size(), {.label = "tact-sweep"},
+      places.size(), {.label = "tact-lab sweep"},
       [&](std::size_t job) { return pressers.press(places[job]); });
   if (!results) return program::interruption();
   out.results = std::move(*results);

@@ -58,25 +58,23 @@ nlohmann::json to_json(const PressResult& r) {
 
 report::Table presses_table(const model::scene::Scene& scene, const PressSweep& sweep) {
   constexpr auto kWord = report::CellKind::kWord;
-  report::Table table("presses",
-                      {{"vertex"},
-                       {"way", kWord},
-                       {"x_m"},
-                       {"y_m"},
-                       {"z_m"},
-                       {"state", kWord},
-                       {"flaws", kWord},
-                       {"deepest_m"},
-                       {"force_N"},
-                       {"slope_N_per_m"},
-                       {"slope_at_m"},
-                       {"change_N"},
-                       {"change_at_m"},
-                       {"least_N"},
-                       {"least_at_m"},
-                       {"energy_ratio"},
-                       {"energy_at_m"}},
-                      sweep.results.size());
+  report::Table table("presses", {{"vertex"},
+                                  {"way", kWord},
+                                  {"x_m"},
+                                  {"y_m"},
+                                  {"z_m"},
+                                  {"state", kWord},
+                                  {"flaws", kWord},
+                                  {"deepest_m"},
+                                  {"force_N"},
+                                  {"slope_N_per_m"},
+                                  {"slope_at_m"},
+                                  {"change_N"},
+                                  {"change_at_m"},
+                                  {"least_N"},
+                                  {"least_at_m"},
+                                  {"energy_ratio"},
+                                  {"energy_at_m"}});
   for (const PressResult& r : sweep.results) {
     const model::Vec3& at_m = scene.organ_mesh.vertex_m[r.place.vertex];
     table.add({static_cast<double>(r.place.vertex), word_of(r.place.way), at_m.x, at_m.y, at_m.z,

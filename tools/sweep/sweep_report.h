@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// sweep_report.h - what tact-sweep writes and says of a sweep.
+// sweep_report.h - what tact-lab sweep writes and says of a sweep.
 #pragma once
 
 #include <string>

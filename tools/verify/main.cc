@@ -12,10 +12,8 @@
 #include <vector>
 
 #include "model/io/json.h"
-#include "model/io/program/command_line.h"
 #include "model/io/program/installed.h"
-#include "model/io/program/program_end.h"
-#include "model/result.h"
+#include "tools/program/program.h"
 #include "tools/verify/report.h"
 
 namespace {
@@ -24,6 +22,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using tact::model::Error;
 using tact::model::Result;
+using tact::tools::program::Program;
 using tact::tools::verify::Failure;
 using tact::tools::verify::Report;
 using tact::tools::verify::Verifier;
@@ -139,26 +138,21 @@ json to_json(const FileReport& file) {
           {"failures", failures}};
 }
 
-int complain(const Error& error) {
-  fmt::print(stderr, "tact-verify: {}\n", error.sentence);
-  return 2;
-}
-
-int run(std::vector<std::string> paths, bool as_json) {
+int run(const Program& program, std::vector<std::string> paths, bool as_json) {
   if (paths.empty()) {
     const auto directory = default_directory();
-    if (!directory) return complain(directory.error());
+    if (!directory) return program.fail(directory.error());
     paths.push_back(*directory);
   }
   const auto files = files_of(paths);
-  if (!files) return complain(files.error());
+  if (!files) return program.fail(files.error());
   int passed = 0, failed = 0, status = 0;
   json out = json::array();
   for (const std::string& path : *files) {
     const auto report = verify_file(path);
     if (!report) {
       // The other files are judged all the same; the exit status remembers.
-      status = complain(report.error());
+      status = program.fail(report.error());
       continue;
     }
     passed += report->report.passed();
@@ -183,19 +177,15 @@ int run(std::vector<std::string> paths, bool as_json) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  tact::model::io::watch_standard_output("tact-verify");
-  tact::model::io::tell_uncaught("tact-verify");
-  CLI::App app{
-      "Recompute published cases and compare, each at the tolerance of its file (SI units: m, rad, "
-      "N, N m, kg).\nExit status: 0 all passed, 1 a case failed, 2 a file is unreadable or "
-      "unknown."};
+  Program program(
+      "tact-verify", "Recompute published cases and compare, each at the tolerance of its file.",
+      "SI units: m, rad, N, N m, kg. A file that is unreadable or unknown is bad input.");
   std::vector<std::string> paths;
   bool as_json = false;
-  app.add_option(
+  program.options().add_option(
       "files", paths,
       "vector files or directories of them (default: tests/data/vectors, or the installed ones)");
-  app.add_flag("--json", as_json, "print one JSON document");
-  if (const auto status = tact::model::io::parse_command_line(app, "tact-verify", argc, argv))
-    return *status;
-  return run(paths, as_json);
+  program.options().add_flag("--json", as_json, "print one JSON document");
+  if (const auto status = program.parse(argc, argv)) return *status;
+  return run(program, paths, as_json);
 }

@@ -17,8 +17,11 @@ bool is_empty_value(std::string_view word) {
   return word.empty() || (word.starts_with("--") && word.find('=') == word.size() - 1);
 }
 
-std::string refusal(const char* program, std::string_view sentence) {
-  return fmt::format("{0}: {1}; see {0} --help\n", program, sentence);
+/// With the subcommand that was named, as its --help tells its options.
+std::string refusal(const CLI::App& options, const char* program, std::string_view sentence) {
+  std::string name = program;
+  for (const CLI::App* part : options.get_subcommands()) name += " " + part->get_name();
+  return fmt::format("{0}: {1}; see {0} --help\n", name, sentence);
 }
 
 }  // namespace
@@ -27,8 +30,8 @@ std::optional<int> parse_command_line(CLI::App& options, const char* program, in
                                       const char* const* argv,
                                       const std::function<std::optional<Error>()>& check) {
   // CLI11's own words take two lines and do not name the program.
-  options.failure_message([program](const CLI::App*, const CLI::Error& error) {
-    return refusal(program, error.what());
+  options.failure_message([program](const CLI::App* app, const CLI::Error& error) {
+    return refusal(*app, program, error.what());
   });
   options.set_version_flag("--version",
                            fmt::format("{} {} ({}), compiler {}", program, tact_version(),
@@ -47,7 +50,7 @@ std::optional<int> parse_command_line(CLI::App& options, const char* program, in
     return options.exit(error) == 0 ? 0 : 2;
   }
   if (const auto error = check ? check() : std::nullopt) {
-    fmt::print(stderr, "{}", refusal(program, error->sentence));
+    fmt::print(stderr, "{}", refusal(options, program, error->sentence));
     return 2;
   }
   return std::nullopt;

@@ -194,7 +194,7 @@ TEST(PressCheck, NamesABadPlaceWithTheRemedyAndDoesNotRefuseIt) {
       check->note,
       "plate.toml: 2 of 3 presses of the whole tool are not sound, the worst at vertex 3080, "
       "upright: the force changes by 0.262 N in 0.02 mm at 7.30 mm (allowed: 0.006 N); smooth "
-      "or refine the organ's mesh there (tact-mesh), or keep the tool from it; tact-sweep "
+      "or refine the organ's mesh there (tact-mesh), or keep the tool from it; tact-lab sweep "
       "tries every vertex");
 }
 

@@ -25,7 +25,7 @@ TEST(TickBudget, RefusesALawThatCannotKeepItsBudget) {
   scene.tolerance = {.force_error_ratio = 0.07, .shape_error_ratio = 0.2, .tick_budget_us = 1e-4};
   const auto refused = check_budget(scene, {});
   ASSERT_FALSE(refused);
-  for (const char* part : {"tolerance.tick_budget_us is 0.0001", "tact-plan", "median"})
+  for (const char* part : {"tolerance.tick_budget_us is 0.0001", "tact-lab plan", "median"})
     EXPECT_TRUE(has(refused.error(), part)) << refused.error().sentence;
 }
 

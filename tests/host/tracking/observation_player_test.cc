@@ -28,17 +28,6 @@ class RecordingFile : public ::testing::Test {
   fs::path path_;
 };
 
-TEST_F(RecordingFile, KeepsItsTextOnlyForWhoSendsItOn) {
-  const model::Result<ObservationFile> file = read_observation_file(path_);
-  ASSERT_EQ(sentence_of(file), "");
-  ASSERT_EQ(file->lines.size(), 1u);
-  EXPECT_EQ(file->lines[0].text, "");
-  EXPECT_EQ(file->lines[0].seen.time_s, 1.5);
-  const model::Result<ObservationFile> whole = read_observation_file(path_, KeepText::kYes);
-  ASSERT_EQ(sentence_of(whole), "");
-  EXPECT_EQ(whole->lines.at(0).text, kLine);
-}
-
 TEST_F(RecordingFile, LargerThan64MegabytesIsRefusedInOneLine) {
   fs::resize_file(path_, kMaxRecording_bytes + 1);  // takes no room on the disk
   EXPECT_EQ(sentence_of(read_observation_file(path_)),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tracker's input: datagrams, a recorded file, the program that sends one.
+// The tracker's input: datagrams, a recorded file.
 #include "host/tracking/operator_tracking.h"
 
 #include <gtest/gtest.h>
@@ -8,9 +8,7 @@
 #include <boost/asio/buffer.hpp>
 #include <chrono>
 #include <filesystem>
-#include <thread>
 
-#include "tests/support/program.h"
 #include "tests/support/sentence.h"
 #include "tests/support/tracking_views.h"
 
@@ -146,10 +144,6 @@ TEST_F(Input, AFileThatCannotBeginAgainIsRefused) {
   const std::string wrong = open("recording = \"a.jsonl\"");
   EXPECT_TRUE(wrong.starts_with(file + ": camera front looks at body h for 1.00 s")) << wrong;
   EXPECT_NE(wrong.find("record longer"), std::string::npos) << wrong;
-  EXPECT_EQ(tests::run_command("timeout 5 " + tests::program_path("tact-track-send") + " " + file +
-                               " --loop --port 9")
-                .status,
-            2);
   // A long file in which another body comes for a moment is no better: that body is lost for ever.
   std::string moment = line(0.0, 5.5, 0);
   moment.replace(moment.find("\"h\""), 3, "\"t\"");
@@ -171,29 +165,6 @@ TEST_F(Input, BadLinesOfAFileAreCountedAndTheFirstIsToldWithItsLine) {
   test::write_file(folder_ + "/a.jsonl", "x\n");
   EXPECT_NE(open("recording = \"a.jsonl\"").find("a.jsonl:1:"), std::string::npos);
   EXPECT_NE(open("recording = \"b.jsonl\"").find("no such file"), std::string::npos);
-}
-
-TEST_F(Input, TheSenderPlaysAFileToIt) {
-  std::string text;
-  for (int i = 0; i < 30; ++i)
-    text += line(0.01 * i, 0.02 * i, static_cast<std::uint64_t>(i)) + "\n";
-  test::write_file(folder_ + "/a.jsonl", text);
-  ASSERT_EQ(open("udp_port = " + std::to_string(free_port())), "");
-  tracking_.start();
-  tests::Outcome outcome;
-  std::thread program([&] {
-    outcome = tests::run_program("tact-track-send", folder_ + "/a.jsonl --json --speed 2 --port " +
-                                                        std::to_string(tracking_.port()));
-  });
-  EXPECT_TRUE(run_until([&] { return hand().raw.position_m.x() > 0.285; }));
-  program.join();
-  EXPECT_EQ(outcome.status, 0) << outcome.output;
-  EXPECT_NE(outcome.output.find("\"sent\":30"), std::string::npos) << outcome.output;
-  EXPECT_EQ(tests::run_program("tact-track-send", "--help").status, 0);
-  EXPECT_EQ(tests::run_program("tact-track-send", "").status, 2);
-  EXPECT_EQ(tests::run_program("tact-track-send", folder_ + "/none.jsonl").status, 2);
-  test::write_file(folder_ + "/b.jsonl", "x\n" + line(0.0, 1.0, 1) + "\n");
-  EXPECT_EQ(tests::run_program("tact-track-send", folder_ + "/b.jsonl --port 9").status, 1);
 }
 
 }  // namespace tact::host::tracking::operator_tracking_test

@@ -27,8 +27,8 @@ TEST_F(FileWriterTest, AResultReplacesAnEarlierResult) {
   EXPECT_EQ(text("a.json"), "{\n \"b\": 2}\n");
   put("a.csv", "job,law,depth_m\n1,rhombus,2\n");
   EXPECT_EQ(sentence_of(write_file(path("a.csv"), "job,depth_m\n")), "");
-  put("b.csv", "# command: build/tact-chart\n");
-  EXPECT_EQ(sentence_of(write_file(path("b.csv"), "# command: ./tact-chart\n")), "");
+  put("b.csv", "# command: build/tact-lab chart\n");
+  EXPECT_EQ(sentence_of(write_file(path("b.csv"), "# command: ./tact-lab chart\n")), "");
   put("empty.toml", "");
   EXPECT_EQ(sentence_of(write_file(path("empty.toml"), "{}\n")), "");
   EXPECT_EQ(files(), 4u);
@@ -43,7 +43,7 @@ TEST_F(FileWriterTest, NothingElseIsEverWrittenOver) {
   for (const auto& [name, content] : kept) {
     put(name, content);
     for (const char* bytes :
-         {"{\n}\n", "job,law\n", "# command: tact-chart\n", "<!doctype html>", ""}) {
+         {"{\n}\n", "job,law\n", "# command: tact-lab chart\n", "<!doctype html>", ""}) {
       EXPECT_EQ(sentence_of(write_file(path(name), bytes)),
                 path(name) +
                     ": holds something else than what would be written, and is kept; name another "

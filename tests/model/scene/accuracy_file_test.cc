@@ -92,7 +92,7 @@ TEST_F(AccuracyFile, AnotherLawOrganOrToolHasNoFigure) {
   write(accuracy_text({figure()}));
   const Scene measured = scene;
   scene.rhombus.growth = 1.9;
-  expect_unknown("is of another law, organ or tool; tact-reference");
+  expect_unknown("is of another law, organ or tool; tact-lab reference");
   scene = measured;
   scene.tool.spheres.push_back({{0, 0.008, 0}, 0.004});
   expect_unknown("is of another law, organ or tool");
@@ -103,9 +103,9 @@ TEST_F(AccuracyFile, AnotherLawOrganOrToolHasNoFigure) {
 }
 
 TEST_F(AccuracyFile, WhatIsMissingOrDamagedIsSaid) {
-  expect_unknown("nobody has measured it; tact-reference");
+  expect_unknown("nobody has measured it; tact-lab reference");
   write("[rhombus]\n");
-  expect_unknown("is of another version of tact-chart; tact-reference");
+  expect_unknown("is of another version of tact-lab chart; tact-lab reference");
   write("schema = \"tact-accuracy/2\"\n[hex_sheet]\n");
   expect_unknown("has no [rhombus]");
   write("[rhombus\n");

@@ -52,7 +52,7 @@ class ComplianceFile : public testing::Test {
   bool says(const std::string& bytes, const std::string& words) {
     const std::string sentence = verdict(bytes);
     return sentence.find(words) != std::string::npos && sentence.find(path_) == 0 &&
-           sentence.find("tact-condense") != std::string::npos;
+           sentence.find("tact-lab condense") != std::string::npos;
   }
 
   std::string path_, content_;
@@ -131,7 +131,7 @@ TEST_F(ComplianceFile, EndsWithItsChecksum) {
 TEST_F(ComplianceFile, TellsThatThereIsNone) {
   const auto map = read_compliance_map(path_ + ".missing");
   ASSERT_FALSE(map);
-  EXPECT_NE(map.error().sentence.find("no such file; make it again with tact-condense"),
+  EXPECT_NE(map.error().sentence.find("no such file; make it again with tact-lab condense"),
             std::string::npos);
 }
 

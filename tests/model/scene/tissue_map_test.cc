@@ -22,7 +22,7 @@ std::string refusal(const Scene& scene) {
 /// A map beside the scene, and never the one that the scene names: it may be another scene's.
 bool ends_with_command(const std::string& said, const Scene& scene) {
   const std::string own = TACT_SOURCE_DIR "/model/scenes/liver.compliance";
-  return said.ends_with("write compliance.map = \"liver.compliance\", then tact-condense " +
+  return said.ends_with("write compliance.map = \"liver.compliance\", then tact-lab condense " +
                         scene.path + " --out " + own);
 }
 
@@ -44,7 +44,7 @@ TEST(TissueMap, AMissingFileHasOneCure) {
 TEST(TissueMap, AMissingMapOfItsOwnIsMadeUnderItsName) {
   const Scene scene = liver({"compliance.map=liver.compliance"});
   const std::string said = refusal(scene);
-  EXPECT_TRUE(said.ends_with("make it: tact-condense " + scene.path + " --out " +
+  EXPECT_TRUE(said.ends_with("make it: tact-lab condense " + scene.path + " --out " +
                              scene.compliance.map_path))
       << said;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The chart: errors as worked by hand, a front without a dominated point, shards that merge to the
-// same table. Times are never asserted.
+// The chart: errors as worked by hand, a front without a dominated point. Times are never
+// asserted.
 #include "tools/chart/compare/chart.h"
 
 #include <gtest/gtest.h>
@@ -75,13 +75,13 @@ report::Table chart_of(const model::scene::Scene& scene,
                        const ground_truth::ReferenceData& reference, const ChartOptions& options) {
   const auto rows = measure_chart(scene, reference, options);
   EXPECT_TRUE(rows) << (rows ? "" : rows.error().sentence);
-  report::Table table = empty_chart(variants_of(scene, options.wish).size(), options.shard);
+  report::Table table = empty_chart();
   for (const ChartRow& row : *rows) table.add(table_row(row, {"scene", "truth", "r1", "here"}));
   return table;
 }
 
 ChartOptions quick() {
-  return {.wish = {.laws = {}, .quick = true}, .shard = {}, .timing = kShort};
+  return {.wish = {.laws = {}, .quick = true}, .timing = kShort};
 }
 
 TEST(Errors, MatchPenAndPaper) {
@@ -202,41 +202,6 @@ TEST(Chart, ALinearReferenceJudgesTheComplianceLawAtSmallStrain) {
   EXPECT_LT(best, 0.005);
 }
 
-/// The CSV without the columns that are measured: those from the median time on.
-std::string computed_part(const report::Table& table) {
-  std::istringstream lines(table.to_csv());
-  std::string line, out;
-  while (std::getline(lines, line)) {
-    std::size_t end = 0;  // the number of the job comes first
-    for (std::size_t c = 0; c <= table.column("tick_median_us"); ++c) end = line.find(',', end) + 1;
-    out += line.substr(0, end) + "\n";
-  }
-  return out;
-}
-
-TEST(Chart, ShardsMergeToTheSameBytes) {
-  const model::scene::Scene scene = make_scene();
-  const ground_truth::ReferenceData truth = linear_truth(30.0);
-  const std::string folder = scratch_folder("chart_shards");
-  ChartOptions options = quick();
-  options.wish.laws = {"rhombus", "disc_stack", "hex_sheet"};
-  const report::Table whole = chart_of(scene, truth, options);
-  std::vector<std::string> files;
-  for (std::size_t i = 0; i < 2; ++i) {
-    options.shard = {.index = i, .count = 2};
-    const auto written = chart_of(scene, truth, options).write(folder);
-    ASSERT_TRUE(written);
-    files.push_back(written->front());
-  }
-  const auto merged = merge_table(empty_chart(whole.jobs(), {}), files);
-  ASSERT_TRUE(merged) << merged.error().sentence;
-  EXPECT_FALSE(check_same_source(*merged, {"scene", "truth", "r2", "there"}));
-  EXPECT_TRUE(check_same_source(*merged, {"scene after a change", "truth", "r1", "here"}));
-  EXPECT_EQ(machines_of(*merged), "here");
-  EXPECT_EQ(computed_part(*merged), computed_part(whole)) << "byte for byte; times are measured";
-  EXPECT_FALSE(merge_table(empty_chart(whole.jobs(), {}), {files[0]}));  // the other is missing
-}
-
 TEST(Chart, SaysWhenAPeerIsAhead) {
   const auto row = [](bool peer, double tick_us, double error) {
     ChartRow r;
@@ -244,10 +209,10 @@ TEST(Chart, SaysWhenAPeerIsAhead) {
     r.timing.median_us = tick_us;
     r.errors.force_rms_ratio = error;
     report::Row out = table_row(r, {"s", "t", "r", "m"});
-    if (peer) out[empty_chart(0, {}).column("kind")] = "peer";
+    if (peer) out[empty_chart().column("kind")] = "peer";
     return out;
   };
-  report::Table table = empty_chart(4, {});
+  report::Table table = empty_chart();
   table.add(row(false, 1.0, 0.1));
   table.add(row(false, 2.0, 0.05));
   table.add(row(true, 3.0, 0.01));  // slower, more accurate: not ahead
@@ -256,7 +221,7 @@ TEST(Chart, SaysWhenAPeerIsAhead) {
   EXPECT_EQ(peers_ahead(table), std::vector<std::size_t>{3});
   EXPECT_EQ(front_rows(table), (std::vector<std::size_t>{0, 1}));
   // Within 10 % is the same time, but not by a chain of such steps.
-  report::Table slope = empty_chart(4, {});
+  report::Table slope = empty_chart();
   for (const auto& [tick_us, error] : {std::pair{1.0, 0.4}, {1.09, 0.3}, {1.18, 0.2}, {1.28, 0.1}})
     slope.add(row(false, tick_us, error));
   EXPECT_EQ(front_rows(slope), (std::vector<std::size_t>{1, 3}));
@@ -271,7 +236,7 @@ TEST(Chart, RefusesAReferenceOfAnotherMeshOrTip) {
   for (const auto& wrong : {moved, blunt}) {
     const auto rows = measure_chart(scene, wrong, quick());
     ASSERT_FALSE(rows);
-    EXPECT_NE(rows.error().sentence.find("solve it again: tact-reference"), std::string::npos);
+    EXPECT_NE(rows.error().sentence.find("solve it again: tact-lab reference"), std::string::npos);
   }
 }
 

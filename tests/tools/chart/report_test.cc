@@ -17,7 +17,7 @@ TEST(ChartReport, ShowsThePeersThatWereMeasuredBefore) {
   const auto peers = read_chart(file);
   ASSERT_TRUE(peers) << peers.error().sentence;
   const std::string truth = peers->word(peers->rows()[0], "reference_hash");
-  report::Table laws = empty_chart(1, {});
+  report::Table laws = empty_chart();
   ChartRow law;
   law.timing.median_us = 2.0;
   law.errors.force_rms_ratio = 0.003;
@@ -42,20 +42,20 @@ TEST(ChartReport, IsReadBackAsItWasWritten) {
   const std::string folder = testing::TempDir() + "chart_json_" + std::to_string(getpid());
   std::filesystem::create_directories(folder);
   const Provenance provenance{"scene", "truth", "r1", "here, now"};
-  report::Table table = empty_chart(1, {});
+  report::Table table = empty_chart();
   ChartRow row;
   row.variant.sizes = {
       .law = LawKind::kDiscStack, .layers = 7, .disc_form = model::indent::DiscForm::kLinear};
   row.errors.force_rms_ratio = 0.125;
   table.add(table_row(row, provenance));
-  ASSERT_TRUE(write_chart(table, true, "tact-chart x", provenance, folder));
+  ASSERT_TRUE(write_chart(table, "tact-lab chart x", provenance, folder));
   const auto read = read_chart(folder + "/chart.json");
   ASSERT_TRUE(read) << read.error().sentence;
   EXPECT_EQ(read->to_csv(), table.to_csv());
   std::ifstream csv(folder + "/chart.csv");
   std::string head;
   std::getline(csv, head);
-  EXPECT_EQ(head, "# command: tact-chart x");
+  EXPECT_EQ(head, "# command: tact-lab chart x");
   std::ofstream(folder + "/bad.json") << R"({"format": "tact-chart", "version": 3, "rows": [{}]})";
   EXPECT_FALSE(read_chart(folder + "/bad.json"));
   EXPECT_FALSE(read_chart(folder + "/none.json"));

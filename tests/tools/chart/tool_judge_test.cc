@@ -137,7 +137,6 @@ TEST(Chart, JudgesEverySizeByTheWholeToolWhereItIsKnown) {
       {.depth_m = 0.001, .force_N = 1.25 * k * 0.001, .profile_m = {0.001, 0.0}}};
   ToolReference whole_tool = linear_truth(scene, 0.5 * k);
   ChartOptions options{.wish = {.laws = {}, .quick = true},
-                       .shard = {},
                        .timing = kShort,
                        .tool_reference = &whole_tool};
   const auto rows = measure_chart(scene, one_sphere, options);
@@ -162,7 +161,7 @@ TEST(ToolReport, HasARowForEachLawPlaceAndDepthAndASummary) {
   const ToolReference truth = linear_truth(scene, 20.0);
   const auto row = judge_tool(scene, LawKind::kDiscStack, truth, kShort);
   ASSERT_TRUE(row) << row.error().sentence;
-  const auto j = nlohmann::json::parse(tool_json({*row}, truth, "tact-chart x", {}));
+  const auto j = nlohmann::json::parse(tool_json({*row}, truth, "tact-lab chart x", {}));
   EXPECT_EQ(j.at("format"), "tact-tool-chart");
   EXPECT_EQ(j.at("rows").size(), 4U);
   EXPECT_EQ(j.at("rows")[3].at("place"), "220");
@@ -178,15 +177,12 @@ TEST(ToolReport, HasARowForEachLawPlaceAndDepthAndASummary) {
 
 TEST(ChartProgram, SaysWhichReferenceItNeeds) {
   const std::string liver = TACT_SOURCE_DIR "/model/scenes/liver.toml --out " + testing::TempDir();
-  const auto none = tests::run_program("tact-chart", liver);
+  const auto none = tests::run_program("tact-lab chart", liver);
   EXPECT_EQ(none.status, 2);
   EXPECT_NE(none.output.find("--tool-reference"), std::string::npos) << none.output;
-  const auto both =
-      tests::run_program("tact-chart", liver + " --reference a --tool-reference b --accuracy c");
+  const auto both = tests::run_program("tact-lab chart",
+                                       liver + " --reference a --tool-reference b --accuracy c");
   EXPECT_EQ(both.status, 2) << "a figure is of the scene's own laws";
-  const auto shard =
-      tests::run_program("tact-chart", liver + " --tool-reference b --shard 0/2 --no-pictures");
-  EXPECT_NE(shard.output.find("alone takes no --shard"), std::string::npos) << shard.output;
 }
 
 }  // namespace tact::tools::chart::tool_judge_test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tact-condense as a person meets it: what it refuses before the work.
+// tact-lab condense as a person meets it: what it refuses before the work.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -11,9 +11,9 @@ namespace tact::tests::condense_program_test {
 const std::string kLiver = TACT_SOURCE_DIR "/model/scenes/liver.toml";
 
 void expect_refusal(const std::string& arguments, const std::string& sentence) {
-  const Outcome outcome = run_program("tact-condense", arguments);
+  const Outcome outcome = run_program("tact-lab condense", arguments);
   EXPECT_EQ(outcome.status, 2) << outcome.output;
-  EXPECT_EQ(outcome.output, "tact-condense: " + sentence + "\n");
+  EXPECT_EQ(outcome.output, "tact-lab condense: " + sentence + "\n");
 }
 
 TEST(CondenseProgram, RefusesLengthsThatAreNone) {
@@ -25,7 +25,7 @@ TEST(CondenseProgram, RefusesLengthsThatAreNone) {
       std::erase(length, '"');
       expect_refusal(
           kLiver + " --out x.map " + option + " " + length,
-          std::string(option) + ": " + sentence + " in [1e-06 - 1]; see tact-condense --help");
+          std::string(option) + ": " + sentence + " in [1e-06 - 1]; see tact-lab condense --help");
     }
 }
 

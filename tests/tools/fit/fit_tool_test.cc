@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program tact-fit: exit status, what it prints, what it writes.
+// The program tact-lab fit: exit status, what it prints, what it writes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -40,8 +40,8 @@ class FitTool : public testing::Test {
 };
 
 TEST_F(FitTool, WritesKeysThatTheSceneTakes) {
-  const auto run = run_program("tact-fit", kOnePlace + " --law disc_stack_linear --data " +
-                                               press(1.0) + " --out " + file("fit.toml"));
+  const auto run = run_program("tact-lab fit", kOnePlace + " --law disc_stack_linear --data " +
+                                                   press(1.0) + " --out " + file("fit.toml"));
   EXPECT_EQ(run.status, 0) << run.output;
   EXPECT_NE(run.output.find("[disc_stack]\nform = \"linear\"\nyoungs_modulus_Pa = "),
             std::string::npos)
@@ -60,8 +60,8 @@ TEST_F(FitTool, WritesKeysThatTheSceneTakes) {
 }
 
 TEST_F(FitTool, SaysThatALawCannotFollow) {
-  const auto run =
-      run_program("tact-fit", kOnePlace + " --json --law disc_stack_linear --data " + press(2.0));
+  const auto run = run_program("tact-lab fit",
+                               kOnePlace + " --json --law disc_stack_linear --data " + press(2.0));
   EXPECT_EQ(run.status, 1) << run.output;
   const auto json = nlohmann::json::parse(run.output);
   EXPECT_EQ(json["follows"], false);
@@ -77,7 +77,7 @@ TEST_F(FitTool, FitsRelaxation) {
     for (int i = 0; i <= 100; ++i)
       out << 0.1 * i << "," << 0.7 + 0.3 * std::exp(-0.1 * i / 1.5) << "\n";
   }
-  const auto run = run_program("tact-fit", kScene + " --relaxation " + file("hold.csv"));
+  const auto run = run_program("tact-lab fit", kScene + " --relaxation " + file("hold.csv"));
   EXPECT_EQ(run.status, 0) << run.output;
   EXPECT_NE(run.output.find("[[relaxation]]\nshare_ratio = 0.3\ntime_s = 1.5\n"), std::string::npos)
       << run.output;
@@ -86,7 +86,7 @@ TEST_F(FitTool, FitsRelaxation) {
 TEST_F(FitTool, RefusesBadInputWithOneSentence) {
   std::ofstream(file("bad.csv")) << "depth_m,force_N\n0.001,0.1\n0.002,x\n";
   const auto refused = [](const std::string& arguments, const std::string& words) {
-    const auto run = run_program("tact-fit", arguments);
+    const auto run = run_program("tact-lab fit", arguments);
     EXPECT_EQ(run.status, 2) << run.output;
     EXPECT_NE(run.output.find(words), std::string::npos) << run.output;
   };
@@ -105,12 +105,12 @@ TEST_F(FitTool, NeverWritesOverWhatWasMeasured) {
   const std::string data = press(1.0), csv = file("press.csv");  // and its columns
   const auto before = std::filesystem::file_size(csv);
   const auto same = run_program(
-      "tact-fit", kOnePlace + " --law disc_stack_linear --data " + data + " --out " + csv);
+      "tact-lab fit", kOnePlace + " --law disc_stack_linear --data " + data + " --out " + csv);
   EXPECT_EQ(same.status, 2) << same.output;
   EXPECT_NE(same.output.find("would be overwritten"), std::string::npos) << same.output;
   const std::string picture = std::filesystem::path(csv).replace_extension(".svg").string();
-  const auto drawn = run_program(
-      "tact-fit", kOnePlace + " --law disc_stack_linear --data " + data + " --picture " + picture);
+  const auto drawn = run_program("tact-lab fit", kOnePlace + " --law disc_stack_linear --data " +
+                                                     data + " --picture " + picture);
   EXPECT_TRUE(std::filesystem::exists(picture)) << drawn.output;
   EXPECT_EQ(std::filesystem::file_size(csv), before);
 }

@@ -38,7 +38,7 @@ ReferenceData example() {
 
 void expect_error(const std::string& text, const std::string& from, const std::string& to,
                   const std::string& what) {
-  tests::expect_error(read_reference, text, from, to, what, "tact-reference SCENE --out");
+  tests::expect_error(read_reference, text, from, to, what, "tact-lab reference SCENE --out");
 }
 
 TEST(ReferenceData, ComesBackAsItWasWritten) {
@@ -80,9 +80,10 @@ TEST(ReferenceData, NamesTheFileAndTheKeyOfADamage) {
   expect_error(text, "]}\n", "", "parse error");
   const auto none = read_reference("/nowhere/at/all.json");
   ASSERT_FALSE(none);
-  EXPECT_EQ(none.error().sentence,
-            "/nowhere/at/all.json: no such file; check the name, or make it: tact-reference SCENE "
-            "--out FILE");
+  EXPECT_EQ(
+      none.error().sentence,
+      "/nowhere/at/all.json: no such file; check the name, or make it: tact-lab reference SCENE "
+      "--out FILE");
 }
 
 TEST(ReferenceData, ShipsTheLiver) {

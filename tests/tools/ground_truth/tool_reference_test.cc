@@ -48,7 +48,7 @@ ToolReference example() {
 
 void expect_error(const std::string& text, const std::string& from, const std::string& to,
                   const std::string& what) {
-  tests::expect_error(read_tool_reference, text, from, to, what, "tact-reference SCENE --tool");
+  tests::expect_error(read_tool_reference, text, from, to, what, "tact-lab reference SCENE --tool");
 }
 
 TEST(ToolReference, ComesBackAsItWasWritten) {

@@ -167,8 +167,9 @@ TEST_F(Place, TellsWhatOfTheSceneWasMadeForAnotherOrgan) {
             "8 vertices of another organ; write vertices of this one, 0 to 3115, or remove these "
             "sections");
   EXPECT_EQ(found[2]["keys"], "compliance.map");
-  EXPECT_NE(map.find("write compliance.map = \"scene.compliance\", then tact-condense " + scene_),
-            map.npos)
+  EXPECT_NE(
+      map.find("write compliance.map = \"scene.compliance\", then tact-lab condense " + scene_),
+      map.npos)
       << map;
 
   // What is told as a text is what must be written.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tact-new-scene as a person meets it: a mesh in, a scene out that tactd runs, or nothing at all.
+// tact-lab new-scene as a person meets it: a mesh in, a scene out that tactd runs, or nothing.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -60,7 +60,7 @@ std::string as_obj(const SurfaceMesh& mesh) {
 class NewScene : public testing::Test {
  protected:
   Ran run(const std::string& arguments) const {
-    return tests::run_apart(temp_, "tact-new-scene", arguments);
+    return tests::run_apart(temp_, "tact-lab new-scene", arguments);
   }
   std::string path(const std::string& name) const { return temp_.path() + "/" + name; }
   /// Names in the folder that begin with "mine", in order.
@@ -188,7 +188,7 @@ TEST_F(NewScene, RefusesBeforeTheWorkAndWritesNothing) {
 
 TEST_F(NewScene, CtrlCLeavesNothing) {
   const std::string organ = temp_.write("organ.obj", as_obj(ellipsoid_mm(4)));
-  const std::string log = path("log"), program = tests::program_path("tact-new-scene");
+  const std::string log = path("log"), program = tests::program_path("tact-lab new-scene");
   const tests::Outcome ran = tests::run_command(
       "( " + program + " " + organ + " --out " + out_ + " >" + log + " 2>&1 & " +
       "for i in $(seq 600); do grep -qs condense " + log + " && break; sleep 0.05; done; " +
@@ -216,7 +216,7 @@ TEST_F(NewScene, PlansTheLawForThisPcWithReferencesThatAnotherCanUse) {
     return tests::run_command("XDG_CACHE_HOME=" + path("cache") + " " +
                               tests::program_path(program) + " " + arguments);
   };
-  tests::Outcome ran = with_cache("tact-new-scene", organ + " --out " + out_ + " --plan");
+  tests::Outcome ran = with_cache("tact-lab new-scene", organ + " --out " + out_ + " --plan");
   ASSERT_EQ(ran.status, 0) << ran.output;
   EXPECT_EQ(made(), (std::vector<std::string>{"mine.compliance", "mine.reference.json", "mine.toml",
                                               "mine_tool.obj", "mine_tool.reference.json"}));
@@ -224,8 +224,8 @@ TEST_F(NewScene, PlansTheLawForThisPcWithReferencesThatAnotherCanUse) {
   ran = with_cache("tactd", out_ + " --check");
   EXPECT_EQ(ran.status, 0) << ran.output;
   EXPECT_NE(ran.output.find("law \"auto\" is --set law="), ran.output.npos) << ran.output;
-  ran = with_cache("tact-plan", out_ + " --dry-run --reference " + path("mine.reference.json") +
-                                    " --tool-reference " + path("mine_tool.reference.json"));
+  ran = with_cache("tact-lab plan", out_ + " --dry-run --reference " + path("mine.reference.json") +
+                                        " --tool-reference " + path("mine_tool.reference.json"));
   EXPECT_EQ(ran.status, 0) << ran.output;
 }
 
@@ -235,12 +235,13 @@ TEST_F(NewScene, WithoutCalculiXThePlanIsNoneAndTheSceneIsFeltAllTheSame) {
   fs::create_directory(programs);
   fs::create_symlink("/usr/bin/gmsh", programs + "/gmsh");
   const tests::Outcome ran =
-      tests::run_command("PATH=" + programs + " " + tests::program_path("tact-new-scene") + " " +
-                         organ + " --out " + out_ + " --plan");
+      tests::run_command("PATH=" + programs + " " + tests::program_path("tact-lab new-scene") +
+                         " " + organ + " --out " + out_ + " --plan");
   ASSERT_EQ(ran.status, 0) << ran.output;
-  EXPECT_NE(ran.output.find("\nplan             none: tact-reference: ccx is not installed; apt "
-                            "install calculix-ccx\ncheck"),
-            ran.output.npos)
+  EXPECT_NE(
+      ran.output.find("\nplan             none: tact-lab reference: ccx is not installed; apt "
+                      "install calculix-ccx\ncheck"),
+      ran.output.npos)
       << ran.output;
   EXPECT_EQ(ran.output.find("--plan --force"), ran.output.npos) << "it was asked for";
   EXPECT_EQ(made(), (std::vector<std::string>{"mine.compliance", "mine.toml", "mine_tool.obj"}));

@@ -115,7 +115,7 @@ TEST(Plan, OfABladeTakesWhatCanBeCutAlone) {
 }
 
 TEST(Plan, GoesByTheWholeToolWhereTheChartHasIt) {
-  report::Table table = chart::empty_chart(2, {});
+  report::Table table = chart::empty_chart();
   chart::ChartRow one, whole;
   one.variant.sizes.law = whole.variant.sizes.law = LawKind::kRhombus;
   one.errors.force_rms_ratio = whole.errors.force_rms_ratio = 0.003;  // one sphere
@@ -132,7 +132,7 @@ TEST(Plan, GoesByTheWholeToolWhereTheChartHasIt) {
 }
 
 TEST(Plan, ReadsTactsRowsOfAChart) {
-  report::Table table = chart::empty_chart(3, {});
+  report::Table table = chart::empty_chart();
   const chart::Provenance here{"0123456789abcdef", "truth", "r1", model::scene::machine_name()};
   chart::ChartRow law, failed;
   law.variant.sizes = {
@@ -158,7 +158,7 @@ TEST(Plan, ReadsTactsRowsOfAChart) {
   scene.hash = "another";
   const auto wrong = check_chart_fits(table, scene, "chart.json");
   ASSERT_TRUE(wrong);
-  EXPECT_TRUE(has(wrong->sentence, "tact-chart plate.toml")) << wrong->sentence;
+  EXPECT_TRUE(has(wrong->sentence, "tact-lab chart plate.toml")) << wrong->sentence;
 }
 
 class PlanFile : public testing::Test {
@@ -185,8 +185,8 @@ class PlanFile : public testing::Test {
     EXPECT_TRUE(has(read.error().sentence, what)) << read.error().sentence;
     EXPECT_TRUE(
         has(read.error().sentence,
-            "run tact-plan plate.toml --set law=auto --set 'name=\"a b\"' --reference FILE, "
-            "FILE from tact-reference plate.toml --out FILE"))
+            "run tact-lab plan plate.toml --set law=auto --set 'name=\"a b\"' --reference FILE, "
+            "FILE from tact-lab reference plate.toml --out FILE"))
         << read.error().sentence;
   }
 
@@ -227,7 +227,7 @@ TEST_F(PlanFile, OfAShippedSceneIsFoundWhenAutoIsSetForOneRun) {
   ASSERT_TRUE(found) << found.error().sentence;
   EXPECT_EQ(found->sizes.law, LawKind::kCompliance);
   ASSERT_FALSE(missing) << "the plan of another rate";
-  EXPECT_TRUE(has(missing.error().sentence, "run tact-plan " + liver + " --reference"))
+  EXPECT_TRUE(has(missing.error().sentence, "run tact-lab plan " + liver + " --reference"))
       << missing.error().sentence;
 }
 
@@ -267,14 +267,14 @@ TEST_F(PlanFile, EveryDamageIsTold) {
 
 TEST(Program, SaysWhatIsMissing) {
   const std::string scene = std::string(TACT_SOURCE_DIR) + "/model/scenes/liver.toml";
-  const auto plan = tests::run_program("tact-plan", scene);
+  const auto plan = tests::run_program("tact-lab plan", scene);
   EXPECT_EQ(plan.status, 2);
   EXPECT_TRUE(has(plan.output, "give --reference FILE")) << plan.output;
   const auto chart = tests::run_program(
-      "tact-chart", scene + " --out " + testing::TempDir() + " --reference none.json");
+      "tact-lab chart", scene + " --out " + testing::TempDir() + " --reference none.json");
   EXPECT_EQ(chart.status, 2);
-  EXPECT_TRUE(has(chart.output, "tact-reference")) << chart.output;
-  EXPECT_EQ(tests::run_program("tact-chart", "--help").status, 0);
+  EXPECT_TRUE(has(chart.output, "tact-lab reference")) << chart.output;
+  EXPECT_EQ(tests::run_program("tact-lab chart", "--help").status, 0);
 }
 
 }  // namespace tact::tools::plan::plan_test

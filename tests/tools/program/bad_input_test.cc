@@ -25,10 +25,11 @@ using tests::run_program;
 
 const std::string kScene = TACT_SOURCE_DIR "/model/scenes/liver.toml";
 const std::vector<std::string> kPrograms{
-    "tactd",           "tact-view",      "tact-jitter",    "tact-fit",       "tact-plan",
-    "tact-chart",      "tact-condense",  "tact-mesh",      "tact-doctor",    "tact-limits",
-    "tact-verify",     "tactctl",        "tact-calibrate", "tact-reference", "tact-stability",
-    "tact-track-send", "tact-new-scene", "tact-sweep"};
+    "tactd",          "tact-view",          "tact-jitter",        "tact-lab fit",
+    "tact-lab plan",  "tact-lab chart",     "tact-lab condense",  "tact-mesh",
+    "tact-doctor",    "tact-limits",        "tact-verify",        "tactctl",
+    "tact-calibrate", "tact-lab reference", "tact-lab stability", "tact-lab new-scene",
+    "tact-lab sweep"};
 
 class BadInput : public testing::Test {
  protected:
@@ -65,7 +66,8 @@ std::vector<std::string> number_options(const std::string& program) {
 }
 
 TEST_F(BadInput, EveryProgramTellsItsVersionAndWhatBuiltIt) {
-  for (const std::string& program : kPrograms) {
+  for (const std::string& line : kPrograms) {
+    const std::string program = line.substr(0, line.find(' '));
     const Outcome outcome = run_program(program, "--version");
     EXPECT_EQ(outcome.status, 0) << program;
     EXPECT_TRUE(std::regex_match(outcome.output,
@@ -96,12 +98,13 @@ TEST_F(BadInput, AFolderOrPipeWhereAFileBelongsGetsASentence) {
   for (const auto& [path, words] :
        {std::pair{folder_, "this is a directory"}, std::pair{pipe, "this is a pipe"}}) {
     refuses("tact-jitter", "compare " + path + " " + path, words);
-    refuses("tact-fit", kScene + " --data " + path, words);
-    refuses("tact-fit", kScene + " --reference " + path, words);
-    refuses("tact-plan", kScene + " --chart " + path + " --dry-run", words);
-    refuses("tact-chart", kScene + " --reference " + path + " --out " + folder_ + "/out", words);
+    refuses("tact-lab fit", kScene + " --data " + path, words);
+    refuses("tact-lab fit", kScene + " --reference " + path, words);
+    refuses("tact-lab plan", kScene + " --chart " + path + " --dry-run", words);
+    refuses("tact-lab chart", kScene + " --reference " + path + " --out " + folder_ + "/out",
+            words);
     refuses("tact-mesh", path, words);
-    refuses("tact-new-scene", path + " --out " + folder_ + "/new.toml", words);
+    refuses("tact-lab new-scene", path + " --out " + folder_ + "/new.toml", words);
     refuses("tact-view", "--open " + path, words);
     refuses("tactd", path, words);
     refuses("tactd", kScene + " --replay " + path, words);
@@ -125,7 +128,7 @@ TEST_F(BadInput, NoResultDestroysAScene) {
   const std::string run = kScene + " --free-run --ticks 10 --no-telemetry --no-black-box ";
   refuses("tactd", run + "--json " + scene, "holds something else");
   refuses("tactd", "--faults --json " + scene, "holds something else");
-  refuses("tact-condense", kScene + " --out " + scene, "");
+  refuses("tact-lab condense", kScene + " --out " + scene, "");
   std::ifstream file(scene), before(kScene);
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}),
             std::string(std::istreambuf_iterator<char>(before), {}));

@@ -48,22 +48,40 @@ TEST(Program, TellsCtrlCFromAFault) {
             "tact-test: interrupted; two maps are written\n");
 }
 
-TEST(Program, TakesAShardOrAMergeButNotBoth) {
-  for (const auto& [words, status] :
-       {std::pair{std::vector<std::string>{"t", "--shard", "1/4"}, std::optional<int>{}},
-        {{"t", "--merge", "a.csv", "b.csv"}, std::optional<int>{}},
-        {{"t", "--shard", "1/4", "--merge", "a.csv"}, std::optional<int>{2}}}) {
-    Program program("tact-test", "A test.", "No units.");
-    SweepArguments sweep;
-    sweep.add_to(program.options(), "row", "fewer");
-    testing::internal::CaptureStderr();
-    EXPECT_EQ(parse(program, words), status);
-    testing::internal::GetCapturedStderr();
-    if (words[1] == "--shard" && !status) {
-      EXPECT_FALSE(sweep.prepare(testing::TempDir()));
-      EXPECT_EQ(sweep.shard.index, 1U);
-      EXPECT_EQ(sweep.shard.count, 4U);
-    }
+struct Word {
+  std::string word;
+};
+
+/// What `tact-lab WORDS` says on standard error; its exit status comes first.
+std::string said_by_lab(std::vector<std::string> words) {
+  Program lab("tact-lab", "A test.", "No units.");
+  for (const char* name : {"tell", "other"})
+    lab.add<Word>(
+        name, "tells a word", "No units.",
+        [](CLI::App& app, Word& w) { app.add_option("--word", w.word, "")->required(); },
+        [](const Program& program, Word& w) -> model::Result<int> {
+          if (w.word == "bad") return model::Error{"bad: give another"};
+          return program.command() == "tact-lab tell --word good" ? 1 : 0;
+        });
+  std::vector<char*> argv;
+  for (std::string& w : words) argv.push_back(w.data());
+  testing::internal::CaptureStderr();
+  const int status = lab.run(static_cast<int>(argv.size()), argv.data());
+  return std::to_string(status) + " " + testing::internal::GetCapturedStderr();
+}
+
+TEST(Program, RunsTheSubcommandThatIsNamed) {
+  EXPECT_EQ(said_by_lab({"tact-lab", "tell", "--word", "good"}), "1 ");
+  EXPECT_EQ(said_by_lab({"tact-lab", "other", "--word", "tell"}), "0 ") << "a word as a value";
+  EXPECT_EQ(said_by_lab({"tact-lab", "tell", "--word", "bad"}),
+            "2 tact-lab tell: bad: give another\n");
+  EXPECT_EQ(said_by_lab({"tact-lab", "tell"}),
+            "2 tact-lab tell: --word is required; see tact-lab tell --help\n");
+  EXPECT_EQ(said_by_lab({"tact-lab", "tell", "--wird", "x"}).find("2 tact-lab tell: "), 0U);
+  for (const char* none : {"--word", "tall"}) {
+    const std::string said = said_by_lab({"tact-lab", none});
+    EXPECT_EQ(said.find("2 tact-lab: "), 0U) << said;
+    EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
   }
 }
 

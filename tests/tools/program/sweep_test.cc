@@ -5,52 +5,18 @@
 
 #include <atomic>
 #include <csignal>
-#include <set>
 
 #include "tools/program/interrupt.h"
 
 namespace tact::tools::program::sweep_test {
 
-TEST(Sweep, EveryJobBelongsToExactlyOneShard) {
-  for (const std::size_t jobs : {0u, 1u, 5u, 12u, 101u}) {
-    for (const std::size_t count : {1u, 2u, 3u, 7u, 20u}) {
-      std::multiset<std::size_t> seen;
-      for (std::size_t index = 0; index < count; ++index) {
-        const Shard shard{.index = index, .count = count};
-        for (std::size_t k = 0; k < shard.jobs_of(jobs); ++k) {
-          EXPECT_TRUE(shard.owns(shard.job(k)));
-          seen.insert(shard.job(k));
-        }
-      }
-      EXPECT_EQ(seen.size(), jobs);
-      for (std::size_t job = 0; job < jobs; ++job) EXPECT_EQ(seen.count(job), 1u);
-    }
-  }
-}
-
-TEST(Sweep, ReadsShardsAndSaysWhatAShardIs) {
-  const auto shard = parse_shard("2/5");
-  ASSERT_TRUE(shard);
-  EXPECT_EQ(shard->index, 2u);
-  EXPECT_EQ(shard->count, 5u);
-  EXPECT_TRUE(parse_shard("0/1")->is_whole());
-  for (const char* bad :
-       {"", "2", "5/5", "6/5", "0/0", "-1/4", "1/4x", "a/b", "1/", "/4", " 1/4"}) {
-    const auto wrong = parse_shard(bad);
-    ASSERT_FALSE(wrong) << bad;
-    EXPECT_NE(wrong.error().sentence.find("0 <= i < n"), std::string::npos);
-  }
-}
-
 TEST(Sweep, KeepsResultsInTheOrderOfJobsOnAnyNumberOfThreads) {
   for (const unsigned threads : {1u, 2u, 5u}) {
-    const Shard shard{.index = 1, .count = 3};
-    const auto results =
-        sweep<std::size_t>(100, {.label = "test", .shard = shard, .threads = threads},
-                           [](std::size_t job) { return 10 * job; });
+    const auto results = sweep<std::size_t>(100, {.label = "test", .threads = threads},
+                                            [](std::size_t job) { return 10 * job; });
     ASSERT_TRUE(results);
-    ASSERT_EQ(results->size(), 33u);
-    for (std::size_t k = 0; k < results->size(); ++k) EXPECT_EQ((*results)[k], 10 * (1 + 3 * k));
+    ASSERT_EQ(results->size(), 100u);
+    for (std::size_t job = 0; job < results->size(); ++job) EXPECT_EQ((*results)[job], 10 * job);
   }
 }
 
@@ -62,7 +28,7 @@ TEST(Sweep, RunsEveryJobOnce) {
 
 TEST(Sweep, TellsTheFirstErrorAndBeginsNoJobAfterIt) {
   const auto run = [](std::size_t bad, std::size_t& begun) {
-    return run_until_error(6, {.label = "", .shard = {}, .threads = 1},
+    return run_until_error(6, {.label = "", .threads = 1},
                            [&](std::size_t job) -> std::optional<model::Error> {
                              ++begun;
                              if (job < bad) return std::nullopt;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tact-reference as a person meets it: what it says when something is missing or wrong.
+// tact-lab reference as a person meets it: what it says when something is missing or wrong.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -21,20 +21,20 @@ namespace fs = std::filesystem;
 const std::string kLiver = TACT_SOURCE_DIR "/model/scenes/liver.toml";
 
 void expect_refusal(const std::string& arguments, const std::string& sentence) {
-  const Outcome outcome = run_program("tact-reference", arguments);
+  const Outcome outcome = run_program("tact-lab reference", arguments);
   EXPECT_EQ(outcome.status, 2) << outcome.output;
-  EXPECT_EQ(outcome.output, "tact-reference: " + sentence + "\n");
+  EXPECT_EQ(outcome.output, "tact-lab reference: " + sentence + "\n");
 }
 
 TEST(ReferenceProgram, TellsItsOptionsWithUnits) {
-  const Outcome outcome = run_program("tact-reference", "--help");
+  const Outcome outcome = run_program("tact-lab reference", "--help");
   EXPECT_EQ(outcome.status, 0);
   for (const char* word : {"--depths", "m, above 0", "--self-check", "apt install gmsh calculix"})
     EXPECT_NE(outcome.output.find(word), std::string::npos) << word;
 }
 
 TEST(ReferenceProgram, RefusesWhatCannotBeSolved) {
-  expect_refusal("", "no scene given; see tact-reference --help");
+  expect_refusal("", "no scene given; see tact-lab reference --help");
   expect_refusal(kLiver + " --sites 99999",
                  "site 99999 is no vertex of liver_3116.obj; they are 0 to 3115");
   for (const char* depths : {"0.002,0.001", "0.001,0.001", "1.5"})
@@ -87,8 +87,9 @@ TEST(ReferenceProgram, JobsOfOneSiteShareItsCoarseSolve) {
   const std::string path = std::getenv("PATH");
   setenv("PATH", (folder.string() + ":" + path).c_str(), 1);
   setenv("TMPDIR", folder.c_str(), 1);  // for what a failure keeps
-  const Outcome outcome = run_program(
-      "tact-reference", kLiver + " --sites 1714 --jobs 4 --cache " + (folder / "cache").string());
+  const Outcome outcome =
+      run_program("tact-lab reference",
+                  kLiver + " --sites 1714 --jobs 4 --cache " + (folder / "cache").string());
   setenv("PATH", path.c_str(), 1);
   unsetenv("TMPDIR");
   EXPECT_NE(outcome.output.find("gmsh ended with status 3"), std::string::npos) << outcome.output;
@@ -120,16 +121,16 @@ TEST(ReferenceProgram, TellsWhichLargeStrainHasNoSolutionAndKeepsTheRest) {
   setenv("PATH", (folder.string() + ":" + path).c_str(), 1);
   setenv("TMPDIR", folder.c_str(), 1);  // for what a failure keeps
   const Outcome outcome =
-      run_program("tact-reference", kLiver +
-                                        " --sites 1714 --depths 0.002,0.007 --level 1 "
-                                        "--large-strain 1714 --cache " +
-                                        (folder / "cache").string());
+      run_program("tact-lab reference", kLiver +
+                                            " --sites 1714 --depths 0.002,0.007 --level 1 "
+                                            "--large-strain 1714 --cache " +
+                                            (folder / "cache").string());
   setenv("PATH", path.c_str(), 1);
   unsetenv("TMPDIR");
   EXPECT_EQ(outcome.status, 0) << outcome.output;
   for (const char* what : {"press of 2 mm", "press of 7 mm", "pull of 2 mm"})
     EXPECT_NE(outcome.output.find(
-                  fmt::format("tact-reference: left out: vertex 1714, {} with large strain: "
+                  fmt::format("tact-lab reference: left out: vertex 1714, {} with large strain: "
                               "CalculiX found no solution: ccx ended with status 201",
                               what)),
               std::string::npos)

@@ -4,7 +4,7 @@
 
     python3 tests/tools/schema/schema_test.py BUILD_DIR
 
-Every program with an option --json is run here; of tact-reference, which takes minutes, the committed files are judged. A
+Every program with an option --json is run here; of tact-lab reference, which takes minutes, the committed files are judged. A
 schema allows no member that it does not name, so a new member is a change of the schema. Needs python3-jsonschema. Exit
 status 0 or 1.
 """
@@ -44,20 +44,19 @@ COMMANDS = {
     "tact-mesh": [f"tact-mesh --json --unit-m 0.01 {ROOT}/{{mesh}}",
                   f"tact-mesh --json {ROOT}/{{mesh}} --weld --out {{t}}/welded.obj --place {LIVER}"],
     "tact-verify": [f"tact-verify {VECTORS}/{{vectors}} --json"],
-    "tact-stability": ["tact-stability --out {t}/maps --quick --only loss --no-pictures --json"],
-    "tact-sweep": [f"tact-sweep {ROOT}/tests/data/scenes/plain.toml --depth-m 0.002 --limit-N-per-m 1 --no-pictures "
+    "tact-stability": ["tact-lab stability --out {t}/maps --quick --only loss --no-pictures --json"],
+    "tact-sweep": [f"tact-lab sweep {ROOT}/tests/data/scenes/plain.toml --depth-m 0.002 --limit-N-per-m 1 --no-pictures "
                    "--out {t}/sweep --json"],
     "tact-doctor": ["tact-doctor --json"],
-    "tact-track-send": ["tact-track-send {t}/looks.jsonl --port 39999 --speed 100 --json"],
     "tact-mcap": ["tact-mcap {t}/run.tactlog {t}/run.mcap --json"],
-    "tact-condense": [f"tact-condense {ROOT}/tests/data/scenes/plain.toml {BOX} --out {{t}}/map --json"],
-    "tact-fit": [f"tact-fit {LIVER} --relaxation {{t}}/hold.csv --json",
-                 f"tact-fit {LIVER} --set varies_by_place=false --data {{t}}/press.csv --law hex_sheet,compliance --json",
-                 f"tact-fit {LIVER} --reference {REFERENCES}/liver.json --law disc_stack_linear --json"],
-    "tact-chart": [f"tact-chart {LIVER} --reference {REFERENCES}/liver.json {FEW} compliance --out {{t}}/chart --json"],
-    "tact-tool-chart": [f"tact-chart {LIVER} --tool-reference {REFERENCES}/liver_tool.json {FEW} rhombus "
+    "tact-condense": [f"tact-lab condense {ROOT}/tests/data/scenes/plain.toml {BOX} --out {{t}}/map --json"],
+    "tact-fit": [f"tact-lab fit {LIVER} --relaxation {{t}}/hold.csv --json",
+                 f"tact-lab fit {LIVER} --set varies_by_place=false --data {{t}}/press.csv --law hex_sheet,compliance --json",
+                 f"tact-lab fit {LIVER} --reference {REFERENCES}/liver.json --law disc_stack_linear --json"],
+    "tact-chart": [f"tact-lab chart {LIVER} --reference {REFERENCES}/liver.json {FEW} compliance --out {{t}}/chart --json"],
+    "tact-tool-chart": [f"tact-lab chart {LIVER} --tool-reference {REFERENCES}/liver_tool.json {FEW} rhombus "
                         "--out {t}/tool --json"],
-    "tact-plan": [f"tact-plan {LIVER} --chart {{t}}/chart/chart.json --dry-run --json"],
+    "tact-plan": [f"tact-lab plan {LIVER} --chart {{t}}/chart/chart.json --dry-run --json"],
     "tact-view": [],  # these by viewer_documents()
     "tact-live": [],
     "tact-view-export": [],
@@ -70,13 +69,14 @@ FILES = {
 
 
 def programs_with_json():
-    """Names of programs whose sources have an option --json."""
+    """Names of programs and subcommands whose sources have an option --json."""
     for path in [ROOT / top / "CMakeLists.txt" for top in ("firmware", "host", "tools")]:
         for name, sources in re.findall(r"tact_program\((\S+)\s+SOURCES ([^)]*?)\s+LINKS", path.read_text()):
             texts = [path.parent / word for word in sources.split()]
             texts += [text.parent / word for text in texts for word in ("options.cc", "command_line.cc")]
-            if any('"--json' in text.read_text() for text in texts if text.exists()):
-                yield name
+            for text in texts:
+                if text.exists() and '"--json' in text.read_text():  # a subcommand is a file of tools/lab
+                    yield f"tact-{text.stem}".replace("_", "-") if name == "tact-lab" else name
 
 
 def told_by(build, command, folder):
@@ -92,9 +92,7 @@ def told_by(build, command, folder):
 
 
 def prepare(build, folder):
-    """Inputs of the programs: looks of a tracker, a log, a press and a hold of a bench."""
-    looks = (SCENES / "maintenance.observations.jsonl").read_text().splitlines()[:20]
-    (folder / "looks.jsonl").write_text("\n".join(looks) + "\n")
+    """Inputs of the programs: a log, a press and a hold of a bench."""
     subprocess.run([str(build / "tactd"), str(LIVER), "--free-run", "--ticks", "50", "--no-telemetry", "--no-black-box",
                     "--record", str(folder / "run.tactlog")], stdout=subprocess.DEVNULL, check=True, timeout=60)
     (folder / "press.csv").write_text("depth_m,force_N\n0,0\n0.001,0.05\n0.002,0.14\n0.003,0.26\n0.004,0.4\n0.005,0.56\n")

@@ -6,8 +6,6 @@
 #include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
-#include <regex>
 
 #include "tests/support/files.h"
 
@@ -55,36 +53,6 @@ TEST_F(RunMaps, ASecondRunGivesTheSameBytes) {
       EXPECT_EQ(content(folder_ + "/first/" + map + end),
                 content(folder_ + "/second/" + map + end));
   }
-}
-
-TEST_F(RunMaps, ShardsMergeToTheTableOfOneRun) {
-  ASSERT_FALSE(run_maps(options("law_limits")).error);
-  StabilityOptions part = options("law_limits", "parts");
-  StabilityOptions together = options("", "merged");
-  for (std::size_t i = 0; i < 3; ++i) {
-    part.shard = {.index = i, .count = 3};
-    const auto run = run_maps(part);
-    ASSERT_FALSE(run.error);
-    EXPECT_TRUE(run.reports.front().findings.empty()) << "a part proves nothing";
-    together.merge.push_back(run.reports.front().files.front());
-  }
-  const auto merged = run_maps(together);
-  ASSERT_FALSE(merged.error) << merged.error->sentence;
-  EXPECT_FALSE(merged.reports.front().findings.empty());
-  for (const char* end : {".csv", ".json"})
-    EXPECT_EQ(content(folder_ + "/merged/law_limits" + end),
-              content(folder_ + "/whole/law_limits" + end));
-  together.grid = Grid::kFull;
-  EXPECT_TRUE(run_maps(together).error) << "shards of another grid";
-  fs::copy_file(together.merge.front(), folder_ + "/chart.csv");
-  const auto header = content(folder_ + "/chart.csv");
-  std::ofstream(folder_ + "/chart.csv")
-      << std::regex_replace(header, std::regex("law_limits"), "chart");
-  together.merge = {folder_ + "/chart.csv"};
-  const auto stranger = run_maps(together);
-  ASSERT_TRUE(stranger.error) << "a table of another program";
-  EXPECT_NE(stranger.error->sentence.find("\"chart\" is no map"), std::string::npos)
-      << stranger.error->sentence;
 }
 
 }  // namespace tact::tools::stability::run_maps_test

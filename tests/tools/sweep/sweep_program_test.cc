@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tact-sweep as a person meets it: a coarse scene, one vertex, bad input, Ctrl-C.
+// tact-lab sweep as a person meets it: a coarse scene, one vertex, bad input, Ctrl-C.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -25,7 +25,7 @@ class Sweep : public ::testing::Test {
  protected:
   ~Sweep() override { fs::remove_all(folder_); }
   Outcome run(const std::string& arguments) const {
-    return tests::run_program("tact-sweep", arguments + " --out " + folder_);
+    return tests::run_program("tact-lab sweep", arguments + " --out " + folder_);
   }
   std::string lines_of(const std::string& name) const {
     std::ifstream file(folder_ + "/" + name);
@@ -40,7 +40,7 @@ bool has(const Outcome& out, const std::string& part) {
 }
 
 TEST_F(Sweep, HelpSaysUnitsAnExampleAndWhatIsChecked) {
-  const Outcome out = tests::run_program("tact-sweep", "--help");
+  const Outcome out = tests::run_program("tact-lab sweep", "--help");
   EXPECT_EQ(out.status, 0);
   for (const char* word : {"--vertices", "--vertex", "--step-m", "--depth-m", "--square",
                            "--upright", "Example:", "N/m", "within 2 %", "Exit status"})
@@ -49,7 +49,7 @@ TEST_F(Sweep, HelpSaysUnitsAnExampleAndWhatIsChecked) {
 
 TEST_F(Sweep, TheShippedLiverIsHeldAgainstSolvedPresses) {
   const std::string truth = TACT_SOURCE_DIR "/tests/data/reference/finite_strain_liver.json";
-  const Outcome out = tests::run_program("tact-sweep", kLiver + " --json --reference " + truth);
+  const Outcome out = tests::run_program("tact-lab sweep", kLiver + " --json --reference " + truth);
   ASSERT_EQ(out.status, 0) << out.output;
   const auto told = nlohmann::json::parse(out.output);
   ASSERT_EQ(told.size(), 3U);
@@ -58,14 +58,15 @@ TEST_F(Sweep, TheShippedLiverIsHeldAgainstSolvedPresses) {
     EXPECT_GT(std::abs(press.at("worst_ratio").get<double>()), 1e-4) << place;
     EXPECT_LT(press.at("worst_sphere_ratio").get<double>(), 0.10) << place;
   }
-  EXPECT_TRUE(has(tests::run_program("tact-sweep", kLiver + " --reference " + truth), "hand_site"));
+  EXPECT_TRUE(
+      has(tests::run_program("tact-lab sweep", kLiver + " --reference " + truth), "hand_site"));
 }
 
 TEST_F(Sweep, AFileOfNoPressesIsRefused) {
-  const Outcome out = tests::run_program("tact-sweep", kLiver + " --reference " + kLiver);
+  const Outcome out = tests::run_program("tact-lab sweep", kLiver + " --reference " + kLiver);
   EXPECT_EQ(out.status, 2);
   EXPECT_TRUE(has(out, "not JSON")) << out.output;
-  const Outcome none = tests::run_program("tact-sweep", kLiver);
+  const Outcome none = tests::run_program("tact-lab sweep", kLiver);
   EXPECT_EQ(none.status, 2);
   EXPECT_TRUE(has(none, "--out FOLDER")) << none.output;
 }
@@ -96,7 +97,7 @@ TEST_F(Sweep, FailedCheckIsStatusOneNamedWithTheCommandThatRepeatsIt) {
   EXPECT_EQ(bad.status, 1) << bad.output;
   EXPECT_TRUE(has(bad, "vertex 0, square: the force changes by ")) << bad.output;
   EXPECT_TRUE(has(bad, "the slope is ")) << bad.output;
-  const std::string again = "tact-sweep " + kPlain + " --out " + folder_ +
+  const std::string again = "tact-lab sweep " + kPlain + " --out " + folder_ +
                             " --depth-m 0.002 --limit-N-per-m 1 --vertex 0 --square\n";
   EXPECT_TRUE(has(bad, again)) << bad.output;
 }
@@ -113,11 +114,11 @@ TEST_F(Sweep, BadInputIsOneLineAndStatusTwo) {
     const Outcome out = run(arguments);
     EXPECT_EQ(out.status, 2) << arguments << "\n" << out.output;
     EXPECT_TRUE(has(out, words)) << out.output;
-    EXPECT_EQ(out.output.find("tact-sweep: "), 0U) << out.output;
+    EXPECT_EQ(out.output.find("tact-lab sweep: "), 0U) << out.output;
     EXPECT_EQ(std::count(out.output.begin(), out.output.end(), '\n'), 1) << out.output;
   }
-  EXPECT_EQ(tests::run_program("tact-sweep", kLiver).status, 2) << "without --out";
-  EXPECT_EQ(tests::run_program("tact-sweep", kPlain + " --out /proc/none").status, 2);
+  EXPECT_EQ(tests::run_program("tact-lab sweep", kLiver).status, 2) << "without --out";
+  EXPECT_EQ(tests::run_program("tact-lab sweep", kPlain + " --out /proc/none").status, 2);
 }
 
 TEST_F(Sweep, ThreadsChangeNoNumber) {
@@ -131,11 +132,11 @@ TEST_F(Sweep, ThreadsChangeNoNumber) {
 
 TEST_F(Sweep, CtrlCEndsItWithinASecondAndWritesNothing) {
   const auto begun = std::chrono::steady_clock::now();
-  const Outcome out =
-      tests::run_command("timeout --foreground -s INT 0.7 " + tests::program_path("tact-sweep") +
-                         " " + kLiver + " --vertices all --step-m 1e-6 --out " + folder_);
+  const Outcome out = tests::run_command("timeout --foreground -s INT 0.7 " +
+                                         tests::program_path("tact-lab sweep") + " " + kLiver +
+                                         " --vertices all --step-m 1e-6 --out " + folder_);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
-  EXPECT_TRUE(has(out, "tact-sweep: interrupted; nothing was written")) << out.output;
+  EXPECT_TRUE(has(out, "tact-lab sweep: interrupted; nothing was written")) << out.output;
   EXPECT_LT(took.count(), 0.7 + 20.0);  // no time is asserted closely (tests/README.md)
   EXPECT_FALSE(fs::exists(folder_ + "/presses.csv"));
 }

@@ -92,16 +92,14 @@ Result<std::vector<ChartRow>> measure_chart(const Scene& scene,
   elastic.relaxation.clear();
   elastic.compliance.large_strain = false;
   std::vector<ChartRow> all(variants.size());
-  const program::SweepOptions sweep_options{.label = options.label + ", accuracy",
-                                            .shard = options.shard};
+  const program::SweepOptions sweep_options{.label = options.label + ", accuracy"};
   const bool judged = run_jobs(variants.size(), sweep_options, [&](std::size_t job) {
     all[job] = judge_errors_of(scene, elastic, variants[job], *cases, reference.ring_pitch_m,
                                options.tool_reference);
   });
   if (!judged) return program::interruption();
   // One after the other: a second one on another core would share cache and memory with the first.
-  const program::SweepOptions one_by_one{
-      .label = options.label + ", time", .shard = options.shard, .threads = 1};
+  const program::SweepOptions one_by_one{.label = options.label + ", time", .threads = 1};
   const bool timed = run_jobs(variants.size(), one_by_one, [&](std::size_t job) {
     if (!all[job].failure.empty()) return;
     if (const auto timing = time_tool(sized(scene, variants[job]), options.timing))
@@ -111,13 +109,12 @@ Result<std::vector<ChartRow>> measure_chart(const Scene& scene,
   });
   if (!timed) return program::interruption();
   std::vector<ChartRow> rows;
-  for (std::size_t job = options.shard.index; job < all.size(); job += options.shard.count)
-    rows.push_back(std::move(all[job]));
+  for (ChartRow& one : all) rows.push_back(std::move(one));
   return rows;
 }
 
 // NOLINTNEXTLINE(readability-function-size): a table of columns
-report::Table empty_chart(std::size_t variants, const program::Shard& shard) {
+report::Table empty_chart() {
   const auto word = [](const char* name) { return report::Column{name, report::CellKind::kWord}; };
   const auto number = [](const char* name) {
     return report::Column{name, report::CellKind::kNumber};
@@ -161,9 +158,7 @@ report::Table empty_chart(std::size_t variants, const program::Shard& shard) {
            number("tick_p999_us"),
            number("instructions"),
            number("ticks"),
-           number("paused")},
-          variants,
-          shard};
+           number("paused")}};
 }
 
 // NOLINTNEXTLINE(readability-function-size): a table of columns

@@ -31,29 +31,28 @@ struct ChartRow {
   std::size_t memory_bytes = 0;
 };
 
-/// Where numbers come from; part of every row, so that merged tables stay honest.
+/// Where numbers come from; part of every row.
 struct Provenance {
   std::string scene_hash, reference_hash, revision, machine;
 };
 
 struct ChartOptions {
-  std::string label = "tact-chart";  // before the progress
+  std::string label = "tact-lab chart";  // before the progress
   VariantWish wish;
-  program::Shard shard;
   TimingSettings timing;
   const ground_truth::ToolReference* tool_reference = nullptr;  // laws are judged by it too
 };
 
-/// Rows of the shard, in order. An error names what does not fit together, or says that Ctrl-C
+/// One row a variant. An error names what does not fit together, or says that Ctrl-C
 /// ended it.
 model::Result<std::vector<ChartRow>> measure_chart(const model::scene::Scene& scene,
                                                    const ground_truth::ReferenceData& reference,
                                                    const ChartOptions& options);
 
-/// A table without rows, for the shard and for merging.
-report::Table empty_chart(std::size_t variants, const program::Shard& shard);
+/// A table without rows.
+report::Table empty_chart();
 report::Row table_row(const ChartRow& row, const Provenance& provenance);
-/// Of a whole table: the rows on the front of tact's laws, fastest first. Times within 10 % are the
+/// The rows on the front of tact's laws, fastest first. Times within 10 % are the
 /// same time: of two such laws the nearer one stays.
 std::vector<std::size_t> front_rows(const report::Table& table);
 /// Peers that beat a law of the front in both, by however little; empty is what tact promises.

@@ -2,13 +2,11 @@
 #include "tools/chart/report/report.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "model/io/file_writer.h"
 #include "model/io/json.h"
@@ -58,12 +56,9 @@ std::string chart_json(const report::Table& table, const std::string& command,
          "\n";
 }
 
-Result<std::vector<std::string>> write_chart(const report::Table& table, bool is_whole,
-                                             const std::string& command,
+Result<std::vector<std::string>> write_chart(const report::Table& table, const std::string& command,
                                              const Provenance& provenance,
                                              const std::string& directory) {
-  // A shard's CSV has no head: merging reads it.
-  if (!is_whole) return table.write(directory);
   const std::string stem = (std::filesystem::path(directory) / table.name()).string();
   if (auto error =
           model::io::write_file(stem + ".csv", csv_head(command, provenance) + table.to_csv()))
@@ -75,17 +70,17 @@ Result<std::vector<std::string>> write_chart(const report::Table& table, bool is
 
 Result<report::Table> read_chart(const std::string& path) {
   const auto parsed =
-      model::io::read_json(path, "make it: tact-chart SCENE --reference FILE --out DIR");
+      model::io::read_json(path, "make it: tact-lab chart SCENE --reference FILE --out DIR");
   if (!parsed) return parsed.error();
   try {  // the library reports by exceptions; they end here
     const nlohmann::json& document = *parsed;
     if (document.value("format", "") != kFormat || document.value("version", 0) != kVersion)
       return Error{
-          fmt::format("{}: is no chart of this version; make it again: tact-chart SCENE "
+          fmt::format("{}: is no chart of this version; make it again: tact-lab chart SCENE "
                       "--reference FILE --out DIR",
                       path)};
     const auto& rows = document.at("rows");
-    report::Table table = empty_chart(rows.size(), {});
+    report::Table table = empty_chart();
     for (const auto& row : rows) {
       report::Row cells;
       // By name: the order in the file does not matter.
@@ -95,8 +90,8 @@ Result<report::Table> read_chart(const std::string& path) {
     }
     return table;
   } catch (const nlohmann::json::exception& e) {
-    return Error{fmt::format("{}: {}; make it again: tact-chart SCENE --reference FILE --out DIR",
-                             path, e.what())};
+    return Error{fmt::format(
+        "{}: {}; make it again: tact-lab chart SCENE --reference FILE --out DIR", path, e.what())};
   }
 }
 
@@ -104,7 +99,7 @@ Result<report::Table> with_peers(const report::Table& laws, const std::string& p
                                  const std::string& reference_hash) {
   const auto peers = read_chart(path);
   if (!peers) return peers.error();
-  report::Table out = empty_chart(laws.rows().size() + peers->rows().size(), {});
+  report::Table out = empty_chart();
   for (const report::Row& row : laws.rows()) out.add(row);
   for (const report::Row& row : peers->rows()) {
     if (peers->word(row, "kind") != "peer" || peers->word(row, "reference_hash") != reference_hash)
@@ -122,27 +117,6 @@ std::string source_of_peers(const report::Table& table) {
       return fmt::format("peers: measured before, by revision {}, on {}",
                          table.word(row, "revision"), table.word(row, "machine"));
   return {};
-}
-
-std::optional<Error> check_same_source(const report::Table& table, const Provenance& provenance) {
-  const auto differs = [&](const char* column, const std::string& wanted) {
-    return std::any_of(table.rows().begin(), table.rows().end(),
-                       [&](const report::Row& row) { return table.word(row, column) != wanted; });
-  };
-  // Times of several machines may stand together (machines_of); errors of several sources may not.
-  if (differs("scene_hash", provenance.scene_hash))
-    return Error{"a shard was measured with another scene; run its shards again with this one"};
-  if (differs("reference_hash", provenance.reference_hash))
-    return Error{"a shard was judged by another reference; run its shards again with this one"};
-  if (!table.rows().empty() && differs("revision", table.word(table.rows()[0], "revision")))
-    return Error{"shards are of different revisions of tact; run all with one build"};
-  return std::nullopt;
-}
-
-std::string machines_of(const report::Table& table) {
-  std::set<std::string> names;
-  for (const report::Row& row : table.rows()) names.insert(table.word(row, "machine"));
-  return fmt::format("{}", fmt::join(names, " + "));
 }
 
 namespace {
@@ -179,11 +153,11 @@ std::string row_text(const report::Table& table, const report::Row& row, bool on
 
 }  // namespace
 
-std::string chart_text(const report::Table& table, bool is_whole) {
+std::string chart_text(const report::Table& table) {
   std::string out = fmt::format(kLine, "law and size", "force %", "worst %", "held o %", "1 mm",
                                 "2 mm", "5 mm", "10 mm", "in JND", "shape %", "tool %", "median us",
                                 "p99.9 us", "instr.", "memory kB");
-  const auto front = is_whole ? front_rows(table) : std::vector<std::size_t>{};
+  const auto front = front_rows(table);
   for (std::size_t i = 0; i < table.rows().size(); ++i) {
     const bool on_front = std::find(front.begin(), front.end(), i) != front.end();
     out += row_text(table, table.rows()[i], on_front);

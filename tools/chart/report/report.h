@@ -16,8 +16,8 @@ std::string csv_head(const std::string& command, const Provenance& provenance);
 /// The document of chart.json and of --json: tools/schema/tact-chart.schema.json.
 std::string chart_json(const report::Table& table, const std::string& command,
                        const Provenance& provenance);
-/// chart.csv and chart.json of a whole table; of a shard the CSV that merging reads.
-model::Result<std::vector<std::string>> write_chart(const report::Table& table, bool is_whole,
+/// chart.csv and chart.json.
+model::Result<std::vector<std::string>> write_chart(const report::Table& table,
                                                     const std::string& command,
                                                     const Provenance& provenance,
                                                     const std::string& directory);
@@ -31,13 +31,7 @@ model::Result<report::Table> with_peers(const report::Table& laws, const std::st
 /// Where and when the peers were measured, for text and picture; empty without peers.
 std::string source_of_peers(const report::Table& table);
 
-/// Merged rows must all be of this scene and reference, and of one revision.
-std::optional<model::Error> check_same_source(const report::Table& table,
-                                              const Provenance& provenance);
-/// Where the rows were measured: "a + b".
-std::string machines_of(const report::Table& table);
-
-/// For a terminal; the front is marked in a whole table alone.
-std::string chart_text(const report::Table& table, bool is_whole);
+/// For a terminal; the front is marked.
+std::string chart_text(const report::Table& table);
 
 }  // namespace tact::tools::chart

@@ -48,17 +48,13 @@ ordered_json summary_of(const ToolRow& row, const ToolReference& reference) {
 }  // namespace
 
 report::Table tool_table(const std::vector<ToolRow>& rows, const ToolReference& reference) {
-  std::size_t samples = 0;
-  for (const ToolRow& row : rows) samples += row.samples.size();
-  report::Table table("tool",
-                      {{"law", report::CellKind::kWord},
-                       {"place", report::CellKind::kWord},
-                       {"depth_m"},
-                       {"force_N"},
-                       {"reference_N"},
-                       {"own_error_ratio"},
-                       {"reference_error_ratio"}},
-                      samples);
+  report::Table table("tool", {{"law", report::CellKind::kWord},
+                               {"place", report::CellKind::kWord},
+                               {"depth_m"},
+                               {"force_N"},
+                               {"reference_N"},
+                               {"own_error_ratio"},
+                               {"reference_error_ratio"}});
   for (const ToolRow& row : rows)
     for (const ToolSample& s : row.samples) {
       const auto& place = reference.places[s.place];

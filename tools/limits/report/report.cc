@@ -28,25 +28,23 @@ std::string word_of(std::string text) {  // a word of a table has no comma
 }
 
 report::Table case_table(const LimitsReport& report) {
-  report::Table table("cases",
-                      {{"case", report::CellKind::kWord},
-                       {"passed"},
-                       {"force_limit_N"},
-                       {"largest_commanded_N"},
-                       {"largest_written_N"},
-                       {"overshoot_N"},
-                       {"largest_torque_Nm"},
-                       {"largest_step_N"},
-                       {"largest_step_Nm"},
-                       {"largest_power_W"},
-                       {"given_energy_J"},
-                       {"largest_rms_N"},
-                       {"largest_rms_Nm"},
-                       {"time_to_zero_s"},
-                       {"allowed_zero_s"},
-                       {"stages", report::CellKind::kWord},
-                       {"fault"}},
-                      report.cases.size());
+  report::Table table("cases", {{"case", report::CellKind::kWord},
+                                {"passed"},
+                                {"force_limit_N"},
+                                {"largest_commanded_N"},
+                                {"largest_written_N"},
+                                {"overshoot_N"},
+                                {"largest_torque_Nm"},
+                                {"largest_step_N"},
+                                {"largest_step_Nm"},
+                                {"largest_power_W"},
+                                {"given_energy_J"},
+                                {"largest_rms_N"},
+                                {"largest_rms_Nm"},
+                                {"time_to_zero_s"},
+                                {"allowed_zero_s"},
+                                {"stages", report::CellKind::kWord},
+                                {"fault"}});
   for (const CaseResult& result : report.cases) {
     const CaseVerdict& v = result.verdict;
     table.add({std::string(v.subject.name), v.passed() ? 1.0 : 0.0, v.limits.force_N,
@@ -85,8 +83,7 @@ report::Table trace_table(const CaseResult& result) {
                        {"skipped_periods"},
                        {"stages", report::CellKind::kWord},
                        {"limit"},
-                       {"fault"}},
-                      result.rows.size());
+                       {"fault"}});
   for (const TickRow& r : result.rows) {
     CaseVerdict stages;
     stages.acted = r.acted;
@@ -118,18 +115,16 @@ report::Table trace_table(const CaseResult& result) {
 }
 
 report::Table wall_table(const WallVerdict& wall) {
-  report::Table table("wall",
-                      {{"stiffness_N_per_m"},
-                       {"without_early_swing_m"},
-                       {"without_last_swing_m"},
-                       {"without_grows"},
-                       {"without_given_J"},
-                       {"with_early_swing_m"},
-                       {"with_last_swing_m"},
-                       {"with_grows"},
-                       {"with_given_J"},
-                       {"in_bounds"}},
-                      wall.points.size());
+  report::Table table("wall", {{"stiffness_N_per_m"},
+                               {"without_early_swing_m"},
+                               {"without_last_swing_m"},
+                               {"without_grows"},
+                               {"without_given_J"},
+                               {"with_early_swing_m"},
+                               {"with_last_swing_m"},
+                               {"with_grows"},
+                               {"with_given_J"},
+                               {"in_bounds"}});
   for (const WallPoint& p : wall.points)
     table.add({p.stiffness_N_per_m, p.without.early_swing_m, p.without.last_swing_m,
                p.without.grows ? 1.0 : 0.0, p.without.given_J, p.with.early_swing_m,

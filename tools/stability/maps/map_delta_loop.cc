@@ -133,7 +133,7 @@ ControllerRun run_controller(double stiffness_N_per_m, double rate_Hz,
   const auto tissue = model::scene::make_tissue(scene);
   const auto device = hal::sim::make_sim_delta(scene.device.sim, scene.hand);
   if (!tissue || !device) {  // the scene is ours, above: a map of nothing would prove nothing
-    fmt::print(stderr, "tact-stability: {}\n",
+    fmt::print(stderr, "tact-lab stability: {}\n",
                tissue ? device.error().sentence : tissue.error().sentence);
     std::abort();
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// pictures.h - the gnuplot scripts of tact-stability; each reads the CSV of its own map.
+// pictures.h - the gnuplot scripts of tact-lab stability; each reads the CSV of its own map.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// map.h - one map of tact-stability: a table of independent cells, what it must show, its pictures.
+// map.h - one map of tact-lab stability: a table of independent cells, what it shows, its pictures.
 #pragma once
 
 #include <map>

@@ -11,11 +11,9 @@
 namespace tact::tools::stability {
 
 struct StabilityOptions {
-  std::string out{};                 // folder, made if need be
-  std::string letters{};             // maps to make, "abcd"
-  std::string only{};                // one map by its name; empty: all of the letters
-  program::Shard shard{};            // our part of every map
-  std::vector<std::string> merge{};  // CSVs of shards instead of a run
+  std::string out{};      // folder, made if need be
+  std::string letters{};  // maps to make, "abcd"
+  std::string only{};     // one map by its name; empty: all of the letters
   Grid grid = Grid::kFull;
   bool draw_pictures = true;
 };
@@ -24,7 +22,7 @@ struct StabilityOptions {
 struct MapReport {
   std::string name;
   std::size_t rows = 0;
-  std::vector<Finding> findings;  // none for a shard: a part proves nothing
+  std::vector<Finding> findings;
   std::vector<std::string> files;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tact-fit: which numbers let a law of the scene follow measured forces, and how far it stays off.
+// tact-lab fit: which numbers let a law of the scene follow measured forces, and how nearly.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -11,17 +11,17 @@
 #include "model/io/program/within.h"
 #include "tools/fit/fit_csv.h"
 #include "tools/fit/fit_report.h"
-#include "tools/program/program.h"
+#include "tools/lab/commands.h"
 #include "tools/program/run_program.h"
 #include "tools/program/sweep.h"
 
+namespace tact::tools::lab {
 namespace {
 
-using namespace tact::tools;
-using namespace tact::tools::fit;
-using tact::model::Error;
-using tact::model::Result;
-using tact::model::scene::Scene;
+using namespace fit;
+using model::Error;
+using model::Result;
+using model::scene::Scene;
 
 struct Options {
   program::SceneArguments scene;
@@ -40,7 +40,8 @@ void add_options(CLI::App& app, Options& o) {
                  "disc_stack_almen_laszlo, hex_sheet, hunt_crossley, compliance, spring_patch")
       ->delimiter(',')
       ->capture_default_str();
-  app.add_option("--reference", o.reference, "JSON of tact-reference; its held-out sites judge");
+  app.add_option("--reference", o.reference,
+                 "JSON of tact-lab reference; its held-out sites judge");
   app.add_option("--data", o.data, "CSV of a bench: depth_m,force_N[,site][,u_0_m,...]");
   app.add_option("--relaxation", o.relaxation, "CSV of a bench at held depth: time_s,force_N");
   app.add_option("--keep", o.keep, "keys of the law that stay as the scene has them")
@@ -51,22 +52,22 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--force-column", o.columns.force, "name in both CSVs")->capture_default_str();
   app.add_option("--time-column", o.columns.time, "name in --relaxation")->capture_default_str();
   app.add_option("--depth-unit-m", o.columns.depth_unit_m, "m in one unit; 0.001 for mm")
-      ->check(tact::model::io::above_zero());
+      ->check(model::io::above_zero());
   app.add_option("--force-unit-N", o.columns.force_unit_N, "N in one unit; 0.001 for mN")
-      ->check(tact::model::io::above_zero());
+      ->check(model::io::above_zero());
   app.add_option("--time-unit-s", o.columns.time_unit_s, "s in one unit")
-      ->check(tact::model::io::above_zero());
+      ->check(model::io::above_zero());
   app.add_option("--deepest-m", o.columns.deepest_m, "deeper rows of --data are left out")
-      ->check(tact::model::io::above_zero());
+      ->check(model::io::above_zero());
   app.add_option("--shape-weight", o.fit.shape_weight,
                  "what an error of the shape (of the depth) counts against one of the force (of "
                  "the peak); 0: forces alone")
-      ->check(tact::model::io::within(0.0, 1e12))
+      ->check(model::io::within(0.0, 1e12))
       ->capture_default_str();
   app.add_flag("--scale-by-site", o.fit.scale_by_site, "each site has its own factor of the force");
   app.add_flag("--large-strain", o.large_strain, "the reference's cases with large strain");
   app.add_option("--terms", o.terms, "of --relaxation (default: the fewest with RMS below 2 %)")
-      ->check(tact::model::io::within(1, 3));
+      ->check(model::io::within(1, 3));
   app.add_option("--out", o.out, "TOML to write: sections to paste into the scene");
   app.add_option("--picture", o.picture, "SVG to draw (and PNG), with gnuplot");
   app.add_flag("--json", o.json, "print one JSON object, SI units");
@@ -132,7 +133,7 @@ std::optional<Error> fit_laws(const Options& o, const Scene& scene, FitReport& r
   const auto laws = chosen_laws(o, scene, *report.data);
   if (!laws) return laws.error();
   std::vector<std::optional<Result<FittedLaw>>> fitted(laws->size());
-  const bool whole = program::run_jobs(laws->size(), {.label = "tact-fit"}, [&](std::size_t i) {
+  const bool whole = program::run_jobs(laws->size(), {.label = "tact-lab fit"}, [&](std::size_t i) {
     fitted[i] = fit_law((*laws)[i], scene, *report.data, o.fit);
   });
   if (!whole) return program::interruption();
@@ -163,43 +164,45 @@ std::optional<Error> check_options(const Options& o) {
     return Error{"--data and --reference exclude each other; fit one after the other"};
   for (const auto& [output, beginning] :
        // Files of ours may be overwritten: by their beginnings they are known.
-       {std::pair{o.out, "# By tact-fit"}, std::pair{o.picture, "<?xml version=\"1.0\""}})
+       {std::pair{o.out, "# By tact-lab fit"}, std::pair{o.picture, "<?xml version=\"1.0\""}})
     if (auto error = program::check_output(output, beginning,
                                            {o.scene.path, o.data, o.relaxation, o.reference}))
       return error;
   return std::nullopt;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  program::Program program(
-      "tact-fit",
-      "Fit the laws of a scene to measured forces (and shapes), say how far each stays off, and "
-      "say when\na law cannot follow. Prints the keys to paste into the scene.",
-      "Residuals are root mean squares over all samples, in % of the largest force; a law that "
-      "stays\nabove 7 %, the least difference of force that people feel, cannot follow: a failed "
-      "check if none can.");
-  Options o;
-  add_options(program.options(), o);
-  if (const auto status = program.parse(argc, argv)) return *status;
-  if (const auto error = check_options(o)) return program.fail(*error);
+Result<int> run(const program::Program&, Options& o) {
+  if (auto error = check_options(o)) return *error;
   const auto scene = o.scene.load();
-  if (!scene) return program.fail(scene.error());
+  if (!scene) return scene.error();
   FitReport report;
   if (!o.data.empty() || !o.reference.empty())
-    if (const auto error = fit_laws(o, *scene, report)) return program.fail(*error);
+    if (auto error = fit_laws(o, *scene, report)) return *error;
   if (!o.relaxation.empty())
-    if (const auto error = fit_relaxation(o, report)) return program.fail(*error);
+    if (auto error = fit_relaxation(o, report)) return *error;
   report.sort();
   if (!o.out.empty())
-    if (const auto error = tact::model::io::write_file(o.out, toml_of(report)))
-      return program.fail(*error);
+    if (auto error = model::io::write_file(o.out, toml_of(report))) return *error;
   if (!o.picture.empty())
-    if (const auto drawn = draw_fit(report, o.picture); !drawn) return program.fail(drawn.error());
+    if (const auto drawn = draw_fit(report, o.picture); !drawn) return drawn.error();
   if (o.json)
-    fmt::print("{}\n", tact::model::io::text_of(json_of(report), 2));
+    fmt::print("{}\n", model::io::text_of(json_of(report), 2));
   else
     fmt::print("{}", text_of(report));
   return report.follows() ? 0 : 1;
 }
+
+}  // namespace
+
+void add_fit(program::Program& lab) {
+  lab.add<Options>(
+      "fit", "the numbers of the laws from measured or solved forces",
+      R"(Fits the laws of a scene to measured forces (and shapes), says how far each stays off,
+and prints the keys to paste into the scene. Residuals are root mean squares over all
+samples, in % of the largest force; a law that stays above 7 %, the least difference of
+force that people feel, cannot follow: a failed check if none can.
+Example: tact-lab fit model/scenes/liver.toml --data press.csv --law rhombus --out keys.toml)",
+      add_options, run);
+}
+
+}  // namespace tact::tools::lab

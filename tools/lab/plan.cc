@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// tact-plan: the least law and size that is good enough for a scene, on this machine.
+// tact-lab plan: the least law and size that is good enough for a scene, on this machine.
+#include "tools/plan/plan.h"
+
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -8,17 +10,16 @@
 
 #include "model/io/json.h"
 #include "tools/chart/report/report.h"
-#include "tools/plan/plan.h"
-#include "tools/program/program.h"
+#include "tools/lab/commands.h"
 
+namespace tact::tools::lab {
 namespace {
 
-using namespace tact::tools;
-using namespace tact::tools::plan;
-using tact::model::Error;
-using tact::model::Result;
-using tact::model::scene::Plan;
-using tact::model::scene::Scene;
+using namespace plan;
+using model::Error;
+using model::Result;
+using model::scene::Plan;
+using model::scene::Scene;
 
 struct Options {
   program::SceneArguments scene;
@@ -28,13 +29,13 @@ struct Options {
 
 void add_options(CLI::App& app, Options& o) {
   o.scene.add_to(app, "[tolerance]");
-  auto* chart = app.add_option("--chart", o.chart, "chart.json of tact-chart, of this machine");
+  auto* chart = app.add_option("--chart", o.chart, "chart.json of tact-lab chart, of this machine");
   app.add_option("--reference", o.reference,
-                 "without a chart: measure now against this JSON of tact-reference (minutes)")
+                 "without a chart: measure now against this JSON of tact-lab reference (minutes)")
       ->excludes(chart);
   app.add_option("--tool-reference", o.tool_reference,
                  "with it: the force of the whole tool counts, not that of one sphere; JSON of "
-                 "tact-reference SCENE --tool --out FILE")
+                 "tact-lab reference SCENE --tool --out FILE")
       ->needs("--reference");
   app.add_flag("--dry-run", o.dry_run, "choose, but leave the plan of tactd as it is");
   app.add_flag("--json", o.json, "print one JSON object; times in us, errors as ratios");
@@ -51,12 +52,12 @@ Result<std::vector<Candidate>> measure(const Options& o, const Scene& scene) {
     whole_tool = std::move(*read);
     options.tool_reference = &*whole_tool;
   }
-  options.label = "tact-plan";
+  options.label = "tact-lab plan";
   // Chosen: minutes, not hours; no instructions, as a plan is chosen by time.
   options.timing = {.ticks = 20000, .rounds = 2, .limit_s = 2.0, .instructions = false};
   const auto rows = measure_chart(scene, *reference, options);
   if (!rows) return rows.error();
-  report::Table table = chart::empty_chart(rows->size(), {});
+  report::Table table = chart::empty_chart();
   for (const chart::ChartRow& row : *rows) table.add(table_row(row, {}));
   return candidates_of(table);
 }
@@ -65,9 +66,9 @@ Result<std::vector<Candidate>> all_candidates(const Options& o, const Scene& sce
   if (!o.reference.empty()) return measure(o, scene);
   if (o.chart.empty())
     return Error{
-        "nothing to choose by; give --reference FILE (tact-reference SCENE --out FILE) or "
-        "--chart DIR/chart.json (tact-chart SCENE --reference FILE --out DIR); either with "
-        "--tool-reference FILE for the whole tool (tact-reference SCENE --tool --out FILE)"};
+        "nothing to choose by; give --reference FILE (tact-lab reference SCENE --out FILE) or "
+        "--chart DIR/chart.json (tact-lab chart SCENE --reference FILE --out DIR); either with "
+        "--tool-reference FILE for the whole tool (tact-lab reference SCENE --tool --out FILE)"};
   const auto table = chart::read_chart(o.chart);
   if (!table) return table.error();
   if (auto wrong = check_chart_fits(*table, scene, o.chart)) return std::move(*wrong);
@@ -119,13 +120,13 @@ void print(const Options& o, const std::vector<Candidate>& candidates, const Cho
     out[choice.meets_by_rms ? "chosen" : "nearest"] = to_json(candidates[*choice.chosen]);
   if (choice.runner_up) out["runner_up"] = to_json(candidates[*choice.runner_up]);
   if (!written.empty()) out["plan"] = written;
-  fmt::print("{}\n", tact::model::io::text_of(out, 2));
+  fmt::print("{}\n", model::io::text_of(out, 2));
 }
 
 /// Writes the plan that tactd reads, or takes away the one that is no longer good enough.
 Result<std::string> keep(const Choice& choice, const std::vector<Candidate>& candidates,
                          const Scene& scene) {
-  const auto path = tact::model::scene::plan_path(scene.hash);
+  const auto path = model::scene::plan_path(scene.hash);
   if (!path) return path.error();
   if (!choice.meets_by_rms) {
     std::error_code ignored;
@@ -134,45 +135,47 @@ Result<std::string> keep(const Choice& choice, const std::vector<Candidate>& can
     return std::string{};
   }
   const Candidate& c = candidates[*choice.chosen];
-  return tact::model::scene::write_plan({.sizes = c.sizes,
-                                         .tick_p999_us = c.tick_p999_us,
-                                         .force_error_ratio = c.force_error_ratio,
-                                         .shape_error_ratio = c.shape_error_ratio,
-                                         .machine = tact::model::scene::machine_name(),
-                                         .scene_hash = scene.hash},
-                                        *path);
+  return model::scene::write_plan({.sizes = c.sizes,
+                                   .tick_p999_us = c.tick_p999_us,
+                                   .force_error_ratio = c.force_error_ratio,
+                                   .shape_error_ratio = c.shape_error_ratio,
+                                   .machine = model::scene::machine_name(),
+                                   .scene_hash = scene.hash},
+                                  *path);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  program::Program program(
-      "tact-plan",
-      "Choose the least law and size that meets the scene's [tolerance] on this machine:"
-      "\nno more model than the scene needs.",
-      "A reference is linear elastic: compliance is judged with large_strain off. Time is\n"
-      "touch, feel and judge of the whole tool; shape is that under one sphere.\n"
-      "The plan is kept in $XDG_CACHE_HOME/tact/plan (or ~/.cache); tactd reads it when\n"
-      "the scene says law = \"auto\". When no law is good enough there is no plan.");
-  Options o;
-  add_options(program.options(), o);
-  if (const auto status = program.parse(argc, argv)) return *status;
-  constexpr const char* kKept = "the plan is as it was";
+Result<int> run(const program::Program& program, Options& o) {
   const auto scene = o.scene.load();
-  if (!scene) return program.fail(scene.error());
+  if (!scene) return scene.error();
   if (!scene->tolerance)
-    return program.fail({scene->path + ": has no [tolerance]; add force_error_ratio, "
-                                       "shape_error_ratio and tick_budget_us"});
+    return Error{scene->path +
+                 ": has no [tolerance]; add force_error_ratio, shape_error_ratio "
+                 "and tick_budget_us"};
   const auto candidates = find_candidates(o, *scene);
-  if (!candidates) return program.fail(candidates.error(), kKept);
+  if (!candidates) return program.fail(candidates.error(), "the plan is as it was");
   const Choice choice = choose(*candidates, *scene->tolerance);
   std::string written;
   if (!o.dry_run) {
     const auto path = keep(choice, *candidates, *scene);
-    if (!path) return program.fail(path.error());
+    if (!path) return path.error();
     written = *path;
   }
   print(o, *candidates, choice, written);
   // 1: measured, and nothing is good enough.
   return choice.meets_by_rms ? 0 : 1;
 }
+
+}  // namespace
+
+void add_plan(program::Program& lab) {
+  lab.add<Options>(
+      "plan", "the fastest law and size within the scene's [tolerance] on this machine",
+      R"(No more model than the scene needs. A reference is linear elastic: compliance is judged
+with large_strain off. Time is touch, feel and judge of the whole tool; shape is that
+under one sphere. The plan is kept in $XDG_CACHE_HOME/tact/plan (or ~/.cache); tactd
+reads it when the scene says law = "auto". When no law is good enough there is no plan.
+Example: tact-lab plan model/scenes/liver.toml --chart chart/chart.json)",
+      add_options, run);
+}
+
+}  // namespace tact::tools::lab

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tact-reference: what an elastic organ really does under the scene's tool, by finite elements.
+// tact-lab reference: what an elastic organ does under the scene's tool, by finite elements.
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
@@ -9,7 +9,7 @@
 
 #include "model/io/file_writer.h"
 #include "model/io/program/within.h"
-#include "tools/program/program.h"
+#include "tools/lab/commands.h"
 #include "tools/program/run_program.h"
 #include "tools/program/sweep.h"
 #include "tools/reference/plan/reference_plan.h"
@@ -17,16 +17,16 @@
 #include "tools/reference/plan/tool_plan.h"
 #include "tools/reference/self_check/self_check.h"
 
+namespace tact::tools::lab {
 namespace {
 
-using namespace tact::tools;
-using namespace tact::tools::reference;
-using tact::model::Error;
-using tact::model::Result;
+using namespace reference;
+using model::Error;
+using model::Result;
 
 struct Options {
-  std::string scene, out, cache = default_cache_directory(), self_check;
-  std::vector<std::string> overrides;
+  program::SceneArguments scene;
+  std::string out, cache = default_cache_directory(), self_check;
   std::vector<std::uint32_t> sites, large_strain_sites;
   std::vector<double> depths_m;
   int level = 2;
@@ -35,9 +35,9 @@ struct Options {
 };
 
 void add_options(CLI::App& app, Options& o) {
-  app.add_option("scene", o.scene, "scene file (TOML) with [elastic] and [[reference_site]]");
+  app.add_option("SCENE", o.scene.path, "scene file (TOML) with [elastic] and [[reference_site]]");
   app.add_option("--out", o.out, "file to write; without it, a table of forces only");
-  app.add_option("--set", o.overrides, "one key of the scene, as KEY=VALUE; repeatable");
+  app.add_option("--set", o.scene.overrides, "one key of the scene, as KEY=VALUE; repeatable");
   app.add_flag(
       "--tool", o.tool,
       "press all spheres of the tool together, at the hand's own site, along its slides and "
@@ -50,7 +50,7 @@ void add_options(CLI::App& app, Options& o) {
                  "vertices of the organ's mesh, instead of the scene's or of the six")
       ->delimiter(',');
   app.add_option("--depths", o.depths_m, "m, above 0, rising, at most 5 tool radii; press and pull")
-      ->check(tact::model::io::above_zero())
+      ->check(model::io::above_zero())
       ->delimiter(',');
   app.add_option("--large-strain", o.large_strain_sites,
                  "sites also pressed, and pulled up to 1.3 tool radii, with large strain; "
@@ -58,11 +58,11 @@ void add_options(CLI::App& app, Options& o) {
       ->delimiter(',')
       ->excludes("--tool");
   app.add_option("--level", o.level, "mesh, 1 coarse to 4 fine; each about twice the time")
-      ->check(tact::model::io::within(kCoarsestLevel, kFinestLevel))
+      ->check(model::io::within(kCoarsestLevel, kFinestLevel))
       ->capture_default_str();
   app.add_option("--cache", o.cache, "folder of solved cases")->capture_default_str();
   app.add_option("--jobs", o.jobs, "solves at a time; each takes a core and about 1 GB")
-      ->check(tact::model::io::within(1, 256))
+      ->check(model::io::within(1, 256))
       ->capture_default_str();
   app.add_flag("--json", o.json, "print the result as JSON");
   app.add_option("--self-check", o.self_check,
@@ -70,11 +70,11 @@ void add_options(CLI::App& app, Options& o) {
                  "(tests/data/reference)");
 }
 
-const Error kNoScene{"no scene given; see tact-reference --help"};
+const Error kNoScene{"no scene given; see tact-lab reference --help"};
 
 Result<ReferencePlan> make_plan(const Options& o) {
-  if (o.scene.empty()) return kNoScene;
-  const auto scene = tact::model::scene::load_scene(o.scene, o.overrides);
+  if (o.scene.path.empty()) return kNoScene;
+  const auto scene = o.scene.load();
   if (!scene) return scene.error();
   auto plan = plan_of(*scene);
   if (!plan) return plan;
@@ -87,7 +87,7 @@ Result<ReferencePlan> make_plan(const Options& o) {
   // Told, not refused: the rest of the plan is worth its hours.
   if (!plan->large_strain_sites.empty() && plan->depths_m.back() > most_m) {
     fmt::print(stderr,
-               "tact-reference: left out: pulls with large strain beyond {:.3g} mm ({:g} tool "
+               "tact-lab reference: left out: pulls with large strain beyond {:.3g} mm ({:g} tool "
                "radii); no mesh that stands them is fine enough\n",
                most_m * 1e3, kLargePull);
   }
@@ -95,13 +95,13 @@ Result<ReferencePlan> make_plan(const Options& o) {
 }
 
 program::SweepOptions sweep_options(const Options& o) {
-  return {.label = "tact-reference", .shard = {}, .threads = o.jobs};
+  return {.label = "tact-lab reference", .threads = o.jobs};
 }
 
 /// All places, in the order of presses_of; stops at the first error.
 Result<ground_truth::ToolReference> solve_tool(const Options& o) {
-  if (o.scene.empty()) return kNoScene;
-  const auto scene = tact::model::scene::load_scene(o.scene, o.overrides);
+  if (o.scene.path.empty()) return kNoScene;
+  const auto scene = o.scene.load();
   if (!scene) return scene.error();
   auto plan = tool_plan_of(*scene, o.sites, o.depths_m, o.level);
   if (!plan) return plan.error();
@@ -154,7 +154,7 @@ Result<Solved> solve_all(const Organ& organ, const std::vector<Indentation>& cas
   auto error = program::run_until_error(cases.size(), sweep_options(o), work);
   for (std::size_t i = 0; i < cases.size(); ++i)
     if (!why_not[i].empty())
-      fmt::print(stderr, "tact-reference: left out: {}: {}\n", name_of(cases[i]), why_not[i]);
+      fmt::print(stderr, "tact-lab reference: left out: {}: {}\n", name_of(cases[i]), why_not[i]);
   if (error) return std::move(*error);
   return solved;
 }
@@ -215,14 +215,14 @@ void print_table(const ground_truth::ToolReference& data) {
 
 /// Writes and prints what was solved; the exit status.
 template <typename Data>
-int tell(const program::Program& program, const Options& o, const Result<Data>& data,
-         std::string (*text_of)(const Data&)) {
+Result<int> tell(const program::Program& program, const Options& o, const Result<Data>& data,
+                 std::string (*text_of)(const Data&)) {
   if (!data)
     return program.fail(data.error(),
                         "what was solved is kept, the same command goes on from there");
   const std::string text = text_of(*data);
   if (!o.out.empty()) {
-    if (const auto error = tact::model::io::write_file(o.out, text)) return program.fail(*error);
+    if (const auto error = model::io::write_file(o.out, text)) return *error;
   }
   if (o.json)
     fmt::print("{}", text);
@@ -231,27 +231,31 @@ int tell(const program::Program& program, const Options& o, const Result<Data>& 
   return 0;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  program::Program program("tact-reference",
-                           "Solve press and pull of the scene's organ by finite elements.",
-                           "Needs gmsh, and CalculiX but for --tool, which tact solves itself:\n"
-                           "apt install gmsh calculix-ccx. Solved cases are kept and reused.");
-  Options options;
-  add_options(program.options(), options);
-  if (const auto status = program.parse(argc, argv)) return *status;
-  if (!options.self_check.empty()) {
-    const auto good = self_check(options.self_check);
-    return good ? (*good ? 0 : 1) : program.fail(good.error());
+Result<int> run(const program::Program& program, Options& o) {
+  if (!o.self_check.empty()) {
+    const auto good = self_check(o.self_check);
+    if (!good) return good.error();
+    return *good ? 0 : 1;
   }
   // Before hours of work.
-  if (auto error = program::check_output(options.out, "{", {options.scene}))
-    return program.fail(*error);
-  if (options.tool)
-    return tell(program, options, solve_tool(options), ground_truth::tool_reference_text);
-  if (options.sideways) return tell(program, options, solve_sideways(options), sideways_text);
-  const auto plan = make_plan(options);
-  if (!plan) return program.fail(plan.error());
-  return tell(program, options, solve_plan(*plan, options), ground_truth::reference_text);
+  if (auto error = program::check_output(o.out, "{", {o.scene.path})) return *error;
+  if (o.tool) return tell(program, o, solve_tool(o), ground_truth::tool_reference_text);
+  if (o.sideways) return tell(program, o, solve_sideways(o), sideways_text);
+  const auto plan = make_plan(o);
+  if (!plan) return plan.error();
+  return tell(program, o, solve_plan(*plan, o), ground_truth::reference_text);
 }
+
+}  // namespace
+
+void add_reference(program::Program& lab) {
+  lab.add<Options>(
+      "reference", "the true force and shape of a pressed elastic organ, by finite elements",
+      R"(Solves press and pull of the scene's organ. Needs gmsh, and CalculiX but for --tool,
+which tact solves itself: apt install gmsh calculix-ccx. Solved cases are kept and
+reused.
+Example: tact-lab reference model/scenes/liver.toml --out liver.json --jobs 2)",
+      add_options, run);
+}
+
+}  // namespace tact::tools::lab

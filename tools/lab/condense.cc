@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tact-condense: how much the scene's organ gives at every place of its surface, once and for all.
+// tact-lab condense: the compliance of the scene's organ at every vertex, once and for all.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -13,18 +13,18 @@
 #include "model/io/program/within.h"
 #include "model/scene/compliance_file.h"
 #include "tools/condense/condense_organ.h"
+#include "tools/lab/commands.h"
 #include "tools/program/interrupt.h"
-#include "tools/program/program.h"
 
+namespace tact::tools::lab {
 namespace {
 
-using tact::model::Vec3;
-using tact::model::tissue::ComplianceMap;
-using tact::tools::condense::CondenseFacts;
-using tact::tools::condense::CondenseInput;
+using condense::CondenseFacts;
+using model::Result;
+using model::tissue::ComplianceMap;
 
 struct Options {
-  tact::tools::program::SceneArguments scene;
+  program::SceneArguments scene;
   std::string out;
   double mesh_size_m = 0.0, patch_radius_m = 0.0;
   double ring_pitch_m = 0.0;
@@ -33,7 +33,7 @@ struct Options {
 };
 
 /// A length in an organ, m.
-CLI::Validator a_length() { return tact::model::io::within(1e-6, 1.0); }
+CLI::Validator a_length() { return model::io::within(1e-6, 1.0); }
 
 void add_options(CLI::App& app, Options& o) {
   o.scene.add_to(app, "[elastic]");
@@ -48,20 +48,20 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--ring-pitch-m", o.ring_pitch_m, "of the shape around a place, m (default 0.002)")
       ->check(a_length());
   app.add_option("--rings", o.rings, "of the shape, 1 to 31 (default 20)")
-      ->check(tact::model::io::within(1, 31));
+      ->check(model::io::within(1, 31));
   app.add_flag("--json", o.json, "print one JSON object, SI units");
 }
 
 bool show_progress(std::size_t done, std::size_t vertices) {
   if (isatty(STDERR_FILENO) != 0) {
     if (done == 0)
-      fmt::print(stderr, "\rtact-condense: filling and factoring the organ ...");
+      fmt::print(stderr, "\rtact-lab condense: filling and factoring the organ ...");
     else
-      fmt::print(stderr, "\rtact-condense: {} of {} vertices              {}", done, vertices,
+      fmt::print(stderr, "\rtact-lab condense: {} of {} vertices              {}", done, vertices,
                  done == vertices ? "\n" : "");
     std::fflush(stderr);
   }
-  return !tact::tools::program::is_interrupted();
+  return !program::is_interrupted();
 }
 
 struct Range {
@@ -94,7 +94,7 @@ void report(const Options& o, const ComplianceMap& map, const CondenseFacts& fac
         {"elements", facts.elements},
         {"regular_times_E_per_m", {{"least", r.low}, {"median", r.middle}, {"most", r.high}}},
         {"seconds_s", seconds}};
-    fmt::print("{}\n", tact::model::io::text_of(out, 2));
+    fmt::print("{}\n", model::io::text_of(out, 2));
     return;
   }
   fmt::print("{}: {} bytes, {} vertices, {} rings of {:.3g} mm, nu = {:.3g}\n", o.out, bytes,
@@ -105,25 +105,12 @@ void report(const Options& o, const ComplianceMap& map, const CondenseFacts& fac
   fmt::print("took   {:.0f} s\n", seconds);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  tact::tools::program::Program program(
-      "tact-condense",
-      "Condense the scene's organ: solve it by finite elements under a small load at every vertex\n"
-      "of its surface, and keep how much more it gives there than an endless block would. The\n"
-      "compliance law then costs a look-up a tick. Minutes of work, done once for a mesh.",
-      "Needs gmsh: apt install gmsh. The map holds r E (1/m): Young's modulus may change without "
-      "a new map,\nPoisson's ratio, the held box and the mesh may not.");
-  Options o;
-  add_options(program.options(), o);
-  if (const auto status = program.parse(argc, argv)) return *status;
-  if (const auto error = tact::tools::program::check_output(o.out, "TACTCOMP", {o.scene.path}))
-    return program.fail(*error);
+Result<int> run(const program::Program&, Options& o) {
+  if (auto error = program::check_output(o.out, "TACTCOMP", {o.scene.path})) return *error;
   const auto scene = o.scene.load();
-  if (!scene) return program.fail(scene.error());
-  auto input = tact::tools::condense::condense_input(*scene);
-  if (!input) return program.fail(input.error());
+  if (!scene) return scene.error();
+  auto input = condense::condense_input(*scene);
+  if (!input) return input.error();
   input->settings.mesh_size_m = o.mesh_size_m;
   input->settings.patch_radius_m = o.patch_radius_m;
   if (o.ring_pitch_m > 0.0) input->settings.organ.ring_pitch_m = o.ring_pitch_m;
@@ -131,11 +118,27 @@ int main(int argc, char** argv) {
   input->settings.organ.progress = show_progress;
   const auto start = std::chrono::steady_clock::now();
   CondenseFacts facts;
-  const auto map = tact::tools::condense::condense_organ(*input, facts);
-  if (!map) return program.fail(map.error());
-  const auto bytes = tact::model::scene::write_compliance_map(*map, o.out);
-  if (!bytes) return program.fail(bytes.error());
+  const auto map = condense::condense_organ(*input, facts);
+  if (!map) return map.error();
+  const auto bytes = model::scene::write_compliance_map(*map, o.out);
+  if (!bytes) return bytes.error();
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   report(o, *map, facts, *bytes, took.count());
   return 0;
 }
+
+}  // namespace
+
+void add_condense(program::Program& lab) {
+  lab.add<Options>(
+      "condense", "the organ's compliance at every vertex of its surface, by finite elements",
+      R"(Solves the scene's organ under a small load at every vertex of its surface, and keeps how
+much more it gives there than an endless block would. The compliance law then costs a
+look-up a tick. Minutes of work, done once for a mesh. Needs gmsh: apt install gmsh. The
+map holds r E (1/m): Young's modulus may change without a new map, Poisson's ratio, the
+held box and the mesh may not.
+Example: tact-lab condense mine.toml --out mine.compliance)",
+      add_options, run);
+}
+
+}  // namespace tact::tools::lab

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tact-sweep: the whole tool of a scene pressed into its organ at every vertex.
+// tact-lab sweep: the whole tool of a scene pressed into its organ at every vertex.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -11,22 +11,22 @@
 #include "model/io/file_writer.h"
 #include "model/io/program/within.h"
 #include "model/scene/tissue.h"
-#include "tools/program/program.h"
+#include "tools/lab/commands.h"
 #include "tools/sweep/all_cores.h"
 #include "tools/sweep/reference_presses.h"
 #include "tools/sweep/sweep_report.h"
 
+namespace tact::tools::lab {
 namespace {
 
-using namespace tact::tools;
-using tact::model::Error;
-using tact::model::Result;
-using tact::model::scene::PressPlace;
-using tact::model::scene::PressSettings;
-using tact::model::scene::PressStep;
-using tact::model::scene::PressSweep;
-using tact::model::scene::PressWay;
-using tact::model::scene::Scene;
+using model::Error;
+using model::Result;
+using model::scene::PressPlace;
+using model::scene::PressSettings;
+using model::scene::PressStep;
+using model::scene::PressSweep;
+using model::scene::PressWay;
+using model::scene::Scene;
 
 constexpr std::size_t kWorst = 10;  // told by name
 
@@ -63,16 +63,16 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--vertex", o.vertex,
                  "this vertex alone, counted from 0; repeatable. Of one press press.csv has the "
                  "force along the way")
-      ->check(tact::model::io::within(0, 4294967294.0));
+      ->check(model::io::within(0, 4294967294.0));
   app.add_option("--step-m", o.step_m, "of the tool along its way, m (default 2e-5)")
-      ->check(tact::model::io::within(1e-7, 1e-3));
+      ->check(model::io::within(1e-7, 1e-3));
   app.add_option("--depth-m", o.depth_m,
                  "of the tool's lowest point, m (default: the working range of the law)")
-      ->check(tact::model::io::within(1e-5, 1.0));
+      ->check(model::io::within(1e-5, 1.0));
   app.add_option("--limit-N-per-m", o.limit_N_per_m,
                  "stiffness that is admitted, N/m (default: that of the scene's device, if it is "
                  "simulated)")
-      ->check(tact::model::io::above_zero());
+      ->check(model::io::above_zero());
   app.add_flag("--square", o.square, "along the inward normal of the vertex, the tool turned so");
   app.add_flag("--upright", o.upright,
                "along hand.inward, the tool as at rest, at vertices that face the hand (default: "
@@ -83,17 +83,16 @@ void add_options(CLI::App& app, Options& o) {
 
 Result<double> limit_N_per_m(const Options& o, const Scene& scene) {
   if (o.limit_N_per_m > 0.0) return o.limit_N_per_m;
-  if (!tact::hal::registry::is_simulated(scene.device))
+  if (!hal::registry::is_simulated(scene.device))
     return Error{
         fmt::format("{}: device.kind \"{}\" is hardware, which this program does not open; give "
                     "--limit-N-per-m, the limit that tactd {} --check prints",
                     scene.path, scene.device.kind, scene.path)};
-  const auto tissue = tact::model::scene::make_tissue(scene);
+  const auto tissue = model::scene::make_tissue(scene);
   if (!tissue) return tissue.error();
-  const auto device = tact::hal::registry::open_device(scene);
+  const auto device = hal::registry::open_device(scene);
   if (!device) return device.error();
-  return tact::firmware::admission::stiffness_limit_N_per_m(scene, (*tissue)->law(),
-                                                            (*device)->info());
+  return firmware::admission::stiffness_limit_N_per_m(scene, (*tissue)->law(), (*device)->info());
 }
 
 Result<std::vector<PressPlace>> places_of(const Options& o, const Scene& scene) {
@@ -114,17 +113,17 @@ Result<std::vector<PressPlace>> places_of(const Options& o, const Scene& scene) 
 /// The force along one way, step by step.
 std::optional<Error> write_way(const Scene& scene, const PressSweep& sweep,
                                const std::string& path) {
-  const auto tissue = tact::model::scene::make_tissue(scene);
+  const auto tissue = model::scene::make_tissue(scene);
   if (!tissue) return tissue.error();
   std::string csv = "depth_m,force_N,force_x_N,force_y_N,force_z_N,stored_J,work_J\n";
   press_once((*tissue)->contact_scene(), scene.hand_inward, sweep.results.front().place,
              sweep.settings, [&csv](const PressStep& step) {
-               const tact::model::Vec3& f = step.force_N;
+               const model::Vec3& f = step.force_N;
                csv +=
                    fmt::format("{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", step.depth_m,
                                step.along_N, f.x, f.y, f.z, step.stored_J, step.work_J);
              });
-  return tact::model::io::write_file(path, csv);
+  return model::io::write_file(path, csv);
 }
 
 /// Table and picture; of a single press its force along the way, too.
@@ -147,7 +146,7 @@ Result<std::vector<std::string>> write_all(const Options& o, const Scene& scene,
 
 /// Without what chooses the places: those of one press are added.
 std::string command_for(const Options& o) {
-  std::string out = fmt::format("tact-sweep {} --out {}", o.scene.path, o.out);
+  std::string out = fmt::format("tact-lab sweep {} --out {}", o.scene.path, o.out);
   for (const std::string& set : o.scene.overrides) out += fmt::format(" --set '{}'", set);
   if (o.step_m != Options{}.step_m) out += fmt::format(" --step-m {:g}", o.step_m);
   if (o.depth_m > 0.0) out += fmt::format(" --depth-m {:g}", o.depth_m);
@@ -155,46 +154,27 @@ std::string command_for(const Options& o) {
   return out;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  program::Program program(
-      "tact-sweep",
-      "Press the whole tool of a scene into its organ at many vertices, from free outside to the\n"
-      "working range of the law, and check the force in every step: it never draws the tool in,\n"
-      "never jumps, is no stiffer than the device can show, and stores the work of the hand.",
-      "Example:  tact-sweep model/scenes/liver.toml --vertices all --out sweep\n"
-      "\n"
-      "Checks: along the way the force is at least -1 mN; the force vector changes by at most the\n"
-      "admitted stiffness times the step; the slope dF/dd (median of three steps, N/m) is at most\n"
-      "the admitted stiffness (HL-1: damping of the device at this rate); without friction and\n"
-      "relaxation the stored energy is the work of the hand within 2 % and the largest force\n"
-      "times the step. The force may fall along the way: on a steep flank the true one does.\n"
-      "Depths are those of the tool's lowest point beyond the vertex, m.");
-  Options o;
-  add_options(program.options(), o);
-  if (const auto status = program.parse(argc, argv)) return *status;
+Result<int> run(const program::Program&, Options& o) {
   const auto scene = o.scene.load();
-  if (!scene) return program.fail(scene.error());
+  if (!scene) return scene.error();
   if (!o.reference.empty()) {
     const auto presses = sweep::press_reference(*scene, o.reference);
-    if (!presses) return program.fail(presses.error());
+    if (!presses) return presses.error();
     fmt::print("{}\n", o.json ? sweep::json_of(*presses) : sweep::text_of(*presses));
     return 0;
   }
-  if (o.out.empty())
-    return program.fail(Error{"give --out FOLDER for the table, or --reference FILE"});
+  if (o.out.empty()) return Error{"give --out FOLDER for the table, or --reference FILE"};
   const auto places = places_of(o, *scene);
-  if (!places) return program.fail(places.error());
+  if (!places) return places.error();
   const auto limit = limit_N_per_m(o, *scene);
-  if (!limit) return program.fail(limit.error());
-  if (const auto error = program::prepare_folder(o.out)) return program.fail(*error);
+  if (!limit) return limit.error();
+  if (auto error = program::prepare_folder(o.out)) return *error;
   const PressSettings settings{
       .step_m = o.step_m, .depth_m = o.depth_m, .limit_N_per_m = *limit, .checks_energy = true};
   const auto sweep = sweep::sweep_on_all_cores(*scene, *places, settings);
-  if (!sweep) return program.fail(sweep.error());
+  if (!sweep) return sweep.error();
   const auto files = write_all(o, *scene, *sweep);
-  if (!files) return program.fail(files.error());
+  if (!files) return files.error();
   const std::string command = command_for(o);
   if (o.json)
     fmt::print("{}\n", sweep::json_of(*scene, *sweep, command, *files));
@@ -202,3 +182,23 @@ int main(int argc, char** argv) {
     fmt::print("{}", sweep::text_of(*sweep, command, kWorst));
   return sweep->flawed().empty() ? 0 : 1;
 }
+
+}  // namespace
+
+void add_sweep(program::Program& lab) {
+  lab.add<Options>(
+      "sweep", "the whole tool pressed in at many vertices: is its force sound everywhere?",
+      R"(Presses the whole tool from free outside to the working range of the law, and checks the
+force in every step: it never draws the tool in, never jumps, is no stiffer than the
+device can show, and stores the work of the hand.
+Checks: along the way the force is at least -1 mN; the force vector changes by at most
+the admitted stiffness times the step; the slope dF/dd (median of three steps, N/m) is at
+most the admitted stiffness (HL-1: damping of the device at this rate); without friction
+and relaxation the stored energy is the work of the hand within 2 % and the largest force
+times the step. The force may fall along the way: on a steep flank the true one does.
+Depths are those of the tool's lowest point beyond the vertex, m.
+Example: tact-lab sweep model/scenes/liver.toml --vertices all --out sweep)",
+      add_options, run);
+}
+
+}  // namespace tact::tools::lab

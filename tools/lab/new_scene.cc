@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tact-new-scene: a mesh in, a scene out.
+// tact-lab new-scene: a mesh in, a scene out.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -13,6 +13,7 @@
 #include "model/scene/compliance_file.h"
 #include "tools/condense/condense_organ.h"
 #include "tools/ground_truth/gmsh.h"
+#include "tools/lab/commands.h"
 #include "tools/mesh/mesh_report.h"
 #include "tools/mesh/unit.h"
 #include "tools/new_scene/ask.h"
@@ -20,18 +21,16 @@
 #include "tools/new_scene/organ.h"
 #include "tools/new_scene/outputs.h"
 #include "tools/new_scene/scene_text.h"
-#include "tools/program/program.h"
 #include "tools/program/run_program.h"
 
+namespace tact::tools::lab {
 namespace {
 
 namespace fs = std::filesystem;
-namespace new_scene = tact::tools::new_scene;
-namespace program = tact::tools::program;
+using model::Error;
+using model::Result;
 using new_scene::Organ;
 using new_scene::OutputNames;
-using tact::model::Error;
-using tact::model::Result;
 
 struct Options {
   new_scene::OrganOrder organ{.source = {}, .faces = 6000};
@@ -49,21 +48,21 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--unit", o.organ.unit_m,
                  "of ORGAN: m, cm, mm, um or in (default: mm for 25 units or more, cm for 1 or "
                  "more, else m)")
-      ->transform(
-          CLI::CheckedTransformer(tact::tools::mesh::units_m(), CLI::ignore_case).description(""));
+      ->transform(CLI::CheckedTransformer(mesh::units_m(), CLI::ignore_case).description(""));
   app.add_option("--youngs-modulus-Pa", o.youngs_modulus_Pa, "E of the tissue")
-      ->check(tact::model::io::within(100.0, 1e6))
+      ->check(model::io::within(100.0, 1e6))
       ->capture_default_str();
   app.add_option("--poisson-ratio", o.poisson_ratio, "nu of the tissue")
-      ->check(tact::model::io::within(0.0, 0.495))
+      ->check(model::io::within(0.0, 0.495))
       ->capture_default_str();
   app.add_option("--faces", o.organ.faces, "leave at most about so many")
-      ->check(tact::model::io::within(100, 40'000))
+      ->check(model::io::within(100, 40'000))
       ->capture_default_str();
   app.add_flag("--smooth", o.organ.smooth, "take the steps of voxels away");
-  app.add_flag("--plan", o.plan,
-               "also solve references and let tact-plan choose the law for this PC: minutes to an "
-               "hour; needs CalculiX, which Debian 13 has not");
+  app.add_flag(
+      "--plan", o.plan,
+      "also solve references and let tact-lab plan choose the law for this PC: minutes to an "
+      "hour; needs CalculiX, which Debian 13 has not");
   app.add_flag("--force", o.force, "replace the files of an earlier run");
 }
 
@@ -75,7 +74,8 @@ void tell(const char* step, const std::string& text) {
 /// What can be refused is refused before the minutes of work.
 std::optional<Error> check_before(const Options& o, const OutputNames& names) {
   const std::string& source = o.organ.source;
-  if (auto error = new_scene::check_new(names.scene, "# made by tact-new-scene", source, o.force))
+  if (auto error =
+          new_scene::check_new(names.scene, "# made by tact-lab new-scene", source, o.force))
     return error;
   if (auto error = new_scene::check_new(names.map, "TACTCOMP", source, o.force)) return error;
   if (auto error = new_scene::check_new(names.tool, new_scene::tool_mesh(), source, o.force))
@@ -84,24 +84,24 @@ std::optional<Error> check_before(const Options& o, const OutputNames& names) {
     for (const std::string& path : {names.reference, names.tool_reference})
       if (auto error = new_scene::check_new(path, "{\"schema\": \"tact-", source, o.force))
         return error;
-  const auto input = tact::model::io::InputFile::open(source, "name a mesh file");
+  const auto input = model::io::InputFile::open(source, "name a mesh file");
   if (!input) return input.error();
   if (!new_scene::is_sound(o.organ))
-    if (auto error = new_scene::check_new(
-            names.organ, std::string(tact::tools::mesh::kRepairedBeginning), source, o.force))
+    if (auto error = new_scene::check_new(names.organ, std::string(mesh::kRepairedBeginning),
+                                          source, o.force))
       return error;
-  const auto gmsh = tact::tools::ground_truth::gmsh_version();
+  const auto gmsh = ground_truth::gmsh_version();
   return gmsh ? std::nullopt : std::optional(gmsh.error());
 }
 
 Result<Organ> read(const Options& o, const std::string& folder) {
   auto organ = new_scene::read_organ(
       o.organ, folder,
-      [](const tact::tools::mesh::RepairStep& step) {
-        fmt::print("{}", tact::tools::mesh::to_text(step));
+      [](const mesh::RepairStep& step) {
+        fmt::print("{}", mesh::to_text(step));
         std::fflush(stdout);
       },
-      tact::tools::mesh::show_percent);
+      mesh::show_percent);
   if (!organ) return organ;
   tell("unit", to_text(organ->unit, organ->mesh));
   const auto sum = summarize(organ->mesh);
@@ -131,24 +131,23 @@ std::string text_of(const Options& o, const OutputNames& names, const Organ& org
 }
 
 bool show_progress(std::size_t done, std::size_t vertices) {
-  if (done > 0)
-    tact::tools::mesh::show_percent("condense", static_cast<int>(100 * done / vertices));
+  if (done > 0) mesh::show_percent("condense", static_cast<int>(100 * done / vertices));
   return !program::is_interrupted();
 }
 
 /// The map of the scene's organ, into its file.
 std::optional<Error> condense(const std::string& scene_path, const std::string& map_path) {
-  const auto scene = tact::model::scene::load_scene(scene_path, {});
+  const auto scene = model::scene::load_scene(scene_path, {});
   if (!scene) return scene.error();
-  auto input = tact::tools::condense::condense_input(*scene);
+  auto input = condense::condense_input(*scene);
   if (!input) return input.error();
   tell("condense", fmt::format("{} vertices, by finite elements: minutes for thousands",
                                input->surface.vertex_m.size()));
   input->settings.organ.progress = show_progress;
-  tact::tools::condense::CondenseFacts facts;
-  const auto map = tact::tools::condense::condense_organ(*input, facts);
+  condense::CondenseFacts facts;
+  const auto map = condense::condense_organ(*input, facts);
   if (!map) return map.error();
-  const auto bytes = tact::model::scene::write_compliance_map(*map, map_path);
+  const auto bytes = model::scene::write_compliance_map(*map, map_path);
   return bytes ? std::nullopt : std::optional(bytes.error());
 }
 
@@ -171,7 +170,7 @@ Result<std::vector<new_scene::OutputFile>> collect(const OutputNames& made,
         &OutputNames::tool_reference, &OutputNames::scene}) {
     std::error_code failed;
     if (!fs::exists(made.*name, failed)) continue;
-    auto content = tact::model::io::read_file(made.*name, "try again");
+    auto content = model::io::read_file(made.*name, "try again");
     if (!content) return content.error();
     files.push_back({names.*name, std::move(*content)});
   }
@@ -179,7 +178,7 @@ Result<std::vector<new_scene::OutputFile>> collect(const OutputNames& made,
 }
 
 /// Every file of the scene in `folder`, whole and judged; then all of them to their places. True if
-/// tact-plan has chosen its law.
+/// tact-lab plan has chosen its law.
 Result<bool> make_scene(const Options& o, const OutputNames& names, const std::string& folder) {
   const auto made = new_scene::names_of(folder + "/" + fs::path(names.scene).filename().string());
   if (!made) return made.error();
@@ -189,12 +188,12 @@ Result<bool> make_scene(const Options& o, const OutputNames& names, const std::s
   tell("place", fmt::format("the top comes to the tool; held below z = {:.4g} mm, the lowest tenth",
                             1e3 * place.held.max_m.z));
   const auto write_scene = [&](const char* law) {
-    return tact::model::io::write_file(made->scene, text_of(o, names, *organ, place, law));
+    return model::io::write_file(made->scene, text_of(o, names, *organ, place, law));
   };
   const std::string log = folder + "/log";
   if (!organ->obj_text.empty())
-    if (auto error = tact::model::io::write_file(made->organ, organ->obj_text)) return *error;
-  if (auto error = tact::model::io::write_file(made->tool, new_scene::tool_mesh())) return *error;
+    if (auto error = model::io::write_file(made->organ, organ->obj_text)) return *error;
+  if (auto error = model::io::write_file(made->tool, new_scene::tool_mesh())) return *error;
   if (auto error = write_scene("compliance")) return *error;
   if (auto error = condense(made->scene, made->map)) return *error;
   // Its own sentence if it does not.
@@ -233,11 +232,11 @@ std::string as_word(const std::string& path) {
 
 void tell_what_next(const OutputNames& names, bool was_asked, bool is_planned) {
   const std::string scene = as_word(names.scene);
-  tell("law", is_planned ? "as tact-plan has chosen for this PC" : "compliance, from the map");
+  tell("law", is_planned ? "as tact-lab plan has chosen for this PC" : "compliance, from the map");
   fmt::print("\nFeel it:\n  tactd {} --free-run --seconds 5\n", scene);
   if (is_planned)
     fmt::print(
-        "On another PC its times differ; there, once:\n  tact-plan {} --reference {} "
+        "On another PC its times differ; there, once:\n  tact-lab plan {} --reference {} "
         "--tool-reference {}\n",
         scene, as_word(names.reference), as_word(names.tool_reference));
   else if (!was_asked)
@@ -245,32 +244,32 @@ void tell_what_next(const OutputNames& names, bool was_asked, bool is_planned) {
         "Is a faster law good enough? The same with --plan --force compares them, by CalculiX.\n");
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  program::Program program(
-      "tact-new-scene",
-      "Make a scene of an organ: repair its mesh where needed, put its top under the forceps, "
-      "hold\n"
-      "its lowest tenth, condense it, and ask tactd whether it takes the scene. Minutes of work.\n"
-      "The law is compliance, from the map; with --plan the one that tact-plan chooses. Beside\n"
-      "NAME.toml come NAME.compliance, NAME_tool.obj and, if ORGAN was repaired or is no OBJ "
-      "file,\n"
-      "NAME.obj; with --plan two references. No file appears before all are whole.",
-      "Needs gmsh: apt install gmsh; to repair a mesh Python's VTK: apt install python3-vtk9.\n"
-      "E and nu are those of the shipped liver. Nothing is turned: what is on top in the file is\n"
-      "touched.");
-  Options options;
-  add_options(program.options(), options);
-  if (const auto status = program.parse(argc, argv)) return *status;
-  const auto names = new_scene::names_of(options.out);
-  if (!names) return program.fail(names.error());
-  if (const auto error = check_before(options, *names)) return program.fail(*error);
+Result<int> run(const program::Program&, Options& o) {
+  const auto names = new_scene::names_of(o.out);
+  if (!names) return names.error();
+  if (auto error = check_before(o, *names)) return *error;
   const auto folder = program::ScratchFolder::make("tact-new-scene");
-  if (!folder) return program.fail(folder.error());
-  const auto is_planned = make_scene(options, *names, folder->path());
-  if (!is_planned)
-    return program.fail({about(is_planned.error().sentence, folder->path(), *names)});
-  tell_what_next(*names, options.plan, *is_planned);
+  if (!folder) return folder.error();
+  const auto is_planned = make_scene(o, *names, folder->path());
+  if (!is_planned) return Error{about(is_planned.error().sentence, folder->path(), *names)};
+  tell_what_next(*names, o.plan, *is_planned);
   return 0;
 }
+
+}  // namespace
+
+void add_new_scene(program::Program& lab) {
+  lab.add<Options>(
+      "new-scene", "a mesh in, a scene out: repaired, placed, condensed, and taken by tactd",
+      R"(Repairs the organ's mesh where needed, puts its top under the forceps, holds its lowest
+tenth, condenses it, and asks tactd whether it takes the scene. Minutes of work. The law
+is compliance, from the map; with --plan the one that tact-lab plan chooses. Beside
+NAME.toml come NAME.compliance, NAME_tool.obj and, if ORGAN was repaired or is no OBJ
+file, NAME.obj; with --plan two references. No file appears before all are whole. Needs
+gmsh: apt install gmsh; to repair a mesh Python's VTK: apt install python3-vtk9. E and nu
+are those of the shipped liver. Nothing is turned: what is on top in the file is touched.
+Example: tact-lab new-scene organ.stl --out mine.toml)",
+      add_options, run);
+}
+
+}  // namespace tact::tools::lab
