@@ -51,7 +51,7 @@ double Controller::reach_m(std::uint64_t periods, std::int64_t stamp_ns) const R
 
 // Neither arming nor a pause changes contact: it follows the tool from its first sample on. While
 // samples are missing it stays where the last one was.
-void Controller::touch(const TickInput& input) RT_SAFE {
+void Controller::detect_contact(const TickInput& input) RT_SAFE {
   const std::uint64_t passed = std::uint64_t{input.skipped_periods} + 1;  // since the last tick
   const auto periods = static_cast<std::uint32_t>(std::min<std::uint64_t>(passed, kMaxPeriods));
   const hal::Sample& sample = input.sample;
@@ -62,23 +62,23 @@ void Controller::touch(const TickInput& input) RT_SAFE {
   if (is_open) {
     if (sample.fresh) stamp_ns_ = sample.stamp_ns;
   } else if (sample.fresh) {
-    contact_.touch(sample.tool, periods, reach_m(unseen_ + passed, sample.stamp_ns));
+    contact_.detect_contact(sample.tool, periods, reach_m(unseen_ + passed, sample.stamp_ns));
     stamp_ns_ = sample.stamp_ns;
     seen_ = true;
     unseen_ = 0;
   } else if (seen_) {
-    contact_.touch(sample.tool, periods);
+    contact_.detect_contact(sample.tool, periods);
     unseen_ += passed;
   }
 }
 
-void Controller::feel(const TickInput& input) RT_SAFE {
+void Controller::render_force(const TickInput& input) RT_SAFE {
   if (!seen_) return;  // before the first sample there is no pose
   // A blade cuts only what a hand can feel: armed, as the tick before left it.
   const bool is_open = input.clutch == ClutchState::kOpen;
-  felt_ = contact_.feel(input.sample.tool, supervisor_.armed() && !is_open);
-  if (felt_.is_lost) ++contact_losses_;
-  jaw_force_N_ = jaw_force_N(contact_.touches(), input.sample.tool.grip_ratio);
+  rendered_ = contact_.render_force(input.sample.tool, supervisor_.armed() && !is_open);
+  if (rendered_.is_lost) ++contact_losses_;
+  jaw_force_N_ = jaw_force_N(contact_.contacts(), input.sample.tool.grip_ratio);
 }
 
 void Controller::tell_shape() RT_SAFE {
@@ -89,7 +89,7 @@ void Controller::tell_shape() RT_SAFE {
 Fault Controller::find_fault(const TickInput& input, bool finite, bool too_late) const RT_SAFE {
   if (latches(input.device_fault)) return input.device_fault;
   if (!finite) return Fault::kSampleNotFinite;
-  if (felt_.is_broken) return Fault::kLawBroke;
+  if (rendered_.is_broken) return Fault::kLawBroke;
   // Late without a force harms nobody; a start may take its time.
   if (too_late && supervisor_.armed()) return Fault::kLoopLate;
   return Fault::kNone;
@@ -101,11 +101,11 @@ Fault Controller::find_fault(const TickInput& input, bool finite, bool too_late)
 Fault Controller::find_limit(Fault acting, bool is_coupled) const RT_SAFE {
   const bool open = !lets_go(acting);
   const State state = supervisor_.state();
-  if (felt_.is_lost && state == State::kArmed) return Fault::kContactLost;
+  if (rendered_.is_lost && state == State::kArmed) return Fault::kContactLost;
   if (!is_coupled) return Fault::kClutchPressed;
-  if (felt_.is_inside && (open || state == State::kOff || state == State::kReady))
+  if (rendered_.is_inside && (open || state == State::kOff || state == State::kReady))
     return Fault::kToolInside;
-  if ((felt_.is_saturated || felt_.is_unsettled) && open) return Fault::kLawSaturated;
+  if ((rendered_.is_saturated || rendered_.is_unsettled) && open) return Fault::kLawSaturated;
   return acting;
 }
 
@@ -139,7 +139,7 @@ TickOutput Controller::judge(const TickInput& input) RT_SAFE {
   handle.position_m = handle.position_m - input.clutch_shift_m;
   const bool is_coupled = input.clutch == ClutchState::kCoupled;
   const gate::GateVerdict verdict =
-      gate_.judge({.wanted = is_coupled ? felt_.wrench : model::Wrench{},
+      gate_.judge({.wanted = is_coupled ? rendered_.wrench : model::Wrench{},
                    .tool = handle,
                    .fresh = input.sample.fresh,
                    .armed = supervisor_.armed(),
@@ -147,7 +147,7 @@ TickOutput Controller::judge(const TickInput& input) RT_SAFE {
   supervisor_.trip(verdict.fault);
   acting_ = verdict.acting;
   const Fault acting = verdict.acting != Fault::kNone ? verdict.acting : grip.acting;
-  newest_ = {.wanted = felt_.wrench,
+  newest_ = {.wanted = rendered_.wrench,
              .written = verdict.wrench,
              .state = supervisor_.state(),
              .limit = find_limit(acting, is_coupled),

@@ -51,14 +51,14 @@ class Controller {
   Controller(const model::contact::ContactScene& scene, const gate::Gate& gate, bool hard_real_time,
              const std::optional<gate::GripGate>& grip_gate = std::nullopt);
 
-  void touch(const TickInput& input) RT_SAFE;
-  void feel(const TickInput& input) RT_SAFE;
+  void detect_contact(const TickInput& input) RT_SAFE;
+  void render_force(const TickInput& input) RT_SAFE;
   TickOutput judge(const TickInput& input) RT_SAFE;
 
   /// The three phases in a row.
   TickOutput tick(const TickInput& input) RT_SAFE {
-    touch(input);
-    feel(input);
+    detect_contact(input);
+    render_force(input);
     return judge(input);
   }
 
@@ -66,11 +66,11 @@ class Controller {
   void tell_shape() RT_SAFE;
   ShapeSlot& shapes() { return shapes_; }
 
-  std::span<const model::contact::SphereTouch> touches() const RT_SAFE {
-    return contact_.touches();
+  std::span<const model::contact::SphereContact> contacts() const RT_SAFE {
+    return contact_.contacts();
   }
   /// A sphere is inside the organ, as of this tick.
-  bool is_inside() const RT_SAFE { return felt_.is_inside; }
+  bool is_inside() const RT_SAFE { return rendered_.is_inside; }
   const gate::Gate& gate() const RT_SAFE { return gate_; }
   /// Of the last tick; for after the loop.
   const TickOutput& newest() const { return newest_; }
@@ -86,10 +86,10 @@ class Controller {
   std::optional<gate::GripGate> grip_gate_;  // where the device presses against the fingers
   LateWatch late_watch_;
   Supervisor supervisor_;
-  model::contact::ContactResponse felt_;  // of this tick
-  double jaw_force_N_ = 0.0;              // of this tick
-  Fault acting_ = Fault::kNone;           // in the gate, in the last tick
-  bool was_open_ = false;                 // the clutch, in the last tick
+  model::contact::ContactResponse rendered_;  // of this tick
+  double jaw_force_N_ = 0.0;                  // of this tick
+  Fault acting_ = Fault::kNone;               // in the gate, in the last tick
+  bool was_open_ = false;                     // the clutch, in the last tick
   TickOutput newest_;
   model::contact::PatchShape shape_;
   ShapeSlot shapes_;

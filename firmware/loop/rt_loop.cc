@@ -157,7 +157,7 @@ void RtLoop::tell() RT_SAFE {
   if (controller_.is_inside()) ++statistics_.inside_ticks;
   record_.late_ticks = statistics_.late_ticks;
   record_.skipped_ticks = statistics_.skipped_ticks;
-  record_.touches.assign(controller_.touches());
+  record_.contacts.assign(controller_.contacts());
   ring_.push(record_);
   if (settings_.ticks_per_shape != 0 && record_.tick % settings_.ticks_per_shape == 0)
     controller_.tell_shape();
@@ -186,23 +186,23 @@ void RtLoop::cycle(std::int64_t due_ns) RT_SAFE {
   input.ready = lines_.enabled() && device_.ready();
   const std::int64_t read_ns = end_phase(Phase::kRead, wake_ns);
 
-  controller_.touch(input);
-  const std::int64_t touched_ns = end_phase(Phase::kTouch, read_ns);
-  controller_.feel(input);
-  const std::int64_t felt_ns = end_phase(Phase::kFeel, touched_ns);
+  controller_.detect_contact(input);
+  const std::int64_t detected_ns = end_phase(Phase::kDetect, read_ns);
+  controller_.render_force(input);
+  const std::int64_t rendered_ns = end_phase(Phase::kRender, detected_ns);
   record_.output = controller_.judge(input);
   answer_requests();
-  const std::int64_t judged_ns = end_phase(Phase::kJudge, felt_ns);
+  const std::int64_t limited_ns = end_phase(Phase::kLimit, rendered_ns);
 
   write();
   lines_.scope(false);
-  const std::int64_t written_ns = end_phase(Phase::kWrite, judged_ns);
+  const std::int64_t written_ns = end_phase(Phase::kWrite, limited_ns);
   const bool stopped = record_.output.state == State::kStopped;  // a stop is timed by the clock
   stop_watch_.step(input, record_.output, wake_ns, stopped ? clock_.now_ns() : written_ns);
   statistics_.stop = stop_watch_.times();
 
   tell();
-  const std::int64_t end_ns = end_phase(Phase::kTell, written_ns);
+  const std::int64_t end_ns = end_phase(Phase::kPublish, written_ns);
   record_phase(Phase::kTotal, end_ns - wake_ns);
 }
 

@@ -13,35 +13,44 @@
 
 namespace tact::firmware::loop {
 
-enum class Phase : std::uint8_t { kWake, kRead, kTouch, kFeel, kJudge, kWrite, kTell, kTotal };
+enum class Phase : std::uint8_t {
+  kWake,
+  kRead,
+  kDetect,
+  kRender,
+  kLimit,
+  kWrite,
+  kPublish,
+  kTotal
+};
 inline constexpr std::size_t kPhaseCount = 8;
 inline constexpr std::array<const char*, kPhaseCount> kPhaseName{
-    "wake", "read", "touch", "feel", "judge", "write", "tell", "total"};
+    "wake", "read", "detect", "render", "limit", "write", "publish", "total"};
 
 /// What the tool's spheres touch. A copy takes the spheres that exist and no more: 168 bytes each.
-class Touches {
+class SphereContacts {
  public:
-  using SphereTouch = model::contact::SphereTouch;
+  using SphereContact = model::contact::SphereContact;
 
-  Touches() RT_SAFE {}
-  Touches(const Touches& other) RT_SAFE { assign(other.all()); }
-  Touches& operator=(const Touches& other) RT_SAFE {
+  SphereContacts() RT_SAFE {}
+  SphereContacts(const SphereContacts& other) RT_SAFE { assign(other.all()); }
+  SphereContacts& operator=(const SphereContacts& other) RT_SAFE {
     if (this != &other) assign(other.all());
     return *this;
   }
   /// At most kMaxSpheres of them.
-  void assign(std::span<const SphereTouch> touches) RT_SAFE {
-    count_ = std::min(touches.size(), model::contact::kMaxSpheres);
-    std::copy_n(touches.begin(), count_, touch_.begin());
+  void assign(std::span<const SphereContact> contacts) RT_SAFE {
+    count_ = std::min(contacts.size(), model::contact::kMaxSpheres);
+    std::copy_n(contacts.begin(), count_, contact_.begin());
   }
-  std::span<const SphereTouch> all() const RT_SAFE { return {touch_.data(), count_}; }
+  std::span<const SphereContact> all() const RT_SAFE { return {contact_.data(), count_}; }
 
  private:
-  static_assert(std::is_trivially_copyable_v<SphereTouch>);
+  static_assert(std::is_trivially_copyable_v<SphereContact>);
   std::size_t count_ = 0;
   union {  // so that making one writes nothing
     // NOLINTNEXTLINE(readability-identifier-naming): the union has no name, the member is private
-    std::array<SphereTouch, model::contact::kMaxSpheres> touch_;
+    std::array<SphereContact, model::contact::kMaxSpheres> contact_;
   };
 };
 
@@ -55,7 +64,7 @@ struct TickRecord {
   TickOutput output;
   std::array<std::int32_t, kPhaseCount>
       phase_ns{};  // up to write; tell and total of the tick before
-  Touches touches;
+  SphereContacts contacts;
 };
 
 }  // namespace tact::firmware::loop

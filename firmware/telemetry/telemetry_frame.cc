@@ -179,8 +179,8 @@ Frame FrameBuilder::take(std::uint64_t dropped_records) {
   frame.limit = static_cast<std::uint16_t>(limit_);
   frame.non_rt = non_rt_ ? 1 : 0;
   static_assert(kMaxSites == model::contact::kMaxSpheres);
-  const auto touches = r.touches.all();
-  for (std::size_t i = 0; i < touches.size(); ++i) add_site(touches[i], frame.site[i]);
+  const auto contacts = r.contacts.all();
+  for (std::size_t i = 0; i < contacts.size(); ++i) add_site(contacts[i], frame.site[i]);
   add_patch(frame.patch);
   tick_us_.clear();
   peak_force_N_ = 0.0f;
@@ -208,19 +208,22 @@ void FrameBuilder::add_patch(FramePatch& patch) {
     }
 }
 
-void FrameBuilder::add_site(const model::contact::SphereTouch& touch, FrameSite& site) const {
-  put(site.surface_point_m, touch.surface_point_m);
-  put(site.normal, touch.normal);
-  put(site.shift_m, touch.shift_m);
-  site.depth_m = static_cast<float>(touch.depth_m);
-  site.state = static_cast<SiteState>(touch.state);
+void FrameBuilder::add_site(const model::contact::SphereContact& sphere_contact,
+                            FrameSite& site) const {
+  put(site.surface_point_m, sphere_contact.surface_point_m);
+  put(site.normal, sphere_contact.normal);
+  put(site.shift_m, sphere_contact.shift_m);
+  site.depth_m = static_cast<float>(sphere_contact.depth_m);
+  site.state = static_cast<SiteState>(sphere_contact.state);
   // Its own dent, as the page adds the dents up; what lies in another's dent has none.
-  const bool is_held = touch.state == model::contact::TouchState::kHeld;
-  const bool presses = touch.state == model::contact::TouchState::kTouching && touch.dent_m > 0.0;
+  const bool is_held = sphere_contact.state == model::contact::ContactState::kHeld;
+  const bool presses = sphere_contact.state == model::contact::ContactState::kTouching &&
+                       sphere_contact.dent_m > 0.0;
   if (!is_held && !presses) return;
   std::array<double, kMaxRings> ring_m{};
-  const model::contact::Indentation in{
-      .place = touch.place, .normal = touch.normal, .dent_m = touch.dent_m};
+  const model::contact::Indentation in{.place = sphere_contact.place,
+                                       .normal = sphere_contact.normal,
+                                       .dent_m = sphere_contact.dent_m};
   const std::size_t count = dents_.profile(in, ring_m);
   put(site.tilt, dents_.tilt(in));
   for (std::size_t j = 0; j < count; ++j) site.profile_m[j] = static_cast<float>(ring_m[j]);

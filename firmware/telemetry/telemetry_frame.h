@@ -46,7 +46,7 @@ class FrameBuilder {
   Frame take(std::uint64_t dropped_records);
 
  private:
-  void add_site(const model::contact::SphereTouch& touch, FrameSite& site) const;
+  void add_site(const model::contact::SphereContact& sphere_contact, FrameSite& site) const;
   void add_patch(FramePatch& patch);
 
   const model::contact::DentView& dents_;

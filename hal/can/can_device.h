@@ -71,7 +71,7 @@ struct BasicCanLoop {
   std::int64_t before_ns = 0;  // of the read before
   std::int64_t first_ns = 0;   // of the first one
   std::int64_t asked_ns = 0;   // for torque, since starting; 0: not yet
-  bool felt = false;           // a force has reached the drives: power that goes is a fault now
+  bool rendered = false;       // a force has reached the drives: power that goes is a fault now
   FaultLatch latch{};
   WaitNote waits{};             // for power, before that
   std::int64_t ask_again_ns{};  // for it

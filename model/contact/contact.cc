@@ -51,15 +51,15 @@ void Contact::reset() RT_SAFE {
 // No sphere is known to be anywhere, nor the blade: it cuts nothing on a way that nobody saw.
 void Contact::forget() RT_SAFE {
   for (Sphere& sphere : spheres()) {
-    leave(scene_, organ(), sphere, TouchState::kFree);
+    leave(scene_, organ(), sphere, ContactState::kFree);
     sphere = {.index = sphere.index, .radius_m = sphere.radius_m};
-    touch_[sphere.index] = {};
+    contact_[sphere.index] = {};
   }
   tool_before_.reset();
   blade_tool_before_.reset();
 }
 
-void Contact::touch(const Tool& tool, std::uint32_t periods, double reach_m) RT_SAFE {
+void Contact::detect_contact(const Tool& tool, std::uint32_t periods, double reach_m) RT_SAFE {
   is_lost_ = was_unsettled_ = false;
   // A pose that is no number touches nothing, and leaves no memory that could be no number.
   if (!is_finite(tool)) return forget();
@@ -101,17 +101,17 @@ void Contact::detect(const Tool& tool) RT_SAFE {
       sphere.centre_m = left > 1 ? sphere.centre_m + to_go_m / left : centre_m;
       step(scene_, organ(), sphere, to_go_m / left);
     }
-    if (sphere.touches()) organ().move(sphere);
+    if (sphere.contacts()) organ().move(sphere);
   }
 }
 
-ContactResponse Contact::feel(const Tool& tool, bool blade_may_cut) RT_SAFE {
-  ContactResponse felt = respond(tool);
-  felt.is_lost = is_lost_;
-  if (was_unsettled_) felt.is_unsettled = true;
+ContactResponse Contact::render_force(const Tool& tool, bool blade_may_cut) RT_SAFE {
+  ContactResponse rendered = respond(tool);
+  rendered.is_lost = is_lost_;
+  if (was_unsettled_) rendered.is_unsettled = true;
   // The force of this tick is that of the tissue before the cut; the cut is felt from the next on.
-  use_blade(tool, blade_may_cut && !felt.is_inside);
-  return felt;
+  use_blade(tool, blade_may_cut && !rendered.is_inside);
+  return rendered;
 }
 
 // What tears is let go before the grip takes hold.
@@ -123,42 +123,44 @@ ContactResponse Contact::respond(const Tool& tool) RT_SAFE {
   }
   if (closing_)
     for (Sphere& sphere : spheres())
-      if (sphere.state == TouchState::kTouching && organ().hold(sphere.index)) {
-        sphere.state = TouchState::kHeld;
+      if (sphere.state == ContactState::kTouching && organ().hold(sphere.index)) {
+        sphere.state = ContactState::kHeld;
         sphere.lets_go = false;
       }
   organ().finish();
-  ContactResponse felt;
+  ContactResponse rendered;
   // Spheres that are coupled change each other's force.
   double way_m = 0.0;
   for (const Sphere& sphere : spheres()) way_m = std::max(way_m, norm(sphere.moved_m));
   for (Sphere& sphere : spheres())
-    if (sphere.is_known) tell(sphere, tool, way_m, felt);
+    if (sphere.is_known) tell(sphere, tool, way_m, rendered);
   organ().advance();
   scene_.law->advance();
-  felt.is_broken = scene_.law->is_broken();
-  return felt;
+  rendered.is_broken = scene_.law->is_broken();
+  return rendered;
 }
 
-void Contact::tell(Sphere& sphere, const Tool& tool, double way_m, ContactResponse& felt) RT_SAFE {
-  SphereTouch& touch = touch_[sphere.index];
-  const Vec3 last_normal = touch.normal;
-  touch = {};
-  touch.state = sphere.state;
-  if (sphere.state == TouchState::kInside) felt.is_inside = true;
-  if (!sphere.touches() && sphere.told_N == Vec3{}) {
+void Contact::tell(Sphere& sphere, const Tool& tool, double way_m,
+                   ContactResponse& rendered) RT_SAFE {
+  SphereContact& sphere_contact = contact_[sphere.index];
+  const Vec3 last_normal = sphere_contact.normal;
+  sphere_contact = {};
+  sphere_contact.state = sphere.state;
+  if (sphere.state == ContactState::kInside) rendered.is_inside = true;
+  if (!sphere.contacts() && sphere.told_N == Vec3{}) {
     sphere.largest_N = sphere.lag_N = 0.0;
     sphere.was_held = false;
     return;
   }
   const OrganForce answer = ask(sphere);
   follow_force(sphere, answer.elastic_N, way_m);
-  if (!sphere.touches() && sphere.told_N != Vec3{}) touch.normal = last_normal;
-  touch.force_N = sphere.told_N + resistance_N(sphere, answer.resistance_N);
-  felt.wrench.force_N += touch.force_N;
-  felt.wrench.torque_Nm += cross(sphere.centre_m - tool.position_m, touch.force_N);
-  if (touch.law_status == law::LawStatus::kSaturated || sphere.lets_go) felt.is_saturated = true;
-  if (sphere.unsolved_ratio > 0.0 || sphere.lag_N > 0.0) felt.is_unsettled = true;
+  if (!sphere.contacts() && sphere.told_N != Vec3{}) sphere_contact.normal = last_normal;
+  sphere_contact.force_N = sphere.told_N + resistance_N(sphere, answer.resistance_N);
+  rendered.wrench.force_N += sphere_contact.force_N;
+  rendered.wrench.torque_Nm += cross(sphere.centre_m - tool.position_m, sphere_contact.force_N);
+  if (sphere_contact.law_status == law::LawStatus::kSaturated || sphere.lets_go)
+    rendered.is_saturated = true;
+  if (sphere.unsolved_ratio > 0.0 || sphere.lag_N > 0.0) rendered.is_unsettled = true;
 }
 
 void Contact::watch_grip(double grip_ratio) RT_SAFE {
@@ -171,7 +173,7 @@ void Contact::watch_grip(double grip_ratio) RT_SAFE {
 
 // The depth shrinks to 0. The force is that of the law's limit until the depth is in its range.
 void Contact::let_go(Sphere& sphere) RT_SAFE {
-  if (sphere.state != TouchState::kTouching) return;
+  if (sphere.state != ContactState::kTouching) return;
   if (!sphere.lets_go) {
     sphere.lets_go = organ().must_let_go(sphere);
     if (!sphere.lets_go) return;
@@ -184,13 +186,13 @@ void Contact::let_go(Sphere& sphere) RT_SAFE {
 // The first that must: its going changes what the others feel.
 bool Contact::release_first() RT_SAFE {
   for (Sphere& sphere : spheres()) {
-    if (sphere.state != TouchState::kHeld) continue;
+    if (sphere.state != ContactState::kHeld) continue;
     // What is no number tears: it must not hold the tool.
     if (closed_ && organ().pull_N(sphere.index) <= scene_.parameters.tear_force_N) continue;
     if (organ().release(sphere.index))
-      sphere.state = TouchState::kTouching;
+      sphere.state = ContactState::kTouching;
     else
-      leave(scene_, organ(), sphere, TouchState::kFree);
+      leave(scene_, organ(), sphere, ContactState::kFree);
     return true;
   }
   return false;
@@ -198,16 +200,16 @@ bool Contact::release_first() RT_SAFE {
 
 // A place without an answer keeps its last force, and loses it in 0.1 s or one radius of way.
 OrganForce Contact::ask(Sphere& sphere) RT_SAFE {
-  if (!sphere.touches()) return {};
-  SphereTouch& touch = touch_[sphere.index];
+  if (!sphere.contacts()) return {};
+  SphereContact& sphere_contact = contact_[sphere.index];
   if (organ().is_solved())
     sphere.unsolved_ratio = 0.0;
   else
     sphere.unsolved_ratio += scene_.period_s / kLetGo_s + norm(sphere.moved_m) / sphere.radius_m;
-  const OrganForce answer = organ().tell(sphere, touch);
+  const OrganForce answer = organ().tell(sphere, sphere_contact);
   // 0: the law does not tell it.
   sphere.stiffest_N_per_m =
-      scene_.law->stiffest_N_per_m(touch.place, sphere.state == TouchState::kHeld);
+      scene_.law->stiffest_N_per_m(sphere_contact.place, sphere.state == ContactState::kHeld);
   const double share = std::max(1.0 - sphere.unsolved_ratio, 0.0);
   return {share * answer.elastic_N, share * answer.resistance_N};
 }
@@ -215,7 +217,7 @@ OrganForce Contact::ask(Sphere& sphere) RT_SAFE {
 // A sphere that is not held is not pulled in, by however little of its force has arrived.
 Vec3 Contact::resistance_N(const Sphere& sphere, const Vec3& answer_N) const RT_SAFE {
   const double size_N = norm(answer_N);
-  if (!(sphere.lag_N > 0.0) || sphere.state == TouchState::kHeld || !(size_N > 0.0))
+  if (!(sphere.lag_N > 0.0) || sphere.state == ContactState::kHeld || !(size_N > 0.0))
     return answer_N;
   const double along_N = dot(sphere.told_N, answer_N) / size_N;
   return along_N > 0.0 ? answer_N : std::min(-along_N / size_N, 1.0) * answer_N;
@@ -231,12 +233,12 @@ void Contact::follow_force(Sphere& sphere, const Vec3& wanted_N, double way_m) R
   constexpr double kNoise_N = 1e-3;  // of a solution
   const Vec3 change_N = wanted_N - sphere.told_N;
   const double length_N = norm(change_N);
-  sphere.largest_N = sphere.touches() ? std::max(sphere.largest_N, norm(wanted_N)) : 0.0;
+  sphere.largest_N = sphere.contacts() ? std::max(sphere.largest_N, norm(wanted_N)) : 0.0;
   // A contact that lets go loses its force in 0.1 s, faster where its law is steep.
   const double let_go_ratio = sphere.lets_go ? kLetGo_ratio * scene_.period_s / kLetGo_s : 0.0;
   const double smooth_N = kNoise_N + kSteepest_ratio * sphere.stiffest_N_per_m * way_m +
                           (kFade_ratio * fade_ratio_ + let_go_ratio) * sphere.largest_N;
-  const bool is_held = sphere.state == TouchState::kHeld;
+  const bool is_held = sphere.state == ContactState::kHeld;
   // Held tissue that is let go or tears is gone at once.
   const bool is_let_go =
       sphere.was_held && !is_held && organ().is_solved() && norm(wanted_N) <= norm(sphere.told_N);

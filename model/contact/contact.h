@@ -56,18 +56,19 @@ class Contact {
   /// Where the spheres meet the surface. The tool's way since the last call, `periods` ago, is
   /// followed as a straight line, period by period. What moves farther than reach_m, or than can be
   /// followed, is lost: its contact ends, and it is found anew.
-  void touch(const Tool& tool, std::uint32_t periods = 1, double reach_m = kAnywhere_m) RT_SAFE;
+  void detect_contact(const Tool& tool, std::uint32_t periods = 1,
+                      double reach_m = kAnywhere_m) RT_SAFE;
   /// What the tool feels there: states, laws, forces. Call after touch. A blade cuts only if it
   /// may, and no sphere is inside: nobody would feel it.
-  ContactResponse feel(const Tool& tool, bool blade_may_cut) RT_SAFE;
+  ContactResponse render_force(const Tool& tool, bool blade_may_cut) RT_SAFE;
   /// Forget every site, as at the start.
   void reset() RT_SAFE;
 
   /// See SiteLaw::shape.
   bool shape(PatchShape& out) RT_SAFE { return scene_.law->shape(out); }
 
-  std::span<const SphereTouch> touches() const RT_SAFE {
-    return {touch_.data(), scene_.spheres.size()};
+  std::span<const SphereContact> contacts() const RT_SAFE {
+    return {contact_.data(), scene_.spheres.size()};
   }
   /// The organ as its spheres have moved it, where it bends far.
   const MovedContact& moved() const RT_SAFE { return moved_; }
@@ -84,7 +85,7 @@ class Contact {
   void watch_grip(double grip_ratio) RT_SAFE;
   void let_go(Sphere& sphere) RT_SAFE;
   bool release_first() RT_SAFE;
-  void tell(Sphere& sphere, const Tool& tool, double way_m, ContactResponse& felt) RT_SAFE;
+  void tell(Sphere& sphere, const Tool& tool, double way_m, ContactResponse& rendered) RT_SAFE;
   OrganForce ask(Sphere& sphere) RT_SAFE;
   Vec3 resistance_N(const Sphere& sphere, const Vec3& answer_N) const RT_SAFE;
   void follow_force(Sphere& sphere, const Vec3& wanted_N, double way_m) RT_SAFE;
@@ -95,13 +96,13 @@ class Contact {
   MovedContact moved_;  // scene_.organ chooses
   double fade_ratio_;   // SiteLaw::fade_ratio
   std::array<Sphere, kMaxSpheres> sphere_{};
-  std::array<SphereTouch, kMaxSpheres> touch_{};  // told
-  bool closed_ = false;                           // the grip, with hysteresis
-  bool closing_ = false;                          // it closed in this tick
-  bool is_lost_ = false;                          // in this tick
-  bool was_unsettled_ = false;                    // in a period before it that was skipped
-  std::optional<Tool> tool_before_;               // of the last tick
-  std::optional<Tool> blade_tool_before_;         // where the blade was
+  std::array<SphereContact, kMaxSpheres> contact_{};  // told
+  bool closed_ = false;                               // the grip, with hysteresis
+  bool closing_ = false;                              // it closed in this tick
+  bool is_lost_ = false;                              // in this tick
+  bool was_unsettled_ = false;                        // in a period before it that was skipped
+  std::optional<Tool> tool_before_;                   // of the last tick
+  std::optional<Tool> blade_tool_before_;             // where the blade was
 };
 
 }  // namespace tact::model::contact

@@ -21,20 +21,20 @@ void begin_from_outside(const ContactScene& scene, OrganContact& organ, Sphere& 
   if (sphere.clear_m > 0.0) return;
   // It came through a hole of an open surface, to the inner side.
   if (-sphere.clear_m > most_m + kRounding_m)
-    return leave(scene, organ, sphere, TouchState::kInside);
+    return leave(scene, organ, sphere, ContactState::kInside);
   // From where it is known to have been clear, its movement explains all of the depth.
   const double paid_m = is_new_place ? std::max(0.0, -dot(moved_m, site.normal)) : kAnywhere_m;
   sphere.clear_m = 0.0;
-  sphere.state = TouchState::kTouching;
+  sphere.state = ContactState::kTouching;
   organ.begin(sphere, site, std::min(paid_m, norm(moved_m)));
 }
 
 // Where a sphere is of which nothing is known.
 void find(const ContactScene& scene, OrganContact& organ, Sphere& sphere) RT_SAFE {
-  leave(scene, organ, sphere, TouchState::kFree);
+  leave(scene, organ, sphere, ContactState::kFree);
   sphere.near = kNoTriangle;
   sphere.is_known = true;
-  if (!is_outside(scene, sphere)) sphere.state = TouchState::kInside;
+  if (!is_outside(scene, sphere)) sphere.state = ContactState::kInside;
 }
 
 }  // namespace
@@ -44,23 +44,23 @@ void step(const ContactScene& scene, OrganContact& organ, Sphere& sphere,
   sphere.clear_m -= norm(moved_m);
   if (!sphere.is_known) return find(scene, organ, sphere);
   switch (sphere.state) {
-    case TouchState::kFree:
+    case ContactState::kFree:
       return begin_from_outside(scene, organ, sphere, moved_m);
-    case TouchState::kInside:
-      if (is_outside(scene, sphere)) leave(scene, organ, sphere, TouchState::kFree);
+    case ContactState::kInside:
+      if (is_outside(scene, sphere)) leave(scene, organ, sphere, ContactState::kFree);
       return;
-    case TouchState::kTouching:
-    case TouchState::kHeld:
+    case ContactState::kTouching:
+    case ContactState::kHeld:
       const Step done = organ.step(sphere, moved_m);
       if (done == Step::kTouches) return;
       if (done == Step::kLost) return find(scene, organ, sphere);
-      leave(scene, organ, sphere, TouchState::kFree);
+      leave(scene, organ, sphere, ContactState::kFree);
       return begin_from_outside(scene, organ, sphere, moved_m);
   }
 }
 
 void leave(const ContactScene& scene, OrganContact& organ, Sphere& sphere,
-           TouchState state) RT_SAFE {
+           ContactState state) RT_SAFE {
   sphere.state = state;
   sphere.clear_m = -kAnywhere_m;  // nothing is known
   sphere.lets_go = false;

@@ -33,7 +33,7 @@ void step(const ContactScene& scene, OrganContact& organ, Sphere& sphere,
 
 /// Ends its contact.
 void leave(const ContactScene& scene, OrganContact& organ, Sphere& sphere,
-           TouchState state) RT_SAFE;
+           ContactState state) RT_SAFE;
 
 /// Is the whole sphere outside of the organ at rest? The answer stands until it may have moved out,
 /// or in.

@@ -201,7 +201,7 @@ void MovedContact::respond() RT_SAFE {
   brake();
 }
 
-OrganForce MovedContact::tell(const Sphere& sphere, SphereTouch& told) const RT_SAFE {
+OrganForce MovedContact::tell(const Sphere& sphere, SphereContact& told) const RT_SAFE {
   const OrganSphere& b = *find(sphere.index);
   told.place = b.at.place;
   told.surface_point_m = b.at.point_m;

@@ -234,7 +234,7 @@ void RestContact::finish() RT_SAFE {
 }
 
 // F = (F(e) + b d') n - f - dU/ds
-OrganForce RestContact::tell(const Sphere& sphere, SphereTouch& told) const RT_SAFE {
+OrganForce RestContact::tell(const Sphere& sphere, SphereContact& told) const RT_SAFE {
   const std::size_t i = sphere.index;
   const RestSphere& s = sphere_[i];
   const SiteResponse& site = pressing_[i].response;

@@ -21,11 +21,11 @@ struct ProbeSphere {
 };
 
 /// detect.h says what leads from one to another. kInside: found in the organ, without contact.
-enum class TouchState : std::uint8_t { kFree, kTouching, kHeld, kInside };
+enum class ContactState : std::uint8_t { kFree, kTouching, kHeld, kInside };
 
 /// One sphere's share of a tick.
-struct SphereTouch {
-  TouchState state = TouchState::kFree;
+struct SphereContact {
+  ContactState state = ContactState::kFree;
   law::LawStatus law_status = law::LawStatus::kNoContact;
   Place place;             // of surface_point_m
   Vec3 surface_point_m{};  // nearest (touching) or held point of the undeformed surface
@@ -43,7 +43,7 @@ struct Sphere {
   std::size_t index = 0;
   double radius_m = 0.0;
   bool is_known = false;  // else it must be found: at the start, after a loss
-  TouchState state = TouchState::kFree;
+  ContactState state = ContactState::kFree;
   Vec3 centre_m{};      // c
   Vec3 moved_m{};       // since the last tick
   Vec3 velocity_mps{};  // of c, as the device tells it
@@ -62,8 +62,8 @@ struct Sphere {
   double stiffest_N_per_m = 0.0;  // of its law, when it touched last
   bool was_held = false;
 
-  bool touches() const RT_SAFE {
-    return state == TouchState::kTouching || state == TouchState::kHeld;
+  bool contacts() const RT_SAFE {
+    return state == ContactState::kTouching || state == ContactState::kHeld;
   }
 };
 

@@ -115,7 +115,8 @@ class Record {
 
 double stored_J(const contact::Contact& contact) {
   double sum_J = 0.0;
-  for (const contact::SphereTouch& touch : contact.touches()) sum_J += touch.energy_J;
+  for (const contact::SphereContact& sphere_contact : contact.contacts())
+    sum_J += sphere_contact.energy_J;
   return sum_J;
 }
 
@@ -136,18 +137,18 @@ PressResult press_once(const contact::ContactScene& contact, const Vec3& inward,
   for (std::size_t i = 0; i <= steps; ++i) {
     const double depth_m = *from_m + static_cast<double>(i) * settings.step_m;
     const Tool tool = way.tool_at(depth_m);
-    touching.touch(tool);
-    const contact::ContactResponse felt = touching.feel(tool, false);
-    out.is_unfelt = felt.is_inside || felt.is_lost;
-    out.is_unsettled = out.is_unsettled || felt.is_unsettled;
+    touching.detect_contact(tool);
+    const contact::ContactResponse rendered = touching.render_force(tool, false);
+    out.is_not_rendered = rendered.is_inside || rendered.is_lost;
+    out.is_unsettled = out.is_unsettled || rendered.is_unsettled;
     // Deeper than the law reaches nothing is promised of its slope.
-    if (felt.is_saturated) break;
+    if (rendered.is_saturated) break;
     const PressStep step =
-        record.add(depth_m, way.along(), felt.wrench.force_N, stored_J(touching));
+        record.add(depth_m, way.along(), rendered.wrench.force_N, stored_J(touching));
     if (on_step) on_step(step);
-    if (out.is_unfelt) break;
+    if (out.is_not_rendered) break;
   }
-  const bool touched = record.has_touched() || out.is_unfelt;
+  const bool touched = record.has_touched() || out.is_not_rendered;
   out.state = touched ? PressState::kPressed : PressState::kMissed;
   return out;
 }
@@ -185,7 +186,7 @@ PressFlaws flaws_of(const PressResult& r, const PressSettings& s) {
   return {.draws_in = r.least_N.value < -kDrawTolerance_N,
           .changes_too_fast = r.is_unsettled || r.change_N.value > s.limit_N_per_m * s.step_m,
           .is_too_stiff = r.slope_N_per_m.value > s.limit_N_per_m,
-          .is_unfelt = r.is_unfelt,
+          .is_not_rendered = r.is_not_rendered,
           .energy_differs = std::abs(r.energy_ratio.value) > kEnergyTolerance_ratio};
 }
 
@@ -200,7 +201,7 @@ std::string describe_flaws(const PressResult& r, const PressSettings& s) {
   const auto say = [&out](bool holds, const std::string& what) {
     if (holds) out += (out.empty() ? "" : "; ") + what;
   };
-  say(flaws.is_unfelt,
+  say(flaws.is_not_rendered,
       fmt::format("a sphere comes into the organ without force at {:.2f} mm", 1e3 * r.deepest_m));
   say(flaws.draws_in, fmt::format("the force draws the tool in by {:.3g} N at {:.2f} mm",
                                   -r.least_N.value, 1e3 * r.least_N.depth_m));
@@ -220,7 +221,7 @@ std::string describe_flaws(const PressResult& r, const PressSettings& s) {
 }
 
 double severity(const PressResult& r, const PressSettings& s) {
-  return std::max({r.is_unfelt ? 1e6 : 0.0, -r.least_N.value / kDrawTolerance_N,
+  return std::max({r.is_not_rendered ? 1e6 : 0.0, -r.least_N.value / kDrawTolerance_N,
                    r.change_N.value / (s.limit_N_per_m * s.step_m),
                    r.slope_N_per_m.value / s.limit_N_per_m,
                    std::abs(r.energy_ratio.value) / kEnergyTolerance_ratio});

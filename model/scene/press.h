@@ -68,22 +68,22 @@ struct PressResult {
   double deepest_m = 0.0;  // of the tool's lowest point
   double force_N = 0.0;    // F there
   PressExtreme slope_N_per_m;
-  PressExtreme change_N;      // of the force vector in one step
-  PressExtreme least_N;       // F
-  PressExtreme energy_ratio;  // W / A - 1, less what rounding to steps explains; 0: not checked
-  bool is_unfelt = false;     // a sphere came into the organ and feels nothing
-  bool is_unsettled = false;  // its force would have jumped and was slowed down
+  PressExtreme change_N;         // of the force vector in one step
+  PressExtreme least_N;          // F
+  PressExtreme energy_ratio;     // W / A - 1, less what rounding to steps explains; 0: not checked
+  bool is_not_rendered = false;  // a sphere came into the organ and feels nothing
+  bool is_unsettled = false;     // its force would have jumped and was slowed down
 };
 
 inline constexpr double kDrawTolerance_N = 1e-3;        // of F below 0; chosen: nobody feels it
 inline constexpr double kEnergyTolerance_ratio = 0.02;  // chosen
 
 struct PressFlaws {
-  bool draws_in = false, changes_too_fast = false, is_too_stiff = false, is_unfelt = false;
+  bool draws_in = false, changes_too_fast = false, is_too_stiff = false, is_not_rendered = false;
   bool energy_differs = false;
 
   bool any() const {
-    return draws_in || changes_too_fast || is_too_stiff || is_unfelt || energy_differs;
+    return draws_in || changes_too_fast || is_too_stiff || is_not_rendered || energy_differs;
   }
 };
 

@@ -47,15 +47,16 @@ std::size_t PatchRegion::memory_bytes() const {
 
 SpringNetwork PatchRegion::network(std::span<const ProbeSpring> probes) RT_SAFE {
   const std::size_t n = count_;
-  return {.node = {.position_m = relaxes() ? memory_.felt_m(n) : std::span(position_m_.data(), n),
-                   .velocity_mps = {velocity_mps_.data(), n},
-                   .rest_m = {rest_m_.data(), n},
-                   .load_N = {load_N_.data(), n},
-                   .inverse_mass_per_kg = {node_inverse_mass_per_kg_.data(), n},
-                   .anchor_N_per_m = {anchor_N_per_m_.data(), n},
-                   .drag_Ns_per_m = {drag_Ns_per_m_.data(), n}},
-          .spring = {spring_.data(), springs_},
-          .probe = probes};
+  return {
+      .node = {.position_m = relaxes() ? memory_.rendered_m(n) : std::span(position_m_.data(), n),
+               .velocity_mps = {velocity_mps_.data(), n},
+               .rest_m = {rest_m_.data(), n},
+               .load_N = {load_N_.data(), n},
+               .inverse_mass_per_kg = {node_inverse_mass_per_kg_.data(), n},
+               .anchor_N_per_m = {anchor_N_per_m_.data(), n},
+               .drag_Ns_per_m = {drag_Ns_per_m_.data(), n}},
+      .spring = {spring_.data(), springs_},
+      .probe = probes};
 }
 
 Vec3 PatchRegion::moved_m(std::uint32_t vertex) const RT_SAFE {

@@ -116,23 +116,23 @@ std::size_t SpringPatch::memory_bytes() const {
 // Broken tissue stays so until nothing touches it: a fresh patch under a pressed tool would kick.
 void SpringPatch::leave(std::size_t sphere) RT_SAFE {
   if (sphere >= contact::kMaxSpheres) return;
-  touch_[sphere] = {};
-  if (std::none_of(touch_.begin(), touch_.end(), [](const Touch& t) { return t.active; }))
+  contact_[sphere] = {};
+  if (std::none_of(contact_.begin(), contact_.end(), [](const Touch& t) { return t.active; }))
     broke_ = false;
 }
 
 contact::SiteResponse SpringPatch::respond(const contact::Indentation& in) RT_SAFE {
   if (in.sphere >= contact::kMaxSpheres) return {.law = {.status = law::LawStatus::kInvalid}};
   // Whatever is answered with no force below must not be stepped either.
-  Touch& touch = touch_[in.sphere];
-  touch = {};
+  Touch& sphere_contact = contact_[in.sphere];
+  sphere_contact = {};
   const contact::SurfaceView& mesh = region_.surface().mesh;
   if (!std::isfinite(in.dent_m) || !is_a_place(in.place, mesh))
     return {.law = {.status = law::LawStatus::kInvalid}};
   if (in.dent_m <= 0.0 && !in.held) return {.law = {.status = law::LawStatus::kNoContact}};
   const double limit_m = parameters_.working_depth_m;
   const double depth_m = std::clamp(in.dent_m, -limit_m, limit_m);
-  touch = {.active = true, .held = in.held, .depth_m = depth_m, .place = in.place};
+  sphere_contact = {.active = true, .held = in.held, .depth_m = depth_m, .place = in.place};
   if (broke_) return {.law = {.status = law::LawStatus::kSingular}};
 
   const contact::TriangleCorners& corner = mesh.triangle[in.place.triangle];
@@ -175,13 +175,13 @@ contact::TangentGive SpringPatch::tangent_give(const contact::Place& place, bool
 }
 
 // A triangle near the rim, or out of the region, gathers anew, once for each triangle.
-void SpringPatch::follow_touches() RT_SAFE {
+void SpringPatch::follow_contacts() RT_SAFE {
   std::array<std::uint32_t, contact::kMaxSpheres> triangle{};
   std::size_t count = 0;
   bool must_gather = false;
   for (std::size_t i = 0; i < contact::kMaxSpheres; ++i) {
-    if (!touch_[i].active) continue;
-    const std::uint32_t t = touch_[i].place.triangle;
+    if (!contact_[i].active) continue;
+    const std::uint32_t t = contact_[i].place.triangle;
     triangle[count++] = t;
     // In a very small region even the touched triangle is
     // at the rim: it must not gather in every tick.
@@ -189,7 +189,7 @@ void SpringPatch::follow_touches() RT_SAFE {
   }
   if (!must_gather) return;
   for (std::size_t i = 0; i < contact::kMaxSpheres; ++i)
-    gathered_[i] = touch_[i].active ? touch_[i].place.triangle : contact::kNoTriangle;
+    gathered_[i] = contact_[i].active ? contact_[i].place.triangle : contact::kNoTriangle;
   region_.gather({triangle.data(), count});
 }
 
@@ -197,17 +197,17 @@ std::span<const ProbeSpring> SpringPatch::probes() RT_SAFE {
   const contact::SurfaceView& mesh = region_.surface().mesh;
   const double q = parameters_.coupling_stiffness_N_per_m;
   std::size_t count = 0;
-  for (const Touch& touch : touch_) {
-    if (!touch.active) continue;
+  for (const Touch& sphere_contact : contact_) {
+    if (!sphere_contact.active) continue;
     ProbeSpring& probe = probe_[count];
-    probe = {.weight = touch.place.weight,
-             .depth_m = touch.depth_m,
+    probe = {.weight = sphere_contact.place.weight,
+             .depth_m = sphere_contact.depth_m,
              .stiffness_N_per_m = q,
              .damping_Ns_per_m = parameters_.tissue.damping_time_s * q,
-             .held = touch.held};
+             .held = sphere_contact.held};
     bool inside = true;
     for (std::size_t c = 0; c < 3; ++c) {
-      const std::uint32_t v = mesh.triangle[touch.place.triangle][c];
+      const std::uint32_t v = mesh.triangle[sphere_contact.place.triangle][c];
       probe.node[c] = region_.slot_of(v);
       probe.push[c] = -mesh.vertex_normal[v];
       if (probe.node[c] == kNoSlot)
@@ -222,7 +222,7 @@ std::span<const ProbeSpring> SpringPatch::probes() RT_SAFE {
 
 void SpringPatch::advance() RT_SAFE {
   if (broke_) return;
-  follow_touches();
+  follow_contacts();
   const SpringNetwork network = region_.network(probes());
   if (network.node.position_m.empty()) return;
   const StepRule rule = rule_of(parameters_);

@@ -85,13 +85,13 @@ class SpringPatch final : public contact::SiteLaw {
 
   SpringPatch(PatchSurface surface, const SpringPatchParameters& parameters);
   std::span<const ProbeSpring> probes() RT_SAFE;
-  void follow_touches() RT_SAFE;
+  void follow_contacts() RT_SAFE;
   void give_up() RT_SAFE;
 
   SpringPatchParameters parameters_;
   PatchRegion region_;
   SpringStepper stepper_;
-  std::array<Touch, contact::kMaxSpheres> touch_{};
+  std::array<Touch, contact::kMaxSpheres> contact_{};
   std::array<ProbeSpring, contact::kMaxSpheres> probe_{};
   std::array<std::uint32_t, contact::kMaxSpheres> gathered_{};  // triangles of the last gathering
   double network_energy_J_ = 0.0;

@@ -49,7 +49,7 @@ class ContactRules {
   struct Tick {
     model::Vec3 centre_m;
     std::uint32_t periods = 1;  // since the last
-    model::contact::SphereTouch touch;
+    model::contact::SphereContact sphere_contact;
     bool is_saturated = false, is_lost = false, is_unsettled = false;
   };
 
@@ -57,8 +57,8 @@ class ContactRules {
 
   /// The rules that the tick breaks.
   std::vector<Breach> check(const Tick& now) {
-    if (!is_finite(now.touch.force_N)) return {{'f', "force is no number"}};
-    force_N_ = norm(now.touch.force_N);
+    if (!is_finite(now.sphere_contact.force_N)) return {{'f', "force is no number"}};
+    force_N_ = norm(now.sphere_contact.force_N);
     moved_m_ = before_ && !now.is_lost ? norm(now.centre_m - before_->centre_m) : 0.0;
     find_side(now);
     std::vector<Breach> breaches;
@@ -73,7 +73,7 @@ class ContactRules {
   int lags() const { return lags_; }  // how often b's allowance was used
 
  private:
-  using TouchState = model::contact::TouchState;
+  using ContactState = model::contact::ContactState;
   static constexpr double kTiny_m = 1e-9, kLetGo_s = 0.1, kAfter_s = 0.2;
   enum class Side { kIn, kOut, kUnknown };
 
@@ -119,17 +119,18 @@ class ContactRules {
 
   std::optional<Breach> a(const Tick& now) {
     if (!has_overlapped_) return {};
-    if (now.touch.state != TouchState::kInside) return say('a', "never outside and not kInside");
+    if (now.sphere_contact.state != ContactState::kInside)
+      return say('a', "never outside and not kInside");
     if (force_N_ != 0.0) return say('a', "force without having been outside");
     return {};
   }
 
   std::optional<Breach> b(const Tick& now) {
-    const model::Vec3& q_m = now.touch.surface_point_m;
-    const bool touches =
-        now.touch.state == TouchState::kTouching || now.touch.state == TouchState::kHeld;
+    const model::Vec3& q_m = now.sphere_contact.surface_point_m;
+    const bool contacts = now.sphere_contact.state == ContactState::kTouching ||
+                          now.sphere_contact.state == ContactState::kHeld;
     bool is_lag = is_outside_ && force_N_ > 0.0;
-    if (is_lag && touches) {
+    if (is_lag && contacts) {
       const double way_m = norm(now.centre_m - q_m);
       const double share = way_m > 0.0 ? std::min(1.0, 1e-6 / way_m) : 1.0;
       is_lag = !body_.crosses(q_m + share * (now.centre_m - q_m), now.centre_m);
@@ -166,9 +167,10 @@ class ContactRules {
     if (!s_.is_alone) return {};
     const bool was_entered = entered_;
     if (is_outside_ && force_N_ == 0.0) entered_ = true;
-    if (now.is_lost || now.is_saturated || now.touch.state == TouchState::kInside) entered_ = false;
+    if (now.is_lost || now.is_saturated || now.sphere_contact.state == ContactState::kInside)
+      entered_ = false;
     if (was_entered && !now.is_lost && !now.is_saturated && !is_outside_ &&
-        now.touch.state == TouchState::kInside)
+        now.sphere_contact.state == ContactState::kInside)
       return say('d', "let go though neither lost nor saturated");
     if (!entered_ || !was_entered || force_N_ > 0.0 || side_ != Side::kIn) {
       without_ = 0;
@@ -187,7 +189,7 @@ class ContactRules {
 
   std::optional<Breach> e(const Tick& now) {
     if (!s_.is_alone || s_.friction_ratio > 0.0 || !before_ || now.is_lost) return {};
-    const double jump_N = norm(now.touch.force_N - before_->touch.force_N);
+    const double jump_N = norm(now.sphere_contact.force_N - before_->sphere_contact.force_N);
     // Once begun, it goes on until there is no force.
     lets_go_ = (lets_go_ && before_->is_saturated) ||
                ((now.is_saturated || before_->is_saturated) && (is_outside_ || was_outside_));
@@ -203,15 +205,16 @@ class ContactRules {
 
   std::optional<Breach> f(const Tick& now) {
     if (!s_.is_alone) return {};
-    const bool is_nearest = norm(now.touch.surface_point_m - nearest_.point_m) < 1e-6;
-    if (now.touch.state != TouchState::kTouching || side_ != Side::kOut || !is_nearest ||
+    const bool is_nearest = norm(now.sphere_contact.surface_point_m - nearest_.point_m) < 1e-6;
+    if (now.sphere_contact.state != ContactState::kTouching || side_ != Side::kOut || !is_nearest ||
         !(nearest_.distance_m > 1e-6) || !std::isfinite(nearest_.distance_m) || now.is_saturated ||
         now.is_unsettled)
       return {};
     const model::Vec3 outward = (now.centre_m - nearest_.point_m) / nearest_.distance_m;
     // sin(atan(mu)) |F|
     const double sine = s_.friction_ratio / std::hypot(1.0, s_.friction_ratio);
-    if (dot(now.touch.force_N, outward) >= -sine * force_N_ - 1e-6 * (1.0 + force_N_)) return {};
+    if (dot(now.sphere_contact.force_N, outward) >= -sine * force_N_ - 1e-6 * (1.0 + force_N_))
+      return {};
     return say('f', "pulls a free sphere in");
   }
 
@@ -219,12 +222,13 @@ class ContactRules {
     if (!s_.is_alone) return {};
     const bool is_free = is_outside_ && force_N_ == 0.0;
     if (before_ && !now.is_lost && in_stroke_) {
-      given_J_ +=
-          0.5 * dot(now.touch.force_N + before_->touch.force_N, now.centre_m - before_->centre_m);
+      given_J_ += 0.5 * dot(now.sphere_contact.force_N + before_->sphere_contact.force_N,
+                            now.centre_m - before_->centre_m);
       most_N_ = std::max(most_N_, force_N_);
       most_m_ = std::max(most_m_, moved_m_);
       if (now.is_unsettled && !before_->is_unsettled) ++lagged_;
-      wrong_J_ += 0.5 * norm(now.touch.force_N - before_->touch.force_N) * moved_m_;
+      wrong_J_ +=
+          0.5 * norm(now.sphere_contact.force_N - before_->sphere_contact.force_N) * moved_m_;
     }
     if (now.is_lost) in_stroke_ = false;
     if (!is_free) return {};

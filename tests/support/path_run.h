@@ -42,8 +42,8 @@ class PauseRule {
       after_ = 0;
     }
     way_.push_back(tool.position_m);
-    feel(*whole_, tool);
-    feel(*beside_, shifted(tool));
+    render_force(*whole_, tool);
+    render_force(*beside_, shifted(tool));
   }
   /// A period that is not skipped.
   std::optional<Breach> go_on(const model::Tool& tool, const model::Vec3& force_N,
@@ -51,7 +51,8 @@ class PauseRule {
     before_m_ = tool.position_m;
     if (way_.empty()) return {};
     if (after_ == 0) way_.push_back(tool.position_m);
-    const model::Vec3 without_N = feel(*whole_, tool), beside_N = feel(*beside_, shifted(tool));
+    const model::Vec3 without_N = render_force(*whole_, tool),
+                      beside_N = render_force(*beside_, shifted(tool));
     if (++after_ <= 10) return {};
     const bool counts = is_straight() && norm(way_.back() - way_.front()) < radius_m;
     way_.clear();
@@ -71,9 +72,9 @@ class PauseRule {
   int forks() const { return forks_; }    // of these, forces that were not compared
 
  private:
-  static model::Vec3 feel(model::contact::Contact& contact, const model::Tool& tool) {
-    contact.touch(tool, 1);
-    return contact.feel(tool, false).wrench.force_N;
+  static model::Vec3 render_force(model::contact::Contact& contact, const model::Tool& tool) {
+    contact.detect_contact(tool, 1);
+    return contact.render_force(tool, false).wrench.force_N;
   }
   static model::Tool shifted(model::Tool tool) {
     constexpr double kBeside_m = 1e-9;
@@ -114,28 +115,28 @@ inline PathResult run_path(SoftBody& soft, const BruteForce& body, const Path& p
       pause.skip(contact, tool);
       continue;
     }
-    contact.touch(tool, periods);
-    const model::contact::ContactResponse felt = contact.feel(tool, false);
+    contact.detect_contact(tool, periods);
+    const model::contact::ContactResponse rendered = contact.render_force(tool, false);
     const auto note = [&](const Breach& breach, std::size_t sphere) {
       out.broken.try_emplace(
           breach.rule,
           PathResult::At{i, ticks[i].leg, "sphere " + std::to_string(sphere) + ", " + breach.what});
     };
     for (std::size_t k = 0; k < rules.size(); ++k) {
-      const model::contact::SphereTouch& touch = contact.touches()[k];
-      const bool is_beyond = touch.law_status == model::law::LawStatus::kSaturated;
+      const model::contact::SphereContact& sphere_contact = contact.contacts()[k];
+      const bool is_beyond = sphere_contact.law_status == model::law::LawStatus::kSaturated;
       for (const Breach& breach :
            rules[k].check({.centre_m = tool.position_m + soft.spheres[k].offset_m,
                            .periods = periods,
-                           .touch = touch,
-                           .is_saturated = is_beyond || (is_alone && felt.is_saturated),
-                           .is_lost = felt.is_lost,
-                           .is_unsettled = felt.is_unsettled}))
+                           .sphere_contact = sphere_contact,
+                           .is_saturated = is_beyond || (is_alone && rendered.is_saturated),
+                           .is_lost = rendered.is_lost,
+                           .is_unsettled = rendered.is_unsettled}))
         note(breach, k);
     }
-    if (const auto breach = pause.go_on(tool, felt.wrench.force_N, soft.spheres[0].radius_m))
+    if (const auto breach = pause.go_on(tool, rendered.wrench.force_N, soft.spheres[0].radius_m))
       note(*breach, 0);
-    if (felt.is_unsettled) ++out.unsettled;
+    if (rendered.is_unsettled) ++out.unsettled;
     periods = 0;
   }
   out.ticks = ticks.size();

@@ -24,9 +24,9 @@ inline model::scene::Scene shipped_scene(const std::string& name) {
   return *scene;
 }
 
-inline bool any_in(const firmware::loop::TickRecord& record, model::contact::TouchState state) {
-  for (const auto& touch : record.touches.all())
-    if (touch.state == state) return true;
+inline bool any_in(const firmware::loop::TickRecord& record, model::contact::ContactState state) {
+  for (const auto& sphere_contact : record.contacts.all())
+    if (sphere_contact.state == state) return true;
   return false;
 }
 

@@ -95,7 +95,8 @@ TEST_F(Tactd, AReportHoldsEveryNumberThatProvesARun) {
   for (const char* key : {"allocations", "minor_page_faults", "major_page_faults",
                           "voluntary_context_switches", "involuntary_context_switches"})
     EXPECT_TRUE(report.at("thread").contains(key)) << key;
-  for (const char* phase : {"wake", "read", "touch", "feel", "judge", "write", "tell", "total"})
+  for (const char* phase :
+       {"wake", "read", "detect", "render", "limit", "write", "publish", "total"})
     for (const char* key : {"p50_ns", "p99_ns", "p99.9_ns", "p99.99_ns", "max_ns", "max_tick"})
       EXPECT_TRUE(report.at("phases").at(phase).contains(key)) << phase << " " << key;
   for (const char* stage : {"finite", "fresh", "armed", "workspace", "magnitude", "slew", "ramp"})

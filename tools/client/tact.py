@@ -30,7 +30,7 @@ MAGIC, TELEMETRY_VERSION = 0x74636174, 5
 RECORDING_VERSIONS = {7: 0, 9: 1496}  # bytes of the operator behind each frame
 LOG_MAGIC, RECORDING_MAGIC = b"tactlogA", b"tactrec\n"
 SEAL = b"tactseal"
-PHASES = ("wake", "read", "touch", "feel", "judge", "write", "tell", "total")
+PHASES = ("wake", "read", "detect", "render", "limit", "write", "publish", "total")
 STATES = ("off", "ready", "armed", "stopped")
 
 

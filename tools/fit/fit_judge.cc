@@ -83,14 +83,14 @@ std::string slope_reason(const FitData& data, std::span<const FitAnswer> answers
   int sites = 0;
   std::size_t i = 0;
   for (const FitSite& site : data.sites) {
-    std::vector<Point> measured, felt;
+    std::vector<Point> measured, rendered;
     for (const FitSample& s : site.samples) {
       const FitAnswer& answer = answers[i++];
       if (!(s.depth_m > 0.0)) continue;
       measured.push_back({s.depth_m, s.force_N});
-      felt.push_back({s.depth_m, answer.force_N});
+      rendered.push_back({s.depth_m, answer.force_N});
     }
-    const double a = growth_of_slope(measured), b = growth_of_slope(felt);
+    const double a = growth_of_slope(measured), b = growth_of_slope(rendered);
     if (!std::isfinite(a) || !std::isfinite(b)) continue;
     of_data += a, of_law += b, ++sites;
   }

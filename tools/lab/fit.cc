@@ -41,12 +41,13 @@ void add_options(CLI::App& app, Options& o) {
       ->delimiter(',')
       ->capture_default_str();
   app.add_option("--reference", o.reference,
-                 "JSON of tact-lab reference; its held-out sites judge");
+                 "JSON of tact-lab reference; its held-out sites check the fit");
   app.add_option("--data", o.data, "CSV of a bench: depth_m,force_N[,site][,u_0_m,...]");
   app.add_option("--relaxation", o.relaxation, "CSV of a bench at held depth: time_s,force_N");
   app.add_option("--keep", o.keep, "keys of the law that stay as the scene has them")
       ->delimiter(',');
-  app.add_option("--held-out", o.held_out, "sites that only judge, beside those of the scene")
+  app.add_option("--held-out", o.held_out,
+                 "sites that only check the fit, besides those of the scene")
       ->delimiter(',');
   app.add_option("--depth-column", o.columns.depth, "name in --data")->capture_default_str();
   app.add_option("--force-column", o.columns.force, "name in both CSVs")->capture_default_str();

@@ -54,7 +54,7 @@ def goals_of(law):
 
 def laws(load):
     """Each law in the liver: the whole tool, one sphere, and what a tick costs."""
-    yield from ("| law | scenes | tool, RMS of the peak | own force, worst place | one sphere, RMS | tick: touch, feel, judge |",
+    yield from ("| law | scenes | tool, RMS of the peak | own force, worst place | one sphere, RMS | tick: detect, render, limit |",
                 "|---|---|---|---|---|---|")
     chart, tools = load("chart"), load("tool")
     for law, scenes in SCENES.items():
@@ -94,7 +94,7 @@ def tool(load):
     """Each law with the whole tool: the error of the peak, and of the own force at the worst place."""
     values = load("tool")
     depths = next(iter(values.values()))["own_percent_at_mm"]
-    head = ["law", "RMS, of the peak", *(f"own force, {mm} mm" for mm in depths), "worst place", "touch, feel, judge"]
+    head = ["law", "RMS, of the peak", *(f"own force, {mm} mm" for mm in depths), "worst place", "detect, render, limit"]
     yield f"| {' | '.join(head)} |"
     yield "|" + "---|" * len(head)
     for law, value in values.items():

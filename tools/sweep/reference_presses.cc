@@ -75,21 +75,21 @@ Result<ReferencePress> judge(const model::contact::ContactScene& scene, const Wa
   double depth_m = -kAbove_m;
   Vec3 force_N;
   const auto feel = [&](double at_m) {
-    contact.touch(way.at(at_m));
-    force_N = contact.feel(way.at(at_m), false).wrench.force_N;
+    contact.detect_contact(way.at(at_m));
+    force_N = contact.render_force(way.at(at_m), false).wrench.force_N;
   };
   for (std::size_t k = 0; k < truth.at("depth_m").size(); ++k) {
     const double want_m = truth.at("depth_m").at(k), want_N = truth.at("force_N").at(k);
-    for (; depth_m < want_m - 0.5 * kStep_m; depth_m += kStep_m) feel(depth_m);
-    feel(want_m);
+    for (; depth_m < want_m - 0.5 * kStep_m; depth_m += kStep_m) render_force(depth_m);
+    render_force(want_m);
     if (want_m < kFirst_m || want_m > kLast_m) continue;
     const double off = -dot(force_N, way.inward) / want_N - 1.0;
     if (std::abs(off) > std::abs(out.worst_ratio))
       out.worst_ratio = off, out.worst_depth_m = want_m;
     // The jaws of the reference have no names: as they fit.
     std::vector<double> want = truth.at("each_jaw_N").at(k), found;
-    for (const model::contact::SphereTouch& touch : contact.touches())
-      found.push_back(-dot(touch.force_N, way.inward));
+    for (const model::contact::SphereContact& sphere_contact : contact.contacts())
+      found.push_back(-dot(sphere_contact.force_N, way.inward));
     std::ranges::sort(want);
     std::ranges::sort(found);
     for (std::size_t i = 0; i < std::min(want.size(), found.size()); ++i)

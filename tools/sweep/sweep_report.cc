@@ -42,7 +42,7 @@ std::string flaw_words(const PressResult& result, const PressSweep& sweep) {
   add(flaws.changes_too_fast, "changes");
   add(flaws.draws_in, "draws_in");
   add(flaws.is_too_stiff, "too_stiff");
-  add(flaws.is_unfelt, "unfelt");
+  add(flaws.is_not_rendered, "unfelt");
   add(flaws.energy_differs, "energy");
   return out.empty() ? "none" : out;
 }

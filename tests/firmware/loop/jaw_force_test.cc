@@ -17,14 +17,14 @@
 
 namespace tact::firmware::loop::jaw_force_test {
 
-using model::contact::SphereTouch;
+using model::contact::SphereContact;
 
-SphereTouch jaw(double normal_N, double side = 1.0) {
+SphereContact jaw(double normal_N, double side = 1.0) {
   const model::Vec3 normal{0.0, side, 0.0};
-  SphereTouch touch;
-  touch.normal = normal;
-  touch.force_N = normal_N * normal + model::Vec3{0.0, 0.0, 0.7};
-  return touch;
+  SphereContact sphere_contact;
+  sphere_contact.normal = normal;
+  sphere_contact.force_N = normal_N * normal + model::Vec3{0.0, 0.0, 0.7};
+  return sphere_contact;
 }
 
 TEST(JawForce, IsTheMeanOfBothNormalForcesTimesHowFarTheyAreClosed) {

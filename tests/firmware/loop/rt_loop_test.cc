@@ -232,20 +232,21 @@ TEST_F(RtLoopTest, ALoopThatIsLateInEveryTickIsStopped) {
   EXPECT_EQ(device.last, model::Wrench{});
 }
 
-TEST(Touches, ACopyHasTheSpheresThatExistAndNoOther) {
-  std::array<model::contact::SphereTouch, model::contact::kMaxSpheres + 1> touch;
-  for (std::size_t i = 0; i < touch.size(); ++i) touch[i].depth_m = static_cast<double>(i + 1);
-  Touches two;
-  two.assign(std::span(touch).first(2));
-  const Touches copy(two);
-  Touches assigned;
-  assigned.assign(std::span(touch).first(4));
+TEST(SphereContacts, ACopyHasTheSpheresThatExistAndNoOther) {
+  std::array<model::contact::SphereContact, model::contact::kMaxSpheres + 1> sphere_contact;
+  for (std::size_t i = 0; i < sphere_contact.size(); ++i)
+    sphere_contact[i].depth_m = static_cast<double>(i + 1);
+  SphereContacts two;
+  two.assign(std::span(sphere_contact).first(2));
+  const SphereContacts copy(two);
+  SphereContacts assigned;
+  assigned.assign(std::span(sphere_contact).first(4));
   assigned = copy;
   ASSERT_EQ(assigned.all().size(), 2u);
   EXPECT_EQ(assigned.all()[1].depth_m, 2.0);
-  assigned.assign(touch);
+  assigned.assign(sphere_contact);
   EXPECT_EQ(assigned.all().size(), model::contact::kMaxSpheres);
-  assigned = Touches();
+  assigned = SphereContacts();
   EXPECT_TRUE(assigned.all().empty());
 }
 

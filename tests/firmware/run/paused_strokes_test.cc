@@ -14,7 +14,7 @@
 
 namespace tact::firmware::run::paused_strokes_test {
 
-using model::contact::TouchState;
+using model::contact::ContactState;
 
 // Of the way points of the scene; a release after a grip has two.
 constexpr std::size_t kHoldThePull = 8, kTear = 13;
@@ -26,17 +26,17 @@ struct Pause {
 };
 
 /// A tick, and the period of the run in which it began.
-struct FeltTick {
+struct RenderedTick {
   int period = 0;
   bool held = false;
   loop::TickOutput output;
 };
 
 /// The strokes once, with these pauses in ascending order.
-std::vector<FeltTick> run(const model::scene::Scene& scene, const std::vector<Pause>& pauses) {
+std::vector<RenderedTick> run(const model::scene::Scene& scene, const std::vector<Pause>& pauses) {
   tests::SceneLoop rig(scene);
   const auto periods = static_cast<int>(scene.hand.path.back().time_s * scene.rate_Hz);
-  std::vector<FeltTick> felt;
+  std::vector<RenderedTick> rendered;
   loop::TickRecord record;
   std::uint32_t skipped_before = 0;
   auto pause = pauses.begin();
@@ -48,14 +48,14 @@ std::vector<FeltTick> run(const model::scene::Scene& scene, const std::vector<Pa
     rig.loop.step();
     EXPECT_TRUE(rig.ring->pop(record));
     EXPECT_EQ(record.input.skipped_periods, skipped_before);
-    felt.push_back({.period = period,
-                    .held = tests::any_in(record, TouchState::kHeld),
-                    .output = record.output});
+    rendered.push_back({.period = period,
+                        .held = tests::any_in(record, ContactState::kHeld),
+                        .output = record.output});
     skipped_before = static_cast<std::uint32_t>(skipped);
     period += 1 + skipped;
   }
   EXPECT_EQ(pause, pauses.end());
-  return felt;
+  return rendered;
 }
 
 /// One in each part of the run that has the same length, at a random place; none before `first`.
@@ -71,44 +71,45 @@ std::vector<Pause> random_pauses(std::uint64_t seed, int count, int first, int p
   return pauses;
 }
 
-double largest_force_N(const std::vector<FeltTick>& felt, int from, int to) {
+double largest_force_N(const std::vector<RenderedTick>& rendered, int from, int to) {
   double largest_N = 0.0;
-  for (const FeltTick& tick : felt)
+  for (const RenderedTick& tick : rendered)
     if (tick.period >= from && tick.period < to)
       largest_N = std::max(largest_N, norm(tick.output.written.force_N));
   return largest_N;
 }
 
 /// The first period from there on in which nothing is held any more; -1: none.
-int let_go_in(const std::vector<FeltTick>& felt, int from, int to) {
-  for (std::size_t i = 1; i < felt.size(); ++i)
-    if (felt[i - 1].held && !felt[i].held && felt[i].period >= from && felt[i].period < to)
-      return felt[i].period;
+int let_go_in(const std::vector<RenderedTick>& rendered, int from, int to) {
+  for (std::size_t i = 1; i < rendered.size(); ++i)
+    if (rendered[i - 1].held && !rendered[i].held && rendered[i].period >= from &&
+        rendered[i].period < to)
+      return rendered[i].period;
   return -1;
 }
 
 /// At the ticks that both runs have.
-double farthest_apart_N(const std::vector<FeltTick>& all, const std::vector<FeltTick>& paused,
-                        int from, int to) {
+double farthest_apart_N(const std::vector<RenderedTick>& all,
+                        const std::vector<RenderedTick>& paused, int from, int to) {
   double most_N = 0.0;
-  for (const FeltTick& tick : paused) {
+  for (const RenderedTick& tick : paused) {
     if (tick.period < from || tick.period >= to) continue;
-    const FeltTick& same = all[static_cast<std::size_t>(tick.period)];
+    const RenderedTick& same = all[static_cast<std::size_t>(tick.period)];
     most_N = std::max(most_N, norm(tick.output.written.force_N - same.output.written.force_N));
   }
   return most_N;
 }
 
-FeltTick at_period(const std::vector<FeltTick>& felt, int period) {
-  const auto tick = std::ranges::find(felt, period, &FeltTick::period);
-  EXPECT_NE(tick, felt.end()) << "skipped: " << period;
-  return tick != felt.end() ? *tick : FeltTick{};
+RenderedTick at_period(const std::vector<RenderedTick>& rendered, int period) {
+  const auto tick = std::ranges::find(rendered, period, &RenderedTick::period);
+  EXPECT_NE(tick, rendered.end()) << "skipped: " << period;
+  return tick != rendered.end() ? *tick : RenderedTick{};
 }
 
-void expect_undisturbed(const std::vector<FeltTick>& felt) {
-  EXPECT_EQ(felt.back().output.contact_losses, 0u);
-  EXPECT_EQ(felt.back().output.state, loop::State::kArmed);
-  for (const FeltTick& tick : felt) {
+void expect_undisturbed(const std::vector<RenderedTick>& rendered) {
+  EXPECT_EQ(rendered.back().output.contact_losses, 0u);
+  EXPECT_EQ(rendered.back().output.state, loop::State::kArmed);
+  for (const RenderedTick& tick : rendered) {
     ASSERT_EQ(tick.output.fault, model::Fault::kNone) << tick.period;
     ASSERT_NE(tick.output.limit, model::Fault::kToolInside) << tick.period;
   }
@@ -125,7 +126,7 @@ class PausedStrokes : public testing::Test {
   int period_of(double time_s) const { return static_cast<int>(time_s * scene_.rate_Hz); }
 
   model::scene::Scene scene_ = tests::shipped_scene("liver");
-  static inline const std::vector<FeltTick>* undisturbed_ = nullptr;
+  static inline const std::vector<RenderedTick>* undisturbed_ = nullptr;
 };
 
 TEST_F(PausedStrokes, AHundredPausesLeaveTheForceOfEveryStrokeAndTheTear) {
@@ -133,7 +134,7 @@ TEST_F(PausedStrokes, AHundredPausesLeaveTheForceOfEveryStrokeAndTheTear) {
   const int torn_in = let_go_in(*undisturbed_, starts(kTear), starts(kTear + 1));
   ASSERT_GE(torn_in, 0) << "else it proves nothing";
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
-    const std::vector<FeltTick> paused =
+    const std::vector<RenderedTick> paused =
         run(scene_, random_pauses(seed, 100, period_of(0.1), starts(path.size() - 1)));
     expect_undisturbed(paused);
     for (std::size_t stroke = 0; stroke + 1 < path.size(); ++stroke) {
@@ -149,7 +150,7 @@ TEST_F(PausedStrokes, AHundredPausesLeaveTheForceOfEveryStrokeAndTheTear) {
 
 TEST_F(PausedStrokes, WhatIsHeldIsHeldAndPulledAfterAPauseOfNineteenPeriods) {
   const int middle = (starts(kHoldThePull) + starts(kHoldThePull + 1)) / 2;
-  const std::vector<FeltTick> paused = run(scene_, {{.at_period = middle, .skipped = 19}});
+  const std::vector<RenderedTick> paused = run(scene_, {{.at_period = middle, .skipped = 19}});
   expect_undisturbed(paused);
   const auto before = at_period(paused, middle - 1), after = at_period(paused, middle + 20 + 10);
   EXPECT_TRUE(before.held && after.held);

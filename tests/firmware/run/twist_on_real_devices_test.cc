@@ -113,7 +113,7 @@ const RealDevice kDevices[] = {{"omega7", 35, false, tests::kMountings[0]},
                                {"delta6_upside_down", 64, true, tests::kMountings[5]}};
 
 /// What the hand felt, from the first tick to the last.
-struct Felt {
+struct Rendered {
   double press_N = 0.0, pull_N = 0.0, twist_rad = 0.0, torque_Nm = 0.0;
   bool held = false, torn = false;
   int arrived = 0, others = 0;  // forces of the stub with a torque that the loop wrote, or not
@@ -170,7 +170,7 @@ class TwistOnRealDevices : public testing::TestWithParam<RealDevice> {
     led_->lead(p, r, at.grip_ratio);
   }
 
-  loop::TickRecord step(Felt& felt) {
+  loop::TickRecord step(Rendered& rendered) {
     loop_->step();
     loop::TickRecord record;
     EXPECT_TRUE(ring_->pop(record));
@@ -179,37 +179,38 @@ class TwistOnRealDevices : public testing::TestWithParam<RealDevice> {
         {mounting_.force_in_base(w.force_N), mounting_.direction_in_base(w.torque_Nm)});
     if (written_.size() > 1000) written_.pop_front();
     const model::Quat& q = record.input.sample.tool.orientation;
-    const bool held = tests::any_in(record, model::contact::TouchState::kHeld);
-    felt.held |= held;
-    felt.fault = std::max(felt.fault, record.output.fault);
-    felt.torque_Nm = std::max(felt.torque_Nm, norm(w.torque_Nm));
-    if (held) felt.twist_rad = std::max(felt.twist_rad, 2.0 * std::asin(std::abs(q.z)));
-    if (held) felt.pull_N = std::max(felt.pull_N, -w.force_N.z);
-    if (!felt.held) felt.press_N = std::max(felt.press_N, w.force_N.z);
-    if (felt.pull_N > 0.0 && !held && record.input.sample.tool.grip_ratio == 1.0) felt.torn = true;
-    compare(felt);
+    const bool held = tests::any_in(record, model::contact::ContactState::kHeld);
+    rendered.held |= held;
+    rendered.fault = std::max(rendered.fault, record.output.fault);
+    rendered.torque_Nm = std::max(rendered.torque_Nm, norm(w.torque_Nm));
+    if (held) rendered.twist_rad = std::max(rendered.twist_rad, 2.0 * std::asin(std::abs(q.z)));
+    if (held) rendered.pull_N = std::max(rendered.pull_N, -w.force_N.z);
+    if (!rendered.held) rendered.press_N = std::max(rendered.press_N, w.force_N.z);
+    if (rendered.pull_N > 0.0 && !held && record.input.sample.tool.grip_ratio == 1.0)
+      rendered.torn = true;
+    compare(rendered);
     return record;
   }
 
   /// What the library was given last is a wrench that the loop wrote, to the last digit.
-  void compare(Felt& felt) {
+  void compare(Rendered& rendered) {
     const model::Wrench given = led_->given();
     if (norm(given.force_N) == 0.0) return;
     const bool known = std::any_of(written_.begin(), written_.end(), [&](const model::Wrench& w) {
       return w.force_N == given.force_N && w.torque_Nm == given.torque_Nm;
     });
-    ++(known ? felt.arrived : felt.others);
+    ++(known ? rendered.arrived : rendered.others);
   }
 
-  Felt feel() {
-    Felt felt;
-    for (int i = 0; i < 2000 && step(felt).output.state != loop::State::kArmed; ++i) continue;
+  Rendered render_force() {
+    Rendered rendered;
+    for (int i = 0; i < 2000 && step(rendered).output.state != loop::State::kArmed; ++i) continue;
     const double end_s = scene_.hand.path.back().time_s;
     for (double t = 0.0; t < end_s; t += kStrokes_s) {
       lead(hand_target(scene_.hand.path, false, t));
-      step(felt);
+      step(rendered);
     }
-    return felt;
+    return rendered;
   }
 
   std::unique_ptr<LedDevice> led_;
@@ -227,22 +228,22 @@ class TwistOnRealDevices : public testing::TestWithParam<RealDevice> {
 };
 
 TEST_P(TwistOnRealDevices, PressGripTwistPullAndTearAreFelt) {
-  const Felt felt = feel();
-  EXPECT_EQ(felt.fault, model::Fault::kNone) << model::describe(felt.fault).name;
-  EXPECT_GT(felt.press_N, 0.1);
-  EXPECT_TRUE(felt.held);
-  EXPECT_GT(felt.twist_rad, 19_deg);
-  EXPECT_GT(felt.pull_N, 0.3);
-  EXPECT_TRUE(felt.torn);
-  EXPECT_GT(felt.arrived, 500);
-  EXPECT_EQ(felt.others, 0);
+  const Rendered rendered = render_force();
+  EXPECT_EQ(rendered.fault, model::Fault::kNone) << model::describe(rendered.fault).name;
+  EXPECT_GT(rendered.press_N, 0.1);
+  EXPECT_TRUE(rendered.held);
+  EXPECT_GT(rendered.twist_rad, 19_deg);
+  EXPECT_GT(rendered.pull_N, 0.3);
+  EXPECT_TRUE(rendered.torn);
+  EXPECT_GT(rendered.arrived, 500);
+  EXPECT_EQ(rendered.others, 0);
   const bool lost = !admission::torque_note(scene_, device_->info()).empty();
   EXPECT_NE(lost, GetParam().has_torque);
   if (GetParam().has_torque)
-    EXPECT_GT(felt.torque_Nm, 0.015) << "of 0.2 N m";
+    EXPECT_GT(rendered.torque_Nm, 0.015) << "of 0.2 N m";
   else
-    EXPECT_EQ(felt.torque_Nm, 0.0);
-  EXPECT_LT(felt.torque_Nm, 0.06);
+    EXPECT_EQ(rendered.torque_Nm, 0.0);
+  EXPECT_LT(rendered.torque_Nm, 0.06);
 }
 
 INSTANTIATE_TEST_SUITE_P(Devices, TwistOnRealDevices, testing::ValuesIn(kDevices),

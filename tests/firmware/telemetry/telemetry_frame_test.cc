@@ -14,8 +14,8 @@
 namespace tact::firmware::telemetry::telemetry_frame_test {
 
 using model::Vec3;
+using model::contact::ContactState;
 using model::contact::Indentation;
-using model::contact::TouchState;
 
 /// A law whose dents lean, the more the deeper.
 class LeaningLaw final : public model::contact::SiteLaw {
@@ -32,11 +32,11 @@ TEST(TelemetryFrame, CarriesHowTheDentOfATouchedSiteLeans) {
   const LeaningLaw law;
   const auto shapes = std::make_unique<loop::ShapeSlot>();
   FrameBuilder builder(law, *shapes, false);
-  std::array<model::contact::SphereTouch, 2> touches;
-  touches[0].state = TouchState::kTouching;
-  for (auto& touch : touches) touch.dent_m = 0.004;
+  std::array<model::contact::SphereContact, 2> contacts;
+  contacts[0].state = ContactState::kTouching;
+  for (auto& sphere_contact : contacts) sphere_contact.dent_m = 0.004;
   loop::TickRecord record;
-  record.touches.assign(touches);
+  record.contacts.assign(contacts);
   builder.add(record);
   const Frame frame = builder.take(0);
   EXPECT_FLOAT_EQ(frame.site[0].tilt[0], 0.04F);
@@ -49,11 +49,11 @@ TEST(TelemetryFrame, CarriesLossesOfContactAndASphereInsideWithoutADent) {
   const LeaningLaw law;
   const auto shapes = std::make_unique<loop::ShapeSlot>();
   FrameBuilder builder(law, *shapes, false);
-  std::array<model::contact::SphereTouch, 1> touches;
-  touches[0].state = TouchState::kInside;
-  touches[0].dent_m = 0.004;
+  std::array<model::contact::SphereContact, 1> contacts;
+  contacts[0].state = ContactState::kInside;
+  contacts[0].dent_m = 0.004;
   loop::TickRecord record;
-  record.touches.assign(touches);
+  record.contacts.assign(contacts);
   record.output.contact_losses = 7;
   builder.add(record);
   const Frame frame = builder.take(0);

@@ -93,8 +93,9 @@ TEST(FalconDevice, MakesTheForceItIsAskedForThroughTheGainOfEachAxis) {
     bench.run(60);
     for (const Vec3& force_N : {Vec3{2.0, 0.0, 0.0}, Vec3{0.0, -2.0, 0.0}, Vec3{0.5, 0.5, 2.0}}) {
       bench.tick(force_N);
-      const Vec3 felt_N = force_of(bench.words(), falcon_settings(), p_W);
-      EXPECT_LT(norm(felt_N - force_N), 0.01) << felt_N.x << " " << felt_N.y << " " << felt_N.z;
+      const Vec3 rendered_N = force_of(bench.words(), falcon_settings(), p_W);
+      EXPECT_LT(norm(rendered_N - force_N), 0.01)
+          << rendered_N.x << " " << rendered_N.y << " " << rendered_N.z;
     }
   }
 }
@@ -117,8 +118,8 @@ TEST(FalconDevice, TooMuchForceKeepsItsDirection) {
   int largest = 0;
   for (const int word : bench.words()) largest = std::max(largest, std::abs(word));
   EXPECT_EQ(largest, falcon::kFalconMotorMax);
-  const Vec3 felt_N = force_of(bench.words(), falcon_settings(), {0.02, 0.0, 0.0});
-  EXPECT_GT(dot(normalized(felt_N), normalized(wish_N)), 0.99999);
+  const Vec3 rendered_N = force_of(bench.words(), falcon_settings(), {0.02, 0.0, 0.0});
+  EXPECT_GT(dot(normalized(rendered_N), normalized(wish_N)), 0.99999);
 }
 
 TEST(FalconDevice, ItsForceLimitCanBeMadeEverywhere) {
@@ -167,8 +168,8 @@ TEST(FalconDevice, HoldsItsOwnWeightUp) {
   FalconBench bench(settings);
   bench.home({0.01, 0.0, 0.0});
   bench.run(60);
-  const Vec3 felt_N = force_of(bench.words(), settings, {0.01, 0.0, 0.0});
-  EXPECT_LT(norm(felt_N - Vec3{0.0, 0.0, 0.981}), 0.01);
+  const Vec3 rendered_N = force_of(bench.words(), settings, {0.01, 0.0, 0.0});
+  EXPECT_LT(norm(rendered_N - Vec3{0.0, 0.0, 0.981}), 0.01);
 }
 
 TEST(FalconDevice, ItsWeightIsHeldFirstAndTheForceKeepsItsDirectionBesideIt) {

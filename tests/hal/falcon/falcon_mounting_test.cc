@@ -16,8 +16,8 @@ TEST(FalconMounting, HoldsItsOwnWeightInSixMountings) {
     bench.device.set_gravity(mounting_of(settings_of(one)).gravity_in_base_mps2());
     bench.home({0.01, 0.0, 0.0});
     bench.run(60);
-    const Vec3 felt_N = force_of(bench.words(), settings, {0.01, 0.0, 0.0});
-    EXPECT_LT(norm(felt_N + 0.981 * one.down_B), 0.01) << one.words;
+    const Vec3 rendered_N = force_of(bench.words(), settings, {0.01, 0.0, 0.0});
+    EXPECT_LT(norm(rendered_N + 0.981 * one.down_B), 0.01) << one.words;
   }
 }
 

@@ -17,7 +17,7 @@ class ForceDimension : public tests::DeviceLoop {
     DeviceLoop::open(tests::stub_scene());
   }
   /// What arrives at the device's motors: 0 while its forces are off.
-  Vec3 felt_N() {
+  Vec3 rendered_N() {
     double force[6];
     return stub.last_force(force) == 0 ? Vec3{} : Vec3{force[0], force[1], force[2]};
   }
@@ -68,17 +68,17 @@ TEST_F(ForceDimension, TheMakersAxesAreThoseOfW) {
   ASSERT_TRUE(ready());
   tick_until([&] { return sample.fresh && sample.tool.position_m == Vec3{0.011, -0.022, 0.033}; });
   EXPECT_EQ(sample.tool.position_m, (Vec3{0.011, -0.022, 0.033}));
-  EXPECT_TRUE(tick_until([&] { return felt_N() == Vec3{1, 2, 3}; },
+  EXPECT_TRUE(tick_until([&] { return rendered_N() == Vec3{1, 2, 3}; },
                          {.force_N = {1, 2, 3}, .torque_Nm = {}}));
 }
 
 TEST_F(ForceDimension, TooMuchForceIsScaledWithItsDirection) {
   open();
   ASSERT_TRUE(ready());
-  EXPECT_TRUE(
-      tick_until([&] { return norm(felt_N()) > 19.0; }, {.force_N = {30, 0, 40}, .torque_Nm = {}}));
-  EXPECT_NEAR(felt_N().x, 12.0, 1e-12);
-  EXPECT_NEAR(felt_N().z, 16.0, 1e-12);
+  EXPECT_TRUE(tick_until([&] { return norm(rendered_N()) > 19.0; },
+                         {.force_N = {30, 0, 40}, .torque_Nm = {}}));
+  EXPECT_NEAR(rendered_N().x, 12.0, 1e-12);
+  EXPECT_NEAR(rendered_N().z, 16.0, 1e-12);
 }
 
 TEST_F(ForceDimension, NoForceIsMadeOfNaNAndNoTorqueWithoutMotors) {
@@ -152,7 +152,7 @@ TEST_F(ForceDimension, ALoopThatDiesTakesItsForceAlong) {
   open();
   ASSERT_TRUE(ready());
   ASSERT_TRUE(
-      tick_until([&] { return felt_N().z == 5.0; }, {.force_N = {0, 0, 5}, .torque_Nm = {}}));
+      tick_until([&] { return rendered_N().z == 5.0; }, {.force_N = {0, 0, 5}, .torque_Nm = {}}));
   double force[6];
   EXPECT_TRUE(comes([&] { return stub.last_force(force) >= 0 && force[2] == 0.0; }));
   EXPECT_EQ(stub.last_force(force), 1) << "zero, but its weight is still balanced";

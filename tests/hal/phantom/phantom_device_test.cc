@@ -20,7 +20,7 @@ class Phantom : public tests::DeviceLoop {
   }
   void open() { DeviceLoop::open(tests::phantom_scene()); }
   /// What arrives at the motors, in the device's frame: 0 while the force output is off.
-  Vec3 felt_N() {
+  Vec3 rendered_N() {
     double force[3];
     return stub.last_force(force) == 0 ? Vec3{} : Vec3{force[0], force[1], force[2]};
   }
@@ -61,7 +61,7 @@ TEST_F(Phantom, RightUpAndTowardsTheOperatorAreYZAndXOfW) {
   };
   EXPECT_TRUE(tick_until(there));
   // 1 N towards the operator, 2 to the right, 1.5 up.
-  EXPECT_TRUE(tick_until([&] { return felt_N() == Vec3{2.0, 1.5, 1.0}; },
+  EXPECT_TRUE(tick_until([&] { return rendered_N() == Vec3{2.0, 1.5, 1.0}; },
                          {.force_N = {1.0, 2.0, 1.5}, .torque_Nm = {}}));
 }
 
@@ -103,10 +103,10 @@ TEST_F(Phantom, ADeviceWithThreeAxesHasNoOrientation) {
 TEST_F(Phantom, TooMuchForceIsScaledWithItsDirection) {
   open();
   ASSERT_TRUE(ready());
-  EXPECT_TRUE(
-      tick_until([&] { return norm(felt_N()) > 3.2; }, {.force_N = {6, 0, 8}, .torque_Nm = {}}));
-  EXPECT_NEAR(felt_N().z, 3.3 * 0.6, 1e-12);
-  EXPECT_NEAR(felt_N().y, 3.3 * 0.8, 1e-12);
+  EXPECT_TRUE(tick_until([&] { return norm(rendered_N()) > 3.2; },
+                         {.force_N = {6, 0, 8}, .torque_Nm = {}}));
+  EXPECT_NEAR(rendered_N().z, 3.3 * 0.6, 1e-12);
+  EXPECT_NEAR(rendered_N().y, 3.3 * 0.8, 1e-12);
 }
 
 TEST_F(Phantom, NoForceIsMadeOfNaNAndItIsAFaultOfThatTick) {
@@ -114,7 +114,7 @@ TEST_F(Phantom, NoForceIsMadeOfNaNAndItIsAFaultOfThatTick) {
   ASSERT_TRUE(ready());
   for (int i = 0; i < 20; ++i) {
     tick({.force_N = {std::nan(""), 1, 1}, .torque_Nm = {1, 1, 1}});
-    ASSERT_EQ(felt_N(), Vec3{});
+    ASSERT_EQ(rendered_N(), Vec3{});
     ASSERT_EQ(fault, Fault::kForceNotFinite);
   }
   tick();
@@ -140,10 +140,10 @@ TEST_F(Phantom, ACommandThatGrewOldWhileTheLibraryWaitedIsWorthZero) {
   open();
   ASSERT_TRUE(ready());
   ASSERT_TRUE(
-      tick_until([&] { return felt_N().y == 2.0; }, {.force_N = {0, 0, 2}, .torque_Nm = {}}));
+      tick_until([&] { return rendered_N().y == 2.0; }, {.force_N = {0, 0, 2}, .torque_Nm = {}}));
   stub.set_delay_us(40'000);  // of the frame that begins within a millisecond
   sleep_ms(55);
-  EXPECT_EQ(felt_N(), Vec3{});
+  EXPECT_EQ(rendered_N(), Vec3{});
   stub.set_delay_us(0);
 }
 
@@ -181,7 +181,7 @@ TEST_F(Phantom, ALoopThatDiesTakesItsForceAlong) {
   open();
   ASSERT_TRUE(ready());
   ASSERT_TRUE(
-      tick_until([&] { return felt_N().y == 2.0; }, {.force_N = {0, 0, 2}, .torque_Nm = {}}));
+      tick_until([&] { return rendered_N().y == 2.0; }, {.force_N = {0, 0, 2}, .torque_Nm = {}}));
   double force[3];
   EXPECT_TRUE(comes([&] { return stub.last_force(force) >= 0 && force[1] == 0.0; }));
   EXPECT_EQ(stub.last_force(force), 1) << "zero first";
@@ -192,7 +192,7 @@ TEST_F(Phantom, WithdrawnPowerSwitchesTheForceOutputOffAndComesBackThroughZero) 
   open();
   ASSERT_TRUE(ready());
   ASSERT_TRUE(
-      tick_until([&] { return felt_N().y == 2.0; }, {.force_N = {0, 0, 2}, .torque_Nm = {}}));
+      tick_until([&] { return rendered_N().y == 2.0; }, {.force_N = {0, 0, 2}, .torque_Nm = {}}));
   permitted = false;
   EXPECT_TRUE(tick_until([&] { return !output_is_on(); }, {.force_N = {0, 0, 2}, .torque_Nm = {}}));
   for (int i = 0; i < 200; ++i) tick();
@@ -257,7 +257,7 @@ TEST_F(Phantom, StopSwitchesOffAndClosesTwiceWithoutHarm) {
   open();
   ASSERT_TRUE(ready());
   ASSERT_TRUE(
-      tick_until([&] { return felt_N().y == 2.0; }, {.force_N = {0, 0, 2}, .torque_Nm = {}}));
+      tick_until([&] { return rendered_N().y == 2.0; }, {.force_N = {0, 0, 2}, .torque_Nm = {}}));
   device->stop();
   double force[3];
   EXPECT_EQ(stub.last_force(force), 0);

@@ -57,15 +57,15 @@ struct Bench {
 inline Bench plate_bench() { return Bench(tests::make_plate(100_mm, 20)); }
 
 // Moves the tool and returns what it feels there.
-inline Wrench feel_at(Contact& contact, const Vec3& position_m, double grip_ratio = 0.0) {
+inline Wrench render_at(Contact& contact, const Vec3& position_m, double grip_ratio = 0.0) {
   const Tool tool{.position_m = position_m, .grip_ratio = grip_ratio};
-  contact.touch(tool);
-  return contact.feel(tool, true).wrench;
+  contact.detect_contact(tool);
+  return contact.render_force(tool, true).wrench;
 }
 
 inline void glide(Contact& contact, const Vec3& from_m, const Vec3& to_m, double grip_ratio = 0.0) {
   for (int i = 0; i <= 200; ++i)
-    feel_at(contact, from_m + (i / 200.0) * (to_m - from_m), grip_ratio);
+    render_at(contact, from_m + (i / 200.0) * (to_m - from_m), grip_ratio);
 }
 
 }  // namespace tact::model::contact::contact_bench

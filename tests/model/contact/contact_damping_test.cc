@@ -74,9 +74,9 @@ TEST(ContactDamping, TakesEnergyFromEverySphereInEveryTickAndNeverPulls) {
     bool let_go = false;
     for (int i = 0; i < 1000; ++i) {
       const Tool tool = tool_at(i * kTick_s);
-      for (Bench* bench : {&elastic, &damped}) bench->contact.touch(tool);
-      const Wrench plain = elastic.contact.feel(tool, true).wrench,
-                   with = damped.contact.feel(tool, true).wrench;
+      for (Bench* bench : {&elastic, &damped}) bench->contact.detect_contact(tool);
+      const Wrench plain = elastic.contact.render_force(tool, true).wrench,
+                   with = damped.contact.render_force(tool, true).wrench;
       const Vec3 added_N = with.force_N - plain.force_N,
                  added_Nm = with.torque_Nm - plain.torque_Nm;
       const double power_W =
@@ -84,7 +84,7 @@ TEST(ContactDamping, TakesEnergyFromEverySphereInEveryTickAndNeverPulls) {
       EXPECT_GE(power_W, -1e-12) << "tick " << i;
       taken_J += power_W * kTick_s;
       for (std::size_t k = 0; k < 2; ++k) {
-        const SphereTouch &a = elastic.contact.touches()[k], &b = damped.contact.touches()[k];
+        const SphereContact &a = elastic.contact.contacts()[k], &b = damped.contact.contacts()[k];
         EXPECT_GE(dot(b.force_N, b.normal), 0.0) << "tick " << i;
         EXPECT_EQ(a.energy_J, b.energy_J) << "what is stored is not touched by it";
         let_go = let_go || (a.force_N.z > 0.0 && b.force_N == Vec3{});
@@ -97,13 +97,13 @@ TEST(ContactDamping, TakesEnergyFromEverySphereInEveryTickAndNeverPulls) {
 
 TEST(ContactDamping, PressesHarderTheFaster) {
   Bench damped(2.0);
-  damped.contact.touch({.position_m = {0, 0, 5_mm}});
+  damped.contact.detect_contact({.position_m = {0, 0, 5_mm}});
   Tool tool{.position_m = {0, 0, 1_mm}, .velocity_mps = {0, 0, -0.1}};
-  damped.contact.touch(tool);
-  const double fast_N = damped.contact.feel(tool, true).wrench.force_N.z;
+  damped.contact.detect_contact(tool);
+  const double fast_N = damped.contact.render_force(tool, true).wrench.force_N.z;
   tool.velocity_mps = {};
-  damped.contact.touch(tool);
-  EXPECT_NEAR(fast_N / damped.contact.feel(tool, true).wrench.force_N.z, 1.2, 1e-12);
+  damped.contact.detect_contact(tool);
+  EXPECT_NEAR(fast_N / damped.contact.render_force(tool, true).wrench.force_N.z, 1.2, 1e-12);
 }
 
 /// A force that is set by hand, and a resistance that takes all of it away.
@@ -134,8 +134,8 @@ TEST(ContactDamping, DoesNotPullInWhileTheForceFollowsAJump) {
                    .tree = bench.tree.view(),
                    .blade = {}});
   const auto force_N = [&](double z_m) {
-    contact.touch({.position_m = {0, 0, z_m}});
-    return contact.feel({.position_m = {0, 0, z_m}}, true).wrench.force_N.z;
+    contact.detect_contact({.position_m = {0, 0, z_m}});
+    return contact.render_force({.position_m = {0, 0, z_m}}, true).wrench.force_N.z;
   };
   force_N(5_mm);
   law.force_N = 0.1;

@@ -42,24 +42,25 @@ struct RelaxingBench {
       .friction_ratio = 0.4, .sliding_stiffness_N_per_m = 100.0, .tear_force_N = 10.0};
 };
 
-struct Felt {
+struct Rendered {
   double energy_J = 0.0, force_N = 0.0;
 };
 
-Felt feel(Contact& contact, const Vec3& at_m, double grip_ratio, int ticks = 1) {
+Rendered render_force(Contact& contact, const Vec3& at_m, double grip_ratio, int ticks = 1) {
   Wrench w;
   for (int i = 0; i < ticks; ++i) {
     const Tool tool{.position_m = at_m, .grip_ratio = grip_ratio};
-    contact.touch(tool);
-    w = contact.feel(tool, false).wrench;
+    contact.detect_contact(tool);
+    w = contact.render_force(tool, false).wrench;
   }
-  return {contact.touches()[0].energy_J, w.force_N.z};
+  return {contact.contacts()[0].energy_J, w.force_N.z};
 }
 
 /// Presses to a depth, closes the grip there and stays.
-Felt press_and_hold(Contact& contact, double depth_m, int ticks) {
-  for (int i = 0; i <= 100; ++i) feel(contact, {0, 0, kRadius_m - depth_m * i / 100.0}, 0.0);
-  return feel(contact, {0, 0, kRadius_m - depth_m}, 1.0, ticks);
+Rendered press_and_hold(Contact& contact, double depth_m, int ticks) {
+  for (int i = 0; i <= 100; ++i)
+    render_force(contact, {0, 0, kRadius_m - depth_m * i / 100.0}, 0.0);
+  return render_force(contact, {0, 0, kRadius_m - depth_m}, 1.0, ticks);
 }
 
 class Spring final : public law::Law {
@@ -80,11 +81,11 @@ TEST(ContactMemory, OpeningTheGripInRelaxedTissueNeverAddsEnergy) {
   RelaxingBench bench;
   Contact contact = bench.contact();
   const Vec3 deep_m{0, 0, kRadius_m - 5_mm};
-  const Felt fresh = press_and_hold(contact, 5_mm, 1);
-  const Felt relaxed = feel(contact, deep_m, 1.0, 5000);
+  const Rendered fresh = press_and_hold(contact, 5_mm, 1);
+  const Rendered relaxed = render_force(contact, deep_m, 1.0, 5000);
   EXPECT_LT(relaxed.force_N, 0.6 * fresh.force_N) << "it did relax";
-  const Felt open = feel(contact, deep_m, 0.0);
-  EXPECT_EQ(contact.touches()[0].state, TouchState::kTouching);
+  const Rendered open = render_force(contact, deep_m, 0.0);
+  EXPECT_EQ(contact.contacts()[0].state, ContactState::kTouching);
   EXPECT_LE(open.energy_J, relaxed.energy_J + 1e-15);
   EXPECT_NEAR(open.force_N, relaxed.force_N, 1e-3 * relaxed.force_N);
 }
@@ -93,11 +94,11 @@ TEST(ContactMemory, ASidewaysTearInRelaxedTissueNeverAddsEnergy) {
   RelaxingBench bench;
   bench.parameters.tear_force_N = 0.6;
   Contact contact = bench.contact();
-  Felt before = press_and_hold(contact, 5_mm, 5000);
-  for (double x_m = 0.0; contact.touches()[0].state == TouchState::kHeld; x_m += 0.05_mm) {
+  Rendered before = press_and_hold(contact, 5_mm, 5000);
+  for (double x_m = 0.0; contact.contacts()[0].state == ContactState::kHeld; x_m += 0.05_mm) {
     ASSERT_LT(x_m, 10_mm);
-    const Felt now = feel(contact, {x_m, 0, kRadius_m - 5_mm}, 1.0);
-    if (contact.touches()[0].state != TouchState::kHeld) {
+    const Rendered now = render_force(contact, {x_m, 0, kRadius_m - 5_mm}, 1.0);
+    if (contact.contacts()[0].state != ContactState::kHeld) {
       EXPECT_LE(now.energy_J, before.energy_J);
       EXPECT_NEAR(now.force_N, before.force_N, 1e-3 * before.force_N);
     }
@@ -110,9 +111,9 @@ TEST(ContactMemory, LettingGoWhileATermIsPulledDropsThatTerm) {
   RelaxingBench bench;
   Contact contact = bench.contact();
   press_and_hold(contact, 5_mm, 20000);
-  const Felt held = feel(contact, {0, 0, kRadius_m - 1_mm}, 1.0);
+  const Rendered held = render_force(contact, {0, 0, kRadius_m - 1_mm}, 1.0);
   EXPECT_LT(held.force_N, 0.0);
-  const Felt open = feel(contact, {0, 0, kRadius_m - 1_mm}, 0.0);
+  const Rendered open = render_force(contact, {0, 0, kRadius_m - 1_mm}, 0.0);
   EXPECT_LE(open.energy_J, held.energy_J);
   EXPECT_GT(open.force_N, 0.0);
   EXPECT_LT(open.force_N, bench.chain.respond(1_mm).force_N);
@@ -136,16 +137,16 @@ TEST(ContactMemory, LettingGoOverStifferTissueNeverAddsEnergy) {
     Contact contact = bench.contact();
     press_and_hold(contact, 5_mm, 500);
     const Vec3 aside_m{30_mm, 0, kRadius_m - 5_mm};
-    feel(contact, aside_m, 1.0);
+    render_force(contact, aside_m, 1.0);
     const double shift_J = 0.5 * 10.0 * 30_mm * 30_mm;
-    const Felt held = feel(contact, aside_m, 1.0, 500);
-    const Felt open = feel(contact, aside_m, 0.0);
-    EXPECT_EQ(contact.touches()[0].state, TouchState::kTouching);
+    const Rendered held = render_force(contact, aside_m, 1.0, 500);
+    const Rendered open = render_force(contact, aside_m, 0.0);
+    EXPECT_EQ(contact.contacts()[0].state, ContactState::kTouching);
     EXPECT_LE(open.energy_J, held.energy_J - shift_J + 1e-12);
     EXPECT_GT(open.energy_J, 0.98 * (held.energy_J - shift_J)) << "nor takes what it need not";
-    EXPECT_GT(contact.touches()[0].slack_m, 1_mm);
+    EXPECT_GT(contact.contacts()[0].slack_m, 1_mm);
     // what was taken up is paid back only by withdrawing
-    EXPECT_LE(feel(contact, aside_m, 0.0, 10).energy_J, open.energy_J + 1e-12);
+    EXPECT_LE(render_force(contact, aside_m, 0.0, 10).energy_J, open.energy_J + 1e-12);
   }
 }
 
@@ -153,9 +154,9 @@ TEST(ContactMemory, LettingGoOfAPullForgets) {
   RelaxingBench bench;
   Contact contact = bench.contact();
   press_and_hold(contact, 1_mm, 1);
-  feel(contact, {0, 0, kRadius_m + 3_mm}, 1.0, 3000);
-  feel(contact, {0, 0, kRadius_m + 3_mm}, 0.0);
-  const Felt again = feel(contact, {0, 0, kRadius_m - 2_mm}, 0.0);
+  render_force(contact, {0, 0, kRadius_m + 3_mm}, 1.0, 3000);
+  render_force(contact, {0, 0, kRadius_m + 3_mm}, 0.0);
+  const Rendered again = render_force(contact, {0, 0, kRadius_m - 2_mm}, 0.0);
   EXPECT_NEAR(again.force_N, bench.chain.respond(2_mm).force_N, 2e-3 * again.force_N);
 }
 

@@ -24,12 +24,12 @@ class Rules : public ::testing::Test {
                        .friction_ratio = friction_ratio}) {}
 
   /// The rules that a tick at this height breaks.
-  std::string at(double z_m, double force_N, TouchState state, bool is_saturated = false,
+  std::string at(double z_m, double force_N, ContactState state, bool is_saturated = false,
                  std::uint32_t periods = 1, bool is_unsettled = false) {
-    ContactTick tick{.centre_m = {1_mm, 2_mm, z_m}, .periods = periods, .touch = {}};
-    tick.touch.state = state;
-    tick.touch.surface_point_m = {1_mm, 2_mm, 0};
-    tick.touch.force_N = {0, 0, force_N};
+    ContactTick tick{.centre_m = {1_mm, 2_mm, z_m}, .periods = periods, .sphere_contact = {}};
+    tick.sphere_contact.state = state;
+    tick.sphere_contact.surface_point_m = {1_mm, 2_mm, 0};
+    tick.sphere_contact.force_N = {0, 0, force_N};
     tick.is_saturated = is_saturated;
     tick.is_unsettled = is_unsettled;
     std::string broken;
@@ -39,8 +39,8 @@ class Rules : public ::testing::Test {
   /// As a linear law does it, pressed from above.
   std::string right(double z_m) {
     const double depth_m = kRadius_m - z_m;
-    if (!(depth_m > 0.0)) return at(z_m, 0.0, TouchState::kFree);
-    return at(z_m, kSlope_N_per_m * std::min(depth_m, kRange_m), TouchState::kTouching,
+    if (!(depth_m > 0.0)) return at(z_m, 0.0, ContactState::kFree);
+    return at(z_m, kSlope_N_per_m * std::min(depth_m, kRange_m), ContactState::kTouching,
               depth_m > kRange_m);
   }
   std::string right(double from_m, double to_m, double step_m = 0.1_mm) {
@@ -71,15 +71,15 @@ TEST_F(Rules, LetAPressPass) {
 
 TEST_F(Rules, LetAStartInsidePass) {
   for (double z_m = -10_mm; z_m < 3.9_mm; z_m += 0.1_mm)
-    ASSERT_EQ(at(z_m, 0.0, TouchState::kInside), "");
+    ASSERT_EQ(at(z_m, 0.0, ContactState::kInside), "");
   EXPECT_EQ(right(4.1_mm, 10_mm), "");
   EXPECT_EQ(right(10_mm, -5_mm), "");
 }
 
 TEST_F(Rules, ASeesForceAndContactOfAStartInside) {
-  EXPECT_EQ(at(-5_mm, 0.0, TouchState::kFree), "a");
-  EXPECT_EQ(at(-5_mm, 0.0, TouchState::kInside), "");
-  EXPECT_EQ(at(3_mm, 1e-9, TouchState::kInside, false, 100), "a");
+  EXPECT_EQ(at(-5_mm, 0.0, ContactState::kFree), "a");
+  EXPECT_EQ(at(-5_mm, 0.0, ContactState::kInside), "");
+  EXPECT_EQ(at(3_mm, 1e-9, ContactState::kInside, false, 100), "a");
 }
 
 TEST_F(Rules, BSeesForceOutside) {
@@ -87,7 +87,7 @@ TEST_F(Rules, BSeesForceOutside) {
   std::string broken;
   double z_m = 4.5_mm;
   for (; broken.empty() && z_m < 60_mm; z_m += 0.5_mm)
-    broken = at(z_m, 1e-7, TouchState::kTouching);
+    broken = at(z_m, 1e-7, ContactState::kTouching);
   EXPECT_EQ(broken, "b");
   EXPECT_NEAR(z_m, 4.5_mm + kRange_m + 1_mm, 0.6_mm);
   EXPECT_EQ(rules_.lags(), 1);
@@ -96,7 +96,7 @@ TEST_F(Rules, BSeesForceOutside) {
 TEST_F(Rules, BSeesForceThatStaysOutside) {
   EXPECT_EQ(right(10_mm, 5_mm), "");
   int ticks = 0;
-  while (at(5_mm, 1e-7, TouchState::kTouching).empty() && ticks < 1000) ++ticks;
+  while (at(5_mm, 1e-7, ContactState::kTouching).empty() && ticks < 1000) ++ticks;
   EXPECT_NEAR(ticks, 200, 2);
 }
 
@@ -118,33 +118,33 @@ TEST_F(Rules, CSeesForceThatStaysBehindTheBody) {
 
 TEST_F(Rules, DSeesAFallThrough) {
   EXPECT_EQ(right(10_mm, 4.1_mm), "");
-  EXPECT_EQ(at(2_mm, 0.0, TouchState::kFree), "");  // its centre is outside
-  EXPECT_EQ(at(-1_mm, 0.0, TouchState::kFree), "");
-  EXPECT_EQ(at(-1.5_mm, 0.0, TouchState::kFree), "");
-  EXPECT_EQ(at(-2_mm, 0.0, TouchState::kFree), "d");
+  EXPECT_EQ(at(2_mm, 0.0, ContactState::kFree), "");  // its centre is outside
+  EXPECT_EQ(at(-1_mm, 0.0, ContactState::kFree), "");
+  EXPECT_EQ(at(-1.5_mm, 0.0, ContactState::kFree), "");
+  EXPECT_EQ(at(-2_mm, 0.0, ContactState::kFree), "d");
 }
 
 TEST_F(Rules, DSeesALetGoWithoutCause) {
   EXPECT_EQ(right(10_mm, 3.9_mm), "");
-  EXPECT_EQ(at(3.8_mm, 0.0, TouchState::kInside), "d");
+  EXPECT_EQ(at(3.8_mm, 0.0, ContactState::kInside), "d");
 }
 
 TEST_F(Rules, ESeesAJump) {
   EXPECT_EQ(right(10_mm, 2_mm), "");
-  EXPECT_EQ(at(1.9_mm, 0.16, TouchState::kTouching), "e");
-  EXPECT_EQ(at(1.9_mm, 0.158, TouchState::kTouching), "e");  // 2 mN, at rest
+  EXPECT_EQ(at(1.9_mm, 0.16, ContactState::kTouching), "e");
+  EXPECT_EQ(at(1.9_mm, 0.158, ContactState::kTouching), "e");  // 2 mN, at rest
 }
 
 TEST_F(Rules, ELetsAForceLagAndSeesAJumpAllTheSame) {
   EXPECT_EQ(right(10_mm, 2_mm), "");
-  EXPECT_EQ(at(2_mm, 0.105, TouchState::kTouching, false, 1, true), "");
-  EXPECT_EQ(at(2_mm, 0.12, TouchState::kTouching, false, 1, true), "e");
+  EXPECT_EQ(at(2_mm, 0.105, ContactState::kTouching, false, 1, true), "");
+  EXPECT_EQ(at(2_mm, 0.12, ContactState::kTouching, false, 1, true), "e");
 }
 
 TEST_F(Rules, ISeesAForceThatLagsForTooLong) {
   EXPECT_EQ(right(10_mm, 2_mm), "");
   int ticks = 0;
-  while (at(2_mm, 0.1, TouchState::kTouching, false, 1, true).empty() && ticks < 1000) ++ticks;
+  while (at(2_mm, 0.1, ContactState::kTouching, false, 1, true).empty() && ticks < 1000) ++ticks;
   EXPECT_NEAR(ticks, 110, 3);
 }
 
@@ -153,21 +153,21 @@ TEST_F(Rules, ELetsASaturatedContactGoOutside) {
   double force_N = kLimit_N;
   for (int i = 0; i < 50; ++i) {
     force_N = std::max(0.0, force_N - kLimit_N / 50.0);
-    ASSERT_EQ(at(-25_mm, force_N, TouchState::kTouching, true), "");
+    ASSERT_EQ(at(-25_mm, force_N, ContactState::kTouching, true), "");
   }
-  EXPECT_EQ(at(-25_mm, 0.0, TouchState::kFree), "");
+  EXPECT_EQ(at(-25_mm, 0.0, ContactState::kFree), "");
 }
 
 TEST_F(Rules, FSeesAPullAndNoNumber) {
   EXPECT_EQ(right(10_mm, 3.999_mm), "");
-  EXPECT_EQ(at(3.9_mm, -0.01, TouchState::kTouching), "f");
-  EXPECT_EQ(at(3.9_mm, std::numeric_limits<double>::quiet_NaN(), TouchState::kTouching), "f");
+  EXPECT_EQ(at(3.9_mm, -0.01, ContactState::kTouching), "f");
+  EXPECT_EQ(at(3.9_mm, std::numeric_limits<double>::quiet_NaN(), ContactState::kTouching), "f");
 }
 
 TEST_F(RoughRules, HSeesEnergyGiven) {
   EXPECT_EQ(right(10_mm, 1_mm), "");
   for (double z_m = 1_mm; z_m < 4_mm; z_m += 0.1_mm)
-    ASSERT_EQ(at(z_m, 1.2 * kSlope_N_per_m * (4_mm - z_m), TouchState::kTouching), "");
+    ASSERT_EQ(at(z_m, 1.2 * kSlope_N_per_m * (4_mm - z_m), ContactState::kTouching), "");
   EXPECT_EQ(right(4.1_mm), "h");
 }
 

@@ -16,22 +16,23 @@ constexpr double kRadius_m = 4_mm, kNu = 0.45, kShear_Pa = 5000.0 / (2.0 * (1.0 
 
 class Slide : public testing::Test {
  protected:
-  Wrench feel_at(const Vec3& moved_m, double grip_ratio = 0.0) {
+  Wrench render_at(const Vec3& moved_m, double grip_ratio = 0.0) {
     const Tool tool{.position_m = Vec3{0, 0, kRadius_m} + moved_m, .grip_ratio = grip_ratio};
-    contact.touch(tool);
-    return contact.feel(tool, false).wrench;
+    contact.detect_contact(tool);
+    return contact.render_force(tool, false).wrench;
   }
   void press(double from_m, double to_m, double x_m = 0.0) {
-    for (int i = 0; i <= 400; ++i) feel_at({x_m, 0, -from_m - (to_m - from_m) * i / 400.0});
+    for (int i = 0; i <= 400; ++i) render_at({x_m, 0, -from_m - (to_m - from_m) * i / 400.0});
   }
   /// Of a round contact.
   static double stiffness_N_per_m(double radius_m) {
     return 8.0 * kShear_Pa * radius_m / (2.0 - kNu);
   }
-  double dent_m() const { return contact.touches()[0].dent_m; }
+  double dent_m() const { return contact.contacts()[0].dent_m; }
   double along_J() const {
-    const SphereTouch& touch = contact.touches()[0];
-    return 0.5 * norm(tangential(touch.force_N, touch.normal)) * norm(touch.shift_m);
+    const SphereContact& sphere_contact = contact.contacts()[0];
+    return 0.5 * norm(tangential(sphere_contact.force_N, sphere_contact.normal)) *
+           norm(sphere_contact.shift_m);
   }
 
   tests::SoftHalfSpace tissue;
@@ -49,27 +50,27 @@ class Slide : public testing::Test {
 TEST_F(Slide, ATouchingSphereIsHeldBackByTheContactThatItMakes) {
   press(-1_mm, 2_mm);
   const double own = stiffness_N_per_m(std::sqrt(kRadius_m * dent_m()));
-  const double felt_N = -feel_at({0.5_mm, 0, -2_mm}).force_N.x;
-  EXPECT_NEAR(felt_N, own * 0.5_mm, 0.01 * own * 0.5_mm) << "in steps of 1 %";
+  const double rendered_N = -render_at({0.5_mm, 0, -2_mm}).force_N.x;
+  EXPECT_NEAR(rendered_N, own * 0.5_mm, 0.01 * own * 0.5_mm) << "in steps of 1 %";
 }
 
 TEST_F(Slide, ADeeperContactKeepsItsForceAlongTheSurfaceAndLosesEnergy) {
   press(-1_mm, 1_mm);
-  const double before_N = feel_at({0.4_mm, 0, -1_mm}).force_N.x, before_J = along_J();
+  const double before_N = render_at({0.4_mm, 0, -1_mm}).force_N.x, before_J = along_J();
   press(1_mm, 3_mm, 0.4_mm);
-  const double after_N = feel_at({0.4_mm, 0, -3_mm}).force_N.x;
+  const double after_N = render_at({0.4_mm, 0, -3_mm}).force_N.x;
   EXPECT_NEAR(after_N, before_N, 1e-9);
   EXPECT_LT(along_J(), 0.7 * before_J);
-  const double deep_N = feel_at({0.5_mm, 0, -3_mm}).force_N.x;
+  const double deep_N = render_at({0.5_mm, 0, -3_mm}).force_N.x;
   press(3_mm, 2.9_mm, 0.5_mm);
-  EXPECT_NEAR(feel_at({0.5_mm, 0, -2.9_mm}).force_N.x, deep_N, 1e-9) << "a hand trembles";
+  EXPECT_NEAR(render_at({0.5_mm, 0, -2.9_mm}).force_N.x, deep_N, 1e-9) << "a hand trembles";
 }
 
 TEST_F(Slide, HeldTissueTearsWhereItsOwnStiffnessSays) {
   press(-1_mm, 2_mm);
   double x_m = 0.0;
-  for (feel_at({0, 0, -2_mm}, 1.0); contact.touches()[0].state == TouchState::kHeld;
-       feel_at({x_m, 0, -2_mm}, 1.0))
+  for (render_at({0, 0, -2_mm}, 1.0); contact.contacts()[0].state == ContactState::kHeld;
+       render_at({x_m, 0, -2_mm}, 1.0))
     x_m += 0.01_mm;
   EXPECT_NEAR(x_m, 0.3 / stiffness_N_per_m(kRadius_m), 0.1_mm);
 }
@@ -83,12 +84,12 @@ TEST_F(Slide, AStiffnessOfTheSceneCountsBeforeTheTissuesOwn) {
                  .surface = mesh.view(),
                  .tree = tree.view(),
                  .blade = {}});
-  Wrench felt;
+  Wrench rendered;
   for (const Vec3& at : {Vec3{0, 0, kRadius_m}, Vec3{0, 0, 2_mm}, Vec3{0.1_mm, 0, 2_mm}}) {
-    fixed.touch({.position_m = at});
-    felt = fixed.feel({.position_m = at}, false).wrench;
+    fixed.detect_contact({.position_m = at});
+    rendered = fixed.render_force({.position_m = at}, false).wrench;
   }
-  EXPECT_NEAR(felt.force_N.x, -100.0 * 0.1_mm, 1e-9);
+  EXPECT_NEAR(rendered.force_N.x, -100.0 * 0.1_mm, 1e-9);
 }
 
 /// Tissue with a grain: soft along it, stiff across, the grain turning from triangle to triangle.
@@ -125,32 +126,32 @@ class Grain : public Slide {
                     .tree = tree.view(),
                     .blade = {}});
   }
-  static Wrench feel_at(Contact& contact, const Vec3& centre_m) {
-    contact.touch({.position_m = centre_m});
-    return contact.feel({.position_m = centre_m}, false).wrench;
+  static Wrench render_at(Contact& contact, const Vec3& centre_m) {
+    contact.detect_contact({.position_m = centre_m});
+    return contact.render_force({.position_m = centre_m}, false).wrench;
   }
 };
 
 TEST_F(Grain, EachDirectionHasAStiffnessOfItsOwn) {
   Grained law(0.0);
   Contact dragged = contact_with(law, 10.0);
-  feel_at(dragged, {0, 0, kRadius_m + 1_mm});
-  feel_at(dragged, {0, 0, kRadius_m - 3_mm});
-  const Wrench felt = feel_at(dragged, {0.4_mm, 0.3_mm, kRadius_m - 3_mm});
-  EXPECT_NEAR(felt.force_N.x, -0.4_mm / 0.08, 1e-12);
-  EXPECT_NEAR(felt.force_N.y, -0.3_mm / 0.02, 1e-12);
+  render_at(dragged, {0, 0, kRadius_m + 1_mm});
+  render_at(dragged, {0, 0, kRadius_m - 3_mm});
+  const Wrench rendered = render_at(dragged, {0.4_mm, 0.3_mm, kRadius_m - 3_mm});
+  EXPECT_NEAR(rendered.force_N.x, -0.4_mm / 0.08, 1e-12);
+  EXPECT_NEAR(rendered.force_N.y, -0.3_mm / 0.02, 1e-12);
 }
 
 TEST_F(Grain, SteadySlidingIsOpposedAlongItsOwnDirection) {
   Grained law(0.0);
   Contact rubbed = contact_with(law, 0.3);
-  feel_at(rubbed, {0, 0, kRadius_m + 1_mm});
-  Wrench felt;
+  render_at(rubbed, {0, 0, kRadius_m + 1_mm});
+  Wrench rendered;
   for (int i = 0; i <= 3000; ++i)
-    felt = feel_at(rubbed, {0.006_mm * i, 0.008_mm * i, kRadius_m - 3_mm});
-  const double cap_N = 0.3 * felt.force_N.z;
-  EXPECT_NEAR(felt.force_N.x, -0.6 * cap_N, 1e-3 * cap_N);
-  EXPECT_NEAR(felt.force_N.y, -0.8 * cap_N, 1e-3 * cap_N);
+    rendered = render_at(rubbed, {0.006_mm * i, 0.008_mm * i, kRadius_m - 3_mm});
+  const double cap_N = 0.3 * rendered.force_N.z;
+  EXPECT_NEAR(rendered.force_N.x, -0.6 * cap_N, 1e-3 * cap_N);
+  EXPECT_NEAR(rendered.force_N.y, -0.8 * cap_N, 1e-3 * cap_N);
 }
 
 TEST_F(Grain, FromPlaceToPlaceItGivesBackNoMoreThanItTook) {
@@ -159,16 +160,16 @@ TEST_F(Grain, FromPlaceToPlaceItGivesBackNoMoreThanItTook) {
     Contact moved = contact_with(law, 1.0 + 0.3 * k);
     double work_J = 0.0;
     Vec3 at_m{0, 0, kRadius_m + 1_mm};
-    Wrench before = feel_at(moved, at_m);
+    Wrench before = render_at(moved, at_m);
     for (int i = 1; i <= 8000; ++i) {
       const double p = 2.0 * std::numbers::pi * i / 8000.0;
       const Vec3 next_m{(6_mm + 0.3_mm * k) * std::sin(2 * p), 8_mm * std::sin(p),
                         kRadius_m + 1_mm - 5_mm * (1 - std::cos(p)) / 2};
-      const Wrench felt = feel_at(moved, next_m);
-      work_J += 0.5 * dot(felt.force_N + before.force_N, next_m - at_m);
+      const Wrench rendered = render_at(moved, next_m);
+      work_J += 0.5 * dot(rendered.force_N + before.force_N, next_m - at_m);
       at_m = next_m;
-      before = felt;
-      ASSERT_LE(work_J + moved.touches()[0].energy_J, 2e-8) << k << ", tick " << i;
+      before = rendered;
+      ASSERT_LE(work_J + moved.contacts()[0].energy_J, 2e-8) << k << ", tick " << i;
     }
     EXPECT_LT(work_J, -1e-6) << "rubbing costs energy";
   }

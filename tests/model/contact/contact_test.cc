@@ -14,23 +14,23 @@
 namespace tact::model::contact::contact_test {
 
 using contact_bench::Bench;
-using contact_bench::feel_at;
 using contact_bench::glide;
 using contact_bench::kRadius_m;
 using contact_bench::plate_bench;
+using contact_bench::render_at;
 
 TEST(Contact, IsSilentAboveTheSurface) {
   Bench bench = plate_bench();
   Contact contact = bench.contact();
-  EXPECT_EQ(feel_at(contact, {0, 0, kRadius_m + 1_mm}), Wrench{});
-  EXPECT_EQ(contact.touches()[0].state, TouchState::kFree);
+  EXPECT_EQ(render_at(contact, {0, 0, kRadius_m + 1_mm}), Wrench{});
+  EXPECT_EQ(contact.contacts()[0].state, ContactState::kFree);
 }
 
 TEST(Contact, PressesBackAlongTheNormalWithTheForceOfTheLaw) {
   Bench bench = plate_bench();
   Contact contact = bench.contact();
   glide(contact, {0, 0, kRadius_m + 1_mm}, {0, 0, kRadius_m - 3_mm});
-  const Wrench w = feel_at(contact, {0, 0, kRadius_m - 3_mm});
+  const Wrench w = render_at(contact, {0, 0, kRadius_m - 3_mm});
   EXPECT_NEAR(w.force_N.z, bench.law.respond(3_mm).force_N, 1e-12);
   EXPECT_NEAR(std::hypot(w.force_N.x, w.force_N.y), 0.0, 1e-12);
 }
@@ -41,7 +41,7 @@ TEST(Contact, LeverArmsOfTheSpheresGiveTheTorque) {
   Contact contact = bench.contact();
   const Vec3 deep{0, 0, kRadius_m - 2_mm};
   glide(contact, deep + Vec3{0, 0, 5_mm}, deep);
-  const Wrench w = feel_at(contact, deep);
+  const Wrench w = render_at(contact, deep);
   const double f0 = bench.law.respond(2_mm).force_N, f1 = bench.law.respond(3_mm).force_N;
   EXPECT_NEAR(w.force_N.z, f0 + f1, 1e-12);      // forces add up
   EXPECT_NEAR(w.torque_Nm.x, 8_mm * f1, 1e-12);  // r x F about the tool's origin
@@ -58,9 +58,9 @@ TEST(Contact, NeverPullsOnAToolThatDoesNotHold) {
   for (int i = 0; i < 20000; ++i) {
     p += Vec3{nudge(random), nudge(random), nudge(random)};
     if (norm(p) < 40_mm || norm(p) > 60_mm) p = 53_mm * normalized(p);
-    const Wrench w = feel_at(contact, p);
-    EXPECT_GE(dot(w.force_N, contact.touches()[0].normal), -1e-12);
-    if (contact.touches()[0].state == TouchState::kTouching) ++pressing;
+    const Wrench w = render_at(contact, p);
+    EXPECT_GE(dot(w.force_N, contact.contacts()[0].normal), -1e-12);
+    if (contact.contacts()[0].state == ContactState::kTouching) ++pressing;
   }
   EXPECT_GT(pressing, 1000) << "most of the walk is in the tissue";
 }
@@ -73,13 +73,13 @@ TEST(Contact, ForceIsTheSlopeOfItsPotential) {
     const auto energy_at = [&](const Vec3& q) {
       Contact contact = bench.contact();
       glide(contact, {2_mm, 3_mm, 56_mm}, p);
-      feel_at(contact, p, grip);
-      feel_at(contact, q, grip);
-      return contact.touches()[0].energy_J;
+      render_at(contact, p, grip);
+      render_at(contact, q, grip);
+      return contact.contacts()[0].energy_J;
     };
     Contact contact = bench.contact();
     glide(contact, {2_mm, 3_mm, 56_mm}, p);
-    const Wrench w = feel_at(contact, p, grip);
+    const Wrench w = render_at(contact, p, grip);
     const auto slope = [&](const Vec3& e) {
       return -(energy_at(p + h * e) - energy_at(p - h * e)) / (2 * h);
     };
@@ -98,16 +98,16 @@ TEST(Contact, TakesEnergyFromEveryClosedStrokeThatRubs) {
     Contact contact = bench.contact();
     const double across_m = size(random), deep_m = size(random);
     Vec3 before{0, 0, 56_mm};
-    Wrench felt_before = feel_at(contact, before);
+    Wrench rendered_before = render_at(contact, before);
     double work_on_hand_J = 0.0;
     for (int i = 1; i <= 4000; ++i) {
       const double phase = 2.0 * std::numbers::pi * i / 4000;
       const Vec3 p{across_m * std::sin(2 * phase), across_m * std::sin(phase),
                    56_mm - deep_m * (1 - std::cos(phase)) / 1.5};
-      const Wrench felt = feel_at(contact, p);
-      work_on_hand_J += 0.5 * dot(felt.force_N + felt_before.force_N, p - before);
+      const Wrench rendered = render_at(contact, p);
+      work_on_hand_J += 0.5 * dot(rendered.force_N + rendered_before.force_N, p - before);
       before = p;
-      felt_before = felt;
+      rendered_before = rendered;
     }
     EXPECT_LE(work_on_hand_J, 1e-9) << "loop " << loop;
     touched = touched || work_on_hand_J < -1e-6;
@@ -120,7 +120,7 @@ TEST(Contact, SlidingFrictionStaysInsideItsCone) {
   Contact contact = bench.contact();
   glide(contact, {0, 0, 6_mm}, {0, 0, 0});
   glide(contact, {0, 0, 0}, {20_mm, 0, 0});
-  const Wrench w = feel_at(contact, {20_mm, 0, 0});
+  const Wrench w = render_at(contact, {20_mm, 0, 0});
   EXPECT_NEAR(w.force_N.x, -0.4 * w.force_N.z, 1e-9) << "slides at the Coulomb cap, against motion";
   EXPECT_GT(w.force_N.z, 0.1);
 }
@@ -131,21 +131,22 @@ TEST(Contact, BeyondTheRimOfAnOpenSurfaceNothingPullsTheToolBack) {
   glide(contact, {45_mm, 0, 6_mm}, {45_mm, 0, 1_mm});
   glide(contact, {45_mm, 0, 1_mm}, {53_mm, 0, -3_mm});
   glide(contact, {53_mm, 0, -3_mm}, {60_mm, 0, -10_mm});
-  EXPECT_EQ(feel_at(contact, {60_mm, 0, -10_mm}), Wrench{});
+  EXPECT_EQ(render_at(contact, {60_mm, 0, -10_mm}), Wrench{});
 }
 
 TEST(Contact, FoundInsideFeelsNothingUntilOutsideOnce) {
   Bench bench = plate_bench();
   Contact contact = bench.contact();
-  EXPECT_EQ(feel_at(contact, {0, 0, -8_mm}), Wrench{});
-  EXPECT_EQ(contact.touches()[0].state, TouchState::kInside);
+  EXPECT_EQ(render_at(contact, {0, 0, -8_mm}), Wrench{});
+  EXPECT_EQ(contact.contacts()[0].state, ContactState::kInside);
   glide(contact, {0, 0, -8_mm}, {0, 0, 3_mm});
   glide(contact, {0, 0, 3_mm}, {0, 0, -2_mm});
-  EXPECT_EQ(feel_at(contact, {0, 0, -2.5_mm}), Wrench{}) << "its lower end has never been out";
+  EXPECT_EQ(render_at(contact, {0, 0, -2.5_mm}), Wrench{}) << "its lower end has never been out";
   glide(contact, {0, 0, -2.5_mm}, {0, 0, 4.1_mm});
-  EXPECT_EQ(contact.touches()[0].state, TouchState::kFree);
+  EXPECT_EQ(contact.contacts()[0].state, ContactState::kFree);
   glide(contact, {0, 0, 4.1_mm}, {0, 0, 3.5_mm});
-  EXPECT_NEAR(feel_at(contact, {0, 0, 3.5_mm}).force_N.z, bench.law.respond(0.5_mm).force_N, 1e-9);
+  EXPECT_NEAR(render_at(contact, {0, 0, 3.5_mm}).force_N.z, bench.law.respond(0.5_mm).force_N,
+              1e-9);
 }
 
 TEST(Contact, PausedToolIsFollowedAlongItsWay) {
@@ -155,12 +156,12 @@ TEST(Contact, PausedToolIsFollowedAlongItsWay) {
     glide(steady, {0, 0, 6_mm}, {0, 0, 2_mm}), glide(paused, {0, 0, 6_mm}, {0, 0, 2_mm});
     const Vec3 from_m{0, 0, 2_mm}, to_m{1.5_mm, 0.5_mm, -1_mm};
     for (std::uint32_t k = 1; k <= periods; ++k)
-      feel_at(steady, from_m + (static_cast<double>(k) / periods) * (to_m - from_m));
-    paused.touch({.position_m = to_m}, periods);
-    const ContactResponse felt = paused.feel({.position_m = to_m}, true);
-    EXPECT_FALSE(felt.is_lost);
-    EXPECT_NEAR(norm(felt.wrench.force_N - feel_at(steady, to_m).force_N), 0.0, 1e-9);
-    EXPECT_GT(norm(tangential(felt.wrench.force_N, {0, 0, 1})), 1e-3) << "friction goes on";
+      render_at(steady, from_m + (static_cast<double>(k) / periods) * (to_m - from_m));
+    paused.detect_contact({.position_m = to_m}, periods);
+    const ContactResponse rendered = paused.render_force({.position_m = to_m}, true);
+    EXPECT_FALSE(rendered.is_lost);
+    EXPECT_NEAR(norm(rendered.wrench.force_N - render_at(steady, to_m).force_N), 0.0, 1e-9);
+    EXPECT_GT(norm(tangential(rendered.wrench.force_N, {0, 0, 1})), 1e-3) << "friction goes on";
   }
 }
 
@@ -168,11 +169,11 @@ TEST(Contact, HeldTissueIsHeldOverAPause) {
   Bench bench = plate_bench();
   Contact contact = bench.contact();
   glide(contact, {0, 0, 6_mm}, {0, 0, 2_mm});
-  feel_at(contact, {0, 0, 2_mm}, 1.0);
+  render_at(contact, {0, 0, 2_mm}, 1.0);
   const Tool tool{.position_m = {0, 0, 5_mm}, .grip_ratio = 1.0};
-  contact.touch(tool, 10);
-  EXPECT_LT(contact.feel(tool, true).wrench.force_N.z, 0.0) << "it pulls";
-  EXPECT_EQ(contact.touches()[0].state, TouchState::kHeld);
+  contact.detect_contact(tool, 10);
+  EXPECT_LT(contact.render_force(tool, true).wrench.force_N.z, 0.0) << "it pulls";
+  EXPECT_EQ(contact.contacts()[0].state, ContactState::kHeld);
 }
 
 TEST(Contact, ToolThatMovedTooFarUnseenIsLostAndFoundAgain) {
@@ -180,16 +181,16 @@ TEST(Contact, ToolThatMovedTooFarUnseenIsLostAndFoundAgain) {
   Contact contact = bench.contact();
   glide(contact, {0, 0, 6_mm}, {0, 0, 2_mm});
   const Tool inside{.position_m = {0, 0, -3_mm}}, outside{.position_m = {0, 0, 9_mm}};
-  contact.touch(inside, 1, 4_mm);
-  ContactResponse felt = contact.feel(inside, true);
-  EXPECT_TRUE(felt.is_lost);
-  EXPECT_TRUE(felt.is_inside);
-  EXPECT_EQ(felt.wrench, Wrench{});
-  contact.touch(inside, 1, 4_mm);
-  EXPECT_FALSE(contact.feel(inside, true).is_lost) << "told once";
-  contact.touch(outside, 1, 4_mm);
-  EXPECT_TRUE(contact.feel(outside, true).is_lost);
-  EXPECT_EQ(contact.touches()[0].state, TouchState::kFree);
+  contact.detect_contact(inside, 1, 4_mm);
+  ContactResponse rendered = contact.render_force(inside, true);
+  EXPECT_TRUE(rendered.is_lost);
+  EXPECT_TRUE(rendered.is_inside);
+  EXPECT_EQ(rendered.wrench, Wrench{});
+  contact.detect_contact(inside, 1, 4_mm);
+  EXPECT_FALSE(contact.render_force(inside, true).is_lost) << "told once";
+  contact.detect_contact(outside, 1, 4_mm);
+  EXPECT_TRUE(contact.render_force(outside, true).is_lost);
+  EXPECT_EQ(contact.contacts()[0].state, ContactState::kFree);
 }
 
 TEST(Contact, PushedThroughAFlapIsHeldBackWithinTheLawAndThenLetGo) {
@@ -197,12 +198,12 @@ TEST(Contact, PushedThroughAFlapIsHeldBackWithinTheLawAndThenLetGo) {
       {.length_m = 100_mm, .width_m = 80_mm, .thickness_m = 4_mm, .edge_m = 5_mm}));
   Contact contact = bench.contact();
   glide(contact, {0, 0, 8_mm}, {0, 0, -5_mm});
-  EXPECT_GT(feel_at(contact, {0, 0, -5_mm}).force_N.z, 0.1) << "the flap is pushed ahead";
+  EXPECT_GT(render_at(contact, {0, 0, -5_mm}).force_N.z, 0.1) << "the flap is pushed ahead";
   glide(contact, {0, 0, -5_mm}, {0, 0, -60_mm});
-  EXPECT_EQ(feel_at(contact, {0, 0, -60_mm}), Wrench{});
-  EXPECT_EQ(contact.touches()[0].state, TouchState::kFree);
+  EXPECT_EQ(render_at(contact, {0, 0, -60_mm}), Wrench{});
+  EXPECT_EQ(contact.contacts()[0].state, ContactState::kFree);
   glide(contact, {0, 0, -60_mm}, {0, 0, -5_mm});
-  EXPECT_LT(feel_at(contact, {0, 0, -5_mm}).force_N.z, -1e-3)
+  EXPECT_LT(render_at(contact, {0, 0, -5_mm}).force_N.z, -1e-3)
       << "from below it is met as from above";
 }
 
@@ -210,8 +211,8 @@ TEST(Contact, NaNFromTheDeviceGivesNoForceAndForgetsTheSite) {
   Bench bench = plate_bench();
   Contact contact = bench.contact();
   glide(contact, {0, 0, 6_mm}, {0, 0, 2_mm});
-  EXPECT_EQ(feel_at(contact, {std::nan(""), 0, 2_mm}), Wrench{});
-  EXPECT_EQ(feel_at(contact, {0, 0, 2_mm}), Wrench{}) << "back inside: depth comes for free";
+  EXPECT_EQ(render_at(contact, {std::nan(""), 0, 2_mm}), Wrench{});
+  EXPECT_EQ(render_at(contact, {0, 0, 2_mm}), Wrench{}) << "back inside: depth comes for free";
 }
 
 TEST(Contact, LeavesTheHeapAlone) {

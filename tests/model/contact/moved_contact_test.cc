@@ -71,15 +71,15 @@ struct Body {
 
 Body rigid_plate() { return {tests::make_plate(100_mm, 20), {}, 0.0F}; }
 
-Wrench feel(Contact& contact, const Tool& tool) {
-  contact.touch(tool);
-  return contact.feel(tool, false).wrench;
+Wrench render_force(Contact& contact, const Tool& tool) {
+  contact.detect_contact(tool);
+  return contact.render_force(tool, false).wrench;
 }
 Wrench glide(Contact& contact, const Vec3& from_m, const Vec3& to_m, double grip_ratio = 0.0) {
   Wrench out;
   for (int i = 0; i <= 200; ++i)
-    out = feel(contact,
-               {.position_m = from_m + (i / 200.0) * (to_m - from_m), .grip_ratio = grip_ratio});
+    out = render_force(
+        contact, {.position_m = from_m + (i / 200.0) * (to_m - from_m), .grip_ratio = grip_ratio});
   return out;
 }
 /// From 5 mm over the middle of a plate.
@@ -126,12 +126,13 @@ TEST(MovedContact, HoldingKeepsTheForceAndPullsBack) {
   pressed(contact, 2_mm);
   const Vec3 before_N = glide(contact, at_m, at_m + Vec3{0.5_mm, 0, 0}).force_N;
   const Tool held{.position_m = at_m + Vec3{0.5_mm, 0, 0}, .grip_ratio = 1.0};
-  feel(contact, held);  // from the next tick on it is held
-  const Vec3 after_N = feel(contact, held).force_N;
+  render_force(contact, held);  // from the next tick on it is held
+  const Vec3 after_N = render_force(contact, held).force_N;
   EXPECT_LT(norm(after_N - before_N), 1e-4);
   const Vec3 up_m = at_m + Vec3{0.5_mm, 0, 4_mm};
   EXPECT_LT(glide(contact, at_m + Vec3{0.5_mm, 0, 0}, up_m, 1.0).force_N.z, -0.01) << "pulls back";
-  EXPECT_EQ(norm(feel(contact, {.position_m = up_m}).force_N), 0.0) << "let go, it does not";
+  EXPECT_EQ(norm(render_force(contact, {.position_m = up_m}).force_N), 0.0)
+      << "let go, it does not";
 }
 
 // Dragged 12 mm towards where the organ is stiffer.
@@ -140,14 +141,14 @@ TEST(MovedContact, LettingGoStoresNoMoreThanWasHeld) {
   Contact contact(body.scene(0.4));
   pressed(contact, 3_mm);
   const Vec3 at_m{1_mm, 2_mm, kRadius_m - 3_mm}, there_m = at_m + Vec3{-12_mm, 0, -2_mm};
-  feel(contact, {.position_m = at_m, .grip_ratio = 1.0});
+  render_force(contact, {.position_m = at_m, .grip_ratio = 1.0});
   glide(contact, at_m, there_m, 1.0);
-  ASSERT_EQ(contact.touches()[0].state, TouchState::kHeld);
-  const double held_J = contact.touches()[0].energy_J;
-  feel(contact, {.position_m = there_m});
-  ASSERT_EQ(contact.touches()[0].state, TouchState::kTouching);
-  EXPECT_LE(contact.touches()[0].energy_J, held_J);
-  EXPECT_GT(contact.touches()[0].energy_J, 0.0);
+  ASSERT_EQ(contact.contacts()[0].state, ContactState::kHeld);
+  const double held_J = contact.contacts()[0].energy_J;
+  render_force(contact, {.position_m = there_m});
+  ASSERT_EQ(contact.contacts()[0].state, ContactState::kTouching);
+  EXPECT_LE(contact.contacts()[0].energy_J, held_J);
+  EXPECT_GT(contact.contacts()[0].energy_J, 0.0);
 }
 
 TEST(MovedContact, BeginsWithoutTheDepthThatNoWayExplains) {
@@ -180,7 +181,7 @@ TEST(MovedContact, HeldDepthRelaxesAsTheMaterialDoes) {
     if (relaxes) scene.law = &field;
     Contact contact(scene);
     Wrench last = pressed(contact, 4_mm);
-    for (int i = 0; i < 1000; ++i) last = feel(contact, {.position_m = {1_mm, 2_mm, 0}});
+    for (int i = 0; i < 1000; ++i) last = render_force(contact, {.position_m = {1_mm, 2_mm, 0}});
     return last.force_N.z;
   };
   EXPECT_NEAR(held_N(true) / held_N(false), 0.5, 0.005);
@@ -193,9 +194,9 @@ TEST(MovedContact, DoesNotAllocate) {
   const tests::NoAlloc guard;
   for (int i = 0; i <= 500; ++i) {
     const double t = i / 500.0;
-    feel(contact, {.position_m = {5_mm * t, 3_mm * t, 50_mm - 12_mm * t},
-                   .orientation = quat_from_rotation_vector({0.2 * t, 0, 0.1 * t}),
-                   .grip_ratio = i > 400 && i < 490 ? 1.0 : 0.0});
+    render_force(contact, {.position_m = {5_mm * t, 3_mm * t, 50_mm - 12_mm * t},
+                           .orientation = quat_from_rotation_vector({0.2 * t, 0, 0.1 * t}),
+                           .grip_ratio = i > 400 && i < 490 ? 1.0 : 0.0});
   }
   EXPECT_EQ(guard.calls(), 0U);
   EXPECT_GT(norm(contact.moved().organ().sphere[0].slope), 0.0) << "it has leaned";

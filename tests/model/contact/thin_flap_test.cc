@@ -13,18 +13,18 @@ constexpr double kRadius_m = 4_mm, kStep_m = 0.05_mm;
 /// The force at the end of a straight way along z, and the largest on it.
 struct Ride {
   double last_N = 0.0, most_N = 0.0;
-  TouchState state = TouchState::kFree;
+  ContactState state = ContactState::kFree;
 };
 Ride ride(Contact& contact, double from_m, double to_m) {
   Ride out;
   const auto steps = static_cast<int>(std::abs(to_m - from_m) / kStep_m + 0.5);
   for (int i = 0; i <= steps; ++i) {
     const Tool tool{.position_m = {0.7_mm, 0.4_mm, from_m + (to_m - from_m) * i / steps}};
-    contact.touch(tool);
-    out.last_N = contact.feel(tool, false).wrench.force_N.z;
+    contact.detect_contact(tool);
+    out.last_N = contact.render_force(tool, false).wrench.force_N.z;
     out.most_N = std::max(out.most_N, std::abs(out.last_N));
   }
-  out.state = contact.touches()[0].state;
+  out.state = contact.contacts()[0].state;
   return out;
 }
 
@@ -39,8 +39,8 @@ void expect_both_sides_alike(const mesh::SurfaceMesh& mesh, double top_m, double
               0.02 * want_N);
   EXPECT_EQ(ride(above, top_m + kRadius_m - 5_mm, top_m + 40_mm).last_N, 0.0);
   EXPECT_EQ(ride(below, bottom_m - kRadius_m + 5_mm, bottom_m - 40_mm).last_N, 0.0);
-  EXPECT_EQ(above.touches()[0].state, TouchState::kFree);
-  EXPECT_EQ(below.touches()[0].state, TouchState::kFree);
+  EXPECT_EQ(above.contacts()[0].state, ContactState::kFree);
+  EXPECT_EQ(below.contacts()[0].state, ContactState::kFree);
 }
 
 class ThinFlap : public ::testing::TestWithParam<double> {

@@ -46,14 +46,14 @@ std::vector<ProbeSphere> jaws(std::size_t count) {
   return all;
 }
 
-Wrench feel_at(Contact& contact, const Tool& tool) {
-  contact.touch(tool);
-  return contact.feel(tool, false).wrench;
+Wrench render_at(Contact& contact, const Tool& tool) {
+  contact.detect_contact(tool);
+  return contact.render_force(tool, false).wrench;
 }
 
 double energy_J(const Contact& contact) {
   double sum = 0.0;
-  for (const SphereTouch& touch : contact.touches()) sum += touch.energy_J;
+  for (const SphereContact& sphere_contact : contact.contacts()) sum += sphere_contact.energy_J;
   return sum;
 }
 
@@ -87,17 +87,18 @@ Stroke random_stroke(std::mt19937& random, double grips) {
 /// Work that the tool does on the hand, J, beside what is stored at the end; < 0: the hand gave it.
 double given_J(Contact& contact, const Stroke& stroke, int ticks) {
   Tool before = stroke.at(0.0);
-  Wrench felt_before = feel_at(contact, before);
+  Wrench rendered_before = render_at(contact, before);
   double work_J = 0.0;
   for (int i = 1; i <= ticks; ++i) {
     const Tool tool = stroke.at(static_cast<double>(i) / ticks);
-    const Wrench felt = feel_at(contact, tool);
+    const Wrench rendered = render_at(contact, tool);
     const double turned_rad =
         2.0 * (std::asin(tool.orientation.x) - std::asin(before.orientation.x));
-    work_J += 0.5 * dot(felt.force_N + felt_before.force_N, tool.position_m - before.position_m) +
-              0.5 * (felt.torque_Nm.x + felt_before.torque_Nm.x) * turned_rad;
+    work_J +=
+        0.5 * dot(rendered.force_N + rendered_before.force_N, tool.position_m - before.position_m) +
+        0.5 * (rendered.torque_Nm.x + rendered_before.torque_Nm.x) * turned_rad;
     before = tool;
-    felt_before = felt;
+    rendered_before = rendered;
   }
   return work_J + energy_J(contact);
 }
@@ -163,17 +164,17 @@ TEST(WholeTool, LettingGoNeverAddsEnergy) {
     for (int i = 0; i <= 1000; ++i) {
       Tool tool = stroke.at(i / 1000.0);
       tool.position_m.z += 50_mm;
-      const bool was_held = contact.touches()[0].state == TouchState::kHeld;
+      const bool was_held = contact.contacts()[0].state == ContactState::kHeld;
       // Opened where it stands: only the state changes.
       if (was_held && tool.grip_ratio == 0.0) {
         Tool still = stroke.at((i - 1) / 1000.0);
         still.position_m.z += 50_mm;
         still.grip_ratio = 0.0;
-        feel_at(contact, still);
+        render_at(contact, still);
         EXPECT_LE(energy_J(contact), before_J + 1e-12) << "stroke " << k;
         break;
       }
-      feel_at(contact, tool);
+      render_at(contact, tool);
       before_J = energy_J(contact);
     }
   }
@@ -187,10 +188,10 @@ TEST(WholeTool, SidewaysThePairIsSofterThanTheSumOfEach) {
     Tool tool{.position_m = {0, 0, kRadius_m + 1_mm}};
     for (int i = 0; i <= 100; ++i) {
       tool.position_m.z = kRadius_m + 1_mm - 5_mm * i / 100;
-      feel_at(contact, tool);
+      render_at(contact, tool);
     }
     tool.position_m.x += 0.5_mm;
-    return -feel_at(contact, tool).force_N.x / 0.5_mm;
+    return -render_at(contact, tool).force_N.x / 0.5_mm;
   };
   // MC-4 by hand: each jaw carries t / (1 / k_t + C)
   const double c = 1.0 / (std::numbers::pi * Bench(jaws(2)).tissue.tip.contact_modulus_Pa() * 8_mm);
@@ -205,10 +206,11 @@ TEST(WholeTool, FrictionOfEachJawStaysInItsCone) {
     Contact contact = bench.contact();
     const Stroke stroke = random_stroke(random, 0.0);
     for (int i = 0; i <= 2000; ++i) {
-      feel_at(contact, stroke.at(i / 2000.0));
-      for (const SphereTouch& touch : contact.touches()) {
-        const double normal_N = dot(touch.force_N, touch.normal);
-        ASSERT_LE(norm(tangential(touch.force_N, touch.normal)), 0.4 * normal_N * 1.02 + 1e-6);
+      render_at(contact, stroke.at(i / 2000.0));
+      for (const SphereContact& sphere_contact : contact.contacts()) {
+        const double normal_N = dot(sphere_contact.force_N, sphere_contact.normal);
+        ASSERT_LE(norm(tangential(sphere_contact.force_N, sphere_contact.normal)),
+                  0.4 * normal_N * 1.02 + 1e-6);
       }
     }
   }
@@ -241,7 +243,7 @@ TEST(WholeTool, RepeatsAStrokeToTheBitAndLeavesTheHeapAlone) {
   Contact contact = bench.contact();
   const tests::NoAlloc guard;
   const double first_J = given_J(contact, stroke, 1000);
-  feel_at(contact, stroke.at(0.5));
+  render_at(contact, stroke.at(0.5));
   contact.reset();
   EXPECT_EQ(given_J(contact, stroke, 1000), first_J);
   EXPECT_EQ(guard.calls(), 0u);

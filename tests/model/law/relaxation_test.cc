@@ -60,8 +60,9 @@ class MixedLaw final : public Law {
 };
 
 /// A law as the hand feels it, with memory of some terms.
-struct Felt {
-  explicit Felt(const Law& law, bool is_held = false, const Relaxation& relaxation = two_terms())
+struct Rendered {
+  explicit Rendered(const Law& law, bool is_held = false,
+                    const Relaxation& relaxation = two_terms())
       : curve(&law),
         field({.curves = {&curve, 1},
                .coordinate = {},
@@ -83,11 +84,11 @@ struct Felt {
 // The first tick is a ramp of one tick, not a step: the terms fade by half a tick meanwhile.
 void expect_fade(const Law& law, double fast_s, double slow_s, double tolerance) {
   const std::vector<PronyTerm> terms{{0.3, fast_s}, {0.2, slow_s}};
-  Felt felt(law, false, *make_relaxation(terms, kTick_s));
-  const double first_N = felt.force_N(0.01);
+  Rendered rendered(law, false, *make_relaxation(terms, kTick_s));
+  const double first_N = rendered.force_N(0.01);
   double t_s = 0.0;
   for (int i = 1; i <= 20'000; ++i) {
-    const double now_N = felt.force_N(0.01);
+    const double now_N = rendered.force_N(0.01);
     t_s += kTick_s;
     const double g = 0.5 + 0.3 * std::exp(-t_s / fast_s) + 0.2 * std::exp(-t_s / slow_s);
     ASSERT_NEAR(now_N / first_N, g, tolerance) << "after " << t_s << " s";
@@ -105,22 +106,22 @@ TEST(Relaxation, FadesAtHeldDepthExactlyAsItsTermsSayWhateverTheLaw) {
 TEST(Relaxation, HeldTermsFadeToATenthOfAPercentAfterTheFirstTick) {
   const std::vector<PronyTerm> terms{{.share = 1.0, .time_s = 0.05}};
   const MixedLaw law;
-  Felt felt(law, false, *make_relaxation(terms, kTick_s));
-  const double first_N = felt.force_N(0.01);
+  Rendered rendered(law, false, *make_relaxation(terms, kTick_s));
+  const double first_N = rendered.force_N(0.01);
   for (int i = 1; i <= 500; ++i)
-    ASSERT_NEAR(felt.force_N(0.01) / first_N, std::exp(-i * kTick_s / 0.05), 1e-3);
+    ASSERT_NEAR(rendered.force_N(0.01) / first_N, std::exp(-i * kTick_s / 0.05), 1e-3);
 }
 
 TEST(Relaxation, ARampAsLongAsItsTimeIsNearTheConvolutionOfLeeAndRadok) {
   // F(t) = integral of G(t - s) dF_0(d(s)), F_0 ~ d^1.5, d = v s: RX-5.
   const std::vector<PronyTerm> terms{{.share = 0.5, .time_s = 1.0}};
   const PowerLaw law(1.5);
-  Felt felt(law, false, *make_relaxation(terms, kTick_s));
+  Rendered rendered(law, false, *make_relaxation(terms, kTick_s));
   double force_N = 0.0, convolved = 0.0;
   for (int i = 0; i < 1000; ++i) {
     const double s = (i + 0.5) * kTick_s;
     convolved += 1.5 * std::sqrt(s) * std::exp(s - 1.0) * kTick_s;
-    force_N = felt.force_N(0.01 * (i + 1) * kTick_s);
+    force_N = rendered.force_N(0.01 * (i + 1) * kTick_s);
   }
   EXPECT_NEAR(convolved, 0.6929, 1e-4);
   const double right_N = law.respond(0.01).force_N * (0.5 + 0.5 * convolved);
@@ -155,7 +156,7 @@ TEST(Relaxation, IsExactInTheTickForADepthThatMovesEvenly) {
 
 // Work of the hand along a random path of 10 mm, by the trapezoid rule over fine ticks.
 void expect_passive(const Law& law, bool held, unsigned seed) {
-  Felt felt(law, held);
+  Rendered rendered(law, held);
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> target_m(held ? -0.01 : 0.0, 0.01);
   std::uniform_int_distribution<int> length(5, 2000);
@@ -165,12 +166,12 @@ void expect_passive(const Law& law, bool held, unsigned seed) {
     const int ticks = length(random);
     const double step_m = (to_m - depth_m) / ticks;
     for (int i = 0; i < ticks; ++i) {
-      const double now_N = felt.force_N(depth_m + step_m);
+      const double now_N = rendered.force_N(depth_m + step_m);
       work_J += 0.5 * (force_N + now_N) * step_m;
       depth_m += step_m;
       force_N = now_N;
       most_J = std::max(most_J, work_J);
-      ASSERT_GE(work_J, felt.response.energy_J - 1e-4 * most_J) << "more stored than put in";
+      ASSERT_GE(work_J, rendered.response.energy_J - 1e-4 * most_J) << "more stored than put in";
       if (!held) ASSERT_GE(force_N, -1e-12) << "pressed tissue pulls";
     }
   }
@@ -212,7 +213,7 @@ TEST(Relaxation, NeverReturnsMoreThanItGotBeyondTheRangeOfALaw) {
 
 TEST(Relaxation, DoesNotPullOnAToolThatDoesNotHold) {
   const PowerLaw law(1.5);
-  Felt touching(law), held(law, true);
+  Rendered touching(law), held(law, true);
   for (int i = 0; i < 5000; ++i) touching.force_N(8e-3), held.force_N(8e-3);
   double least_touching_N = 1.0, least_held_N = 1.0;
   for (int i = 8; i >= 1; --i) {  // faster than the tissue follows
@@ -225,16 +226,16 @@ TEST(Relaxation, DoesNotPullOnAToolThatDoesNotHold) {
 
 TEST(Relaxation, ForgetsWhenTheToolLeaves) {
   const PowerLaw law(1.0);
-  Felt felt(law);
-  const double first_N = felt.force_N(5e-3);
-  for (int i = 0; i < 3000; ++i) felt.force_N(5e-3);
-  felt.field.leave(0);
-  EXPECT_NEAR(felt.force_N(5e-3), first_N, 1e-12);
+  Rendered rendered(law);
+  const double first_N = rendered.force_N(5e-3);
+  for (int i = 0; i < 3000; ++i) rendered.force_N(5e-3);
+  rendered.field.leave(0);
+  EXPECT_NEAR(rendered.force_N(5e-3), first_N, 1e-12);
 }
 
 TEST(Relaxation, AskedTwiceInATickRemembersTheLastAnswerOnly) {
   const PowerLaw law(1.5);
-  Felt once(law), twice(law);
+  Rendered once(law), twice(law);
   for (int i = 1; i <= 10; ++i) {
     twice.field.respond({.dent_m = 9e-3});
     EXPECT_EQ(once.force_N(i * 1e-3), twice.force_N(i * 1e-3));
@@ -268,9 +269,9 @@ TEST(Relaxation, SharesThatAddUpToOneButForRoundingLeaveNothing) {
 
 TEST(Relaxation, DoesNotTouchTheHeap) {
   const PowerLaw law(1.5);
-  Felt felt(law);
+  Rendered rendered(law);
   const tests::NoAlloc guard;
-  for (int i = 0; i < 100; ++i) felt.force_N(i * 1e-4);
+  for (int i = 0; i < 100; ++i) rendered.force_N(i * 1e-4);
   EXPECT_EQ(guard.calls(), 0u);
 }
 

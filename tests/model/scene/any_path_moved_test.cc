@@ -34,10 +34,10 @@ class SphereRules {
       : body_(body), radius_m_(radius_m), is_alone_(is_alone) {}
 
   /// The rule that the tick breaks; 0: none.
-  char check(const Vec3& centre_m, const contact::SphereTouch& touch, std::uint32_t periods,
-             bool is_saturated, bool is_lost) {
-    if (!is_finite(touch.force_N)) return 'f';
-    const double force_N = norm(touch.force_N);
+  char check(const Vec3& centre_m, const contact::SphereContact& sphere_contact,
+             std::uint32_t periods, bool is_saturated, bool is_lost) {
+    if (!is_finite(sphere_contact.force_N)) return 'f';
+    const double force_N = norm(sphere_contact.force_N);
     const double near_m = body_.nearest(centre_m, kFar_m).distance_m;
     const bool is_in = body_.is_near(centre_m) && body_.winding(centre_m) > 0.5;
     const bool is_outside = !is_in && near_m > radius_m_ + 1e-9;
@@ -52,17 +52,20 @@ class SphereRules {
     if (far_s_ > kLetGo_s && force_N > 0.0) broken = 'c';
     // Alone, deeper with its centre inside: force within three ticks.
     if (is_outside && force_N == 0.0) entered_ = true;
-    if (is_lost || is_saturated || touch.state == contact::TouchState::kInside) entered_ = false;
+    if (is_lost || is_saturated || sphere_contact.state == contact::ContactState::kInside)
+      entered_ = false;
     const bool is_deeper = is_in && was_in_ && near_m > near_before_m_ + 1e-9;
     without_ = is_alone_ && entered_ && is_deeper && force_N == 0.0 ? without_ + 1 : 0;
     if (without_ > 3) broken = 'd';
     // No jump: by the way, or while it lets go.
     const double most_N =
         kSlope_N_per_m * (10.0 * way_m + kRange_m * periods * kPeriod_s / contact::kLetGo_s);
-    if (before_m_ && !is_lost && norm(touch.force_N - force_before_N_) > most_N) broken = 'e';
-    jump_N_ = norm(touch.force_N - force_before_N_), most_N_ = most_N;
+    if (before_m_ && !is_lost && norm(sphere_contact.force_N - force_before_N_) > most_N)
+      broken = 'e';
+    jump_N_ = norm(sphere_contact.force_N - force_before_N_), most_N_ = most_N;
     is_free_ = is_outside && force_N == 0.0;
-    before_m_ = centre_m, force_before_N_ = touch.force_N, was_in_ = is_in, near_before_m_ = near_m;
+    before_m_ = centre_m, force_before_N_ = sphere_contact.force_N, was_in_ = is_in,
+    near_before_m_ = near_m;
     return broken;
   }
   bool is_free() const { return is_free_; }
@@ -108,38 +111,39 @@ void run(const Scene& scene, const Tissue& tissue, const tests::BruteForce& body
     ++periods;
     if (tick.is_skipped) continue;
     const Tool tool{.position_m = tick.position_m};
-    contact.touch(tool, periods);
-    const contact::ContactResponse felt = contact.feel(tool, false);
+    contact.detect_contact(tool, periods);
+    const contact::ContactResponse rendered = contact.render_force(tool, false);
     bool is_free = true;
     double now_J = 0.0;
     for (std::size_t k = 0; k < rules.size(); ++k) {
-      const contact::SphereTouch& touch = contact.touches()[k];
-      now_J += touch.energy_J;
-      const char rule = rules[k].check(tool.position_m + scene.tool.spheres[k].offset_m, touch,
-                                       periods, felt.is_saturated, felt.is_lost);
+      const contact::SphereContact& sphere_contact = contact.contacts()[k];
+      now_J += sphere_contact.energy_J;
+      const char rule =
+          rules[k].check(tool.position_m + scene.tool.spheres[k].offset_m, sphere_contact, periods,
+                         rendered.is_saturated, rendered.is_lost);
       if (rule != 0)
-        broke(rule, "jaw " + std::to_string(k) + ", force " + std::to_string(norm(touch.force_N)) +
-                        " N" + rules[k].jump() +
+        broke(rule, "jaw " + std::to_string(k) + ", force " +
+                        std::to_string(norm(sphere_contact.force_N)) + " N" + rules[k].jump() +
                         (contact.moved().status().is_solved ? "" : ", unsolved"));
       is_free = is_free && rules[k].is_free();
     }
     const Vec3 way_m = tool.position_m - at_m;
-    given_J += 0.5 * dot(felt.wrench.force_N + force_N, way_m);
-    most_N = std::max(most_N, norm(felt.wrench.force_N));
+    given_J += 0.5 * dot(rendered.wrench.force_N + force_N, way_m);
+    most_N = std::max(most_N, norm(rendered.wrench.force_N));
     most_m = std::max(most_m, norm(way_m));
     stored_J = std::max(stored_J, now_J);
-    if (felt.is_lost || is_free) {
+    if (rendered.is_lost || is_free) {
       counts.most_given_J = std::max(counts.most_given_J, given_J);
-      if (!felt.is_lost && given_J > most_N * most_m + kFree_J + kMade * stored_J)
+      if (!rendered.is_lost && given_J > most_N * most_m + kFree_J + kMade * stored_J)
         broke('h', "given " + std::to_string(1e6 * given_J) + " uJ of " +
                        std::to_string(1e6 * stored_J));
       if (stored_J > 0.0) ++counts.strokes;
       given_J = stored_J = most_N = most_m = 0.0;
     }
     if (!contact.moved().status().is_solved) ++counts.unsolved;
-    if (felt.is_unsettled) ++counts.unsettled;
+    if (rendered.is_unsettled) ++counts.unsettled;
     ++counts.ticks;
-    force_N = felt.wrench.force_N, at_m = tool.position_m, periods = 0;
+    force_N = rendered.wrench.force_N, at_m = tool.position_m, periods = 0;
   }
 }
 

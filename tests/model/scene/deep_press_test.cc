@@ -75,7 +75,7 @@ struct Push {
 };
 
 /// What a push in and out again came to.
-struct Felt {
+struct Rendered {
   double most_depth_m = 0.0;
   double most_N = 0.0;       // of the force
   double given_J = 0.0;      // to the hand, over the whole way
@@ -89,10 +89,11 @@ bool is_outside(const contact::ContactScene& scene, const Vec3& centre_m, double
              .distance_m >= radius_m;
 }
 
-Felt feel(const contact::ContactScene& scene, const Push& push, const Vec3& tip_m = {}) {
+Rendered render_force(const contact::ContactScene& scene, const Push& push,
+                      const Vec3& tip_m = {}) {
   contact::Contact contact(scene);
   const auto ticks = static_cast<int>((kDeep_m + kBefore_m) / (push.speed_mps * kTick_s));
-  Felt felt;
+  Rendered rendered;
   bool has_come_out = false;  // on another side: what it feels from there on is another contact
   double depth_before_m = 0.0, slack_before_m = 0.0, sphere_before_N = 0.0;
   Vec3 before_m, force_before_N;
@@ -101,28 +102,30 @@ Felt feel(const contact::ContactScene& scene, const Push& push, const Vec3& tip_
     Tool tool;
     tool.position_m =
         push.from_m - tip_m + (push.speed_mps * t_s - kBefore_m) * push.along + t_s * push.drag_mps;
-    contact.touch(tool);
-    const Vec3 force_N = contact.feel(tool, true).wrench.force_N;
-    if (i > 0) felt.given_J += 0.5 * dot(force_N + force_before_N, tool.position_m - before_m);
-    felt.most_N = std::max(felt.most_N, norm(force_N));
+    contact.detect_contact(tool);
+    const Vec3 force_N = contact.render_force(tool, true).wrench.force_N;
+    if (i > 0) rendered.given_J += 0.5 * dot(force_N + force_before_N, tool.position_m - before_m);
+    rendered.most_N = std::max(rendered.most_N, norm(force_N));
     before_m = tool.position_m, force_before_N = force_N;
 
-    const contact::SphereTouch& touch = contact.touches()[0];
-    felt.most_depth_m = std::max(felt.most_depth_m, touch.depth_m);
-    has_come_out = has_come_out || (felt.most_depth_m > 0.0 &&
+    const contact::SphereContact& sphere_contact = contact.contacts()[0];
+    rendered.most_depth_m = std::max(rendered.most_depth_m, sphere_contact.depth_m);
+    has_come_out = has_come_out || (rendered.most_depth_m > 0.0 &&
                                     is_outside(scene, tool.position_m + scene.spheres[0].offset_m,
                                                scene.spheres[0].radius_m));
-    const double depth_m = touch.depth_m + touch.slack_m, sphere_N = norm(touch.force_N);
+    const double depth_m = sphere_contact.depth_m + sphere_contact.slack_m,
+                 sphere_N = norm(sphere_contact.force_N);
     constexpr double kRounding_N = 1e-9;
-    const bool is_another = touch.slack_m > slack_before_m;  // contact, or what it touches jumped
+    const bool is_another =
+        sphere_contact.slack_m > slack_before_m;  // contact, or what it touches jumped
     if (!has_come_out && !is_another && depth_m > depth_before_m &&
         sphere_N < sphere_before_N - kRounding_N)
-      ++felt.falls;
-    if (!has_come_out && i <= ticks && dot(touch.force_N, push.along) > kRounding_N)
-      felt.is_drawn_in = true;
-    depth_before_m = depth_m, slack_before_m = touch.slack_m, sphere_before_N = sphere_N;
+      ++rendered.falls;
+    if (!has_come_out && i <= ticks && dot(sphere_contact.force_N, push.along) > kRounding_N)
+      rendered.is_drawn_in = true;
+    depth_before_m = depth_m, slack_before_m = sphere_contact.slack_m, sphere_before_N = sphere_N;
   }
-  return felt;
+  return rendered;
 }
 
 /// At a random point: straight in, oblique by 27 degrees, dragged along; 5, 50, 500 mm/s. The slow
@@ -165,14 +168,14 @@ TEST_P(DeepPress, HoldsAgainstThePushAndGivesNothing) {
   const int points = static_cast<int>(tests::share_of(500, 500));
   for (int point = 0; point < points; ++point)
     for (const Push& push : pushes_at(point, surface, random)) {
-      const Felt felt = feel(organ.contact_scene(), push);
+      const Rendered rendered = render_force(organ.contact_scene(), push);
       SCOPED_TRACE(testing::Message() << "point " << point << ", " << push.speed_mps << " m/s");
       // An edge crossed within a tick is felt a tick late: at most that tick's work.
-      EXPECT_LE(felt.given_J, limit_N * push.speed_mps * kTick_s);
-      EXPECT_EQ(felt.falls, 0);
-      if (felt.most_depth_m < kRange_m) continue;
+      EXPECT_LE(rendered.given_J, limit_N * push.speed_mps * kTick_s);
+      EXPECT_EQ(rendered.falls, 0);
+      if (rendered.most_depth_m < kRange_m) continue;
       ++(push.is_straight ? straight : other);
-      if (felt.is_drawn_in) ++(push.is_straight ? straight_drawn : other_drawn);
+      if (rendered.is_drawn_in) ++(push.is_straight ? straight_drawn : other_drawn);
     }
   RecordProperty("straight", straight);
   RecordProperty("straight_drawn_in", straight_drawn);
@@ -191,9 +194,9 @@ TEST_P(DeepPress, RubbingTissueThatRelaxesGivesNothing) {
   std::mt19937 random(8);
   for (int point = 0; point < static_cast<int>(tests::share_of(100, 500)); ++point)
     for (const Push& push : pushes_at(point, surface, random)) {
-      const Felt felt = feel(organ.contact_scene(), push);
+      const Rendered rendered = render_force(organ.contact_scene(), push);
       SCOPED_TRACE(testing::Message() << "point " << point << ", " << push.speed_mps << " m/s");
-      EXPECT_LE(felt.given_J, limit_N * push.speed_mps * kTick_s);
+      EXPECT_LE(rendered.given_J, limit_N * push.speed_mps * kTick_s);
     }
 }
 
@@ -208,9 +211,9 @@ TEST_P(DeepPress, AShippedToolGivesNothing) {
   std::mt19937 random(9);
   for (int point = 1; point <= static_cast<int>(tests::share_of(10, 200)); ++point)
     for (const Push& push : pushes_at(point, scene.surface, random)) {
-      const Felt felt = feel(scene, push, scene.spheres[0].offset_m);
+      const Rendered rendered = render_force(scene, push, scene.spheres[0].offset_m);
       SCOPED_TRACE(testing::Message() << "point " << point << ", " << push.speed_mps << " m/s");
-      EXPECT_LE(felt.given_J, felt.most_N * push.speed_mps * kTick_s);
+      EXPECT_LE(rendered.given_J, rendered.most_N * push.speed_mps * kTick_s);
     }
 }
 

@@ -82,22 +82,23 @@ class DrawnDent : public ::testing::Test {
   }
 
   /// What host/web/src/organ/deform.ts adds to a vertex for one site.
-  Vec3 dent_m(const contact::SphereTouch& touch, std::uint32_t vertex) const {
-    if (!(touch.dent_m > 0.0)) return {};
-    const contact::Indentation in{
-        .place = touch.place, .normal = touch.normal, .dent_m = touch.dent_m};
+  Vec3 dent_m(const contact::SphereContact& sphere_contact, std::uint32_t vertex) const {
+    if (!(sphere_contact.dent_m > 0.0)) return {};
+    const contact::Indentation in{.place = sphere_contact.place,
+                                  .normal = sphere_contact.normal,
+                                  .dent_m = sphere_contact.dent_m};
     const Curve curve = curve_of(in);
-    const Vec3 from_m = scene_.organ_mesh.vertex_m[vertex] - touch.surface_point_m;
-    const double height_m = dot(from_m, touch.normal);
-    const double rho_m = norm(from_m - height_m * touch.normal);
-    const double facing = dot(scene_.organ_mesh.vertex_normal[vertex], touch.normal);
+    const Vec3 from_m = scene_.organ_mesh.vertex_m[vertex] - sphere_contact.surface_point_m;
+    const double height_m = dot(from_m, sphere_contact.normal);
+    const double rho_m = norm(from_m - height_m * sphere_contact.normal);
+    const double facing = dot(scene_.organ_mesh.vertex_normal[vertex], sphere_contact.normal);
     const double fade =
         (1.0 - smoothstep(0.4 * curve.reach_m(), curve.reach_m(), std::abs(height_m))) *
         smoothstep(-0.4, 0.2, facing);
     const double lean_m =
         (1.0 - smoothstep(kTaperStart * curve.reach_m(), curve.reach_m(), rho_m)) *
         dot(tissue_->law().site_law().tilt(in), from_m);
-    return -fade * std::max(0.0, curve.at(rho_m) + lean_m) * touch.normal;
+    return -fade * std::max(0.0, curve.at(rho_m) + lean_m) * sphere_contact.normal;
   }
 
   struct Errors {
@@ -115,15 +116,16 @@ class DrawnDent : public ::testing::Test {
       const Tool tool{.position_m = vector_of(place["point_m"]) + scene_.organ.position_m -
                                     (reach - std::min(at_m, depth_m)) * direction,
                       .orientation = {q[0], q[1], q[2], q[3]}};
-      contact.touch(tool);
-      contact.feel(tool, false);
+      contact.detect_contact(tool);
+      contact.render_force(tool, false);
     }
     double sum_m2 = 0.0;
     std::array<double, kRings> miss_m{}, count{};
     for (std::size_t i = 0; i < place["skin"].size(); ++i) {
       const std::uint32_t vertex = place["skin"][i];
       double one_m = -pressed["skin_m"][i].get<double>();
-      for (const auto& touch : contact.touches()) one_m += dot(dent_m(touch, vertex), direction);
+      for (const auto& sphere_contact : contact.contacts())
+        one_m += dot(dent_m(sphere_contact, vertex), direction);
       sum_m2 += one_m * one_m;
       const Vec3 from_m = scene_.organ_mesh.vertex_m[vertex] - scene_.organ.position_m -
                           vector_of(place["point_m"]);

@@ -103,8 +103,8 @@ struct Stroke {
   Stroke(const Liver& on, const Tool& tool) : contact(on.tissue->contact_scene()), before(tool) {}
 
   void go(const Tool& tool) {
-    contact.touch(tool);
-    const Wrench now = contact.feel(tool, false).wrench;
+    contact.detect_contact(tool);
+    const Wrench now = contact.render_force(tool, false).wrench;
     const Quat turn = tool.orientation * conjugate(before.orientation);
     const Vec3 way_m = tool.position_m - before.position_m;
     const Vec3 turn_rad = 2.0 * Vec3{turn.x, turn.y, turn.z};
@@ -119,7 +119,7 @@ struct Stroke {
   }
   const contact::MovedContact& moved() const { return contact.moved(); }
   double stored_ratio() const { return stored_energy_J(moved().organ()) / work_J; }
-  Vec3 force_of_N(std::size_t sphere) const { return contact.touches()[sphere].force_N; }
+  Vec3 force_of_N(std::size_t sphere) const { return contact.contacts()[sphere].force_N; }
 
   contact::Contact contact;
   Tool before;

@@ -29,9 +29,10 @@ class RandomDrag {
   /// The jaws open where they are.
   void let_go() { go_to(tool_.position_m, 0.0); }
   bool holds() const {
-    return std::ranges::any_of(contact_.touches(), [](const contact::SphereTouch& touch) {
-      return touch.state == contact::TouchState::kHeld;
-    });
+    return std::ranges::any_of(contact_.contacts(),
+                               [](const contact::SphereContact& sphere_contact) {
+                                 return sphere_contact.state == contact::ContactState::kHeld;
+                               });
   }
   double stored_J() const { return stored_energy_J(contact_.moved().organ()); }
 
@@ -50,8 +51,8 @@ class RandomDrag {
     tool_.grip_ratio = grip_ratio;
     for (int i = 1; i <= ticks; ++i) {
       tool_.position_m = from_m + static_cast<double>(i) / ticks * (to_m - from_m);
-      contact_.touch(tool_);
-      contact_.feel(tool_, false);
+      contact_.detect_contact(tool_);
+      contact_.render_force(tool_, false);
     }
   }
 

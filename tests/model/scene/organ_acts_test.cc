@@ -22,7 +22,7 @@
 
 namespace tact::model::scene::organ_acts_test {
 
-using contact::TouchState;
+using contact::ContactState;
 
 /// A shipped scene under a tool that goes straight from point to point.
 class Shipped {
@@ -41,9 +41,9 @@ class Shipped {
   const std::vector<contact::ProbeSphere>& spheres() const { return scene_.tool.spheres; }
   double period_s() const { return 1.0 / scene_.rate_Hz; }
   const contact::Contact& contact() const { return *contact_; }
-  double force_N() const { return norm(felt_.wrench.force_N); }
-  Vec3 force_vector_N() const { return felt_.wrench.force_N; }
-  bool is_inside() const { return felt_.is_inside; }
+  double force_N() const { return norm(rendered_.wrench.force_N); }
+  Vec3 force_vector_N() const { return rendered_.wrench.force_N; }
+  bool is_inside() const { return rendered_.is_inside; }
   /// Of all rules that a tool of coupled spheres and a law that remembers must keep; empty: none.
   const std::string& broken() const { return broken_; }
 
@@ -91,17 +91,17 @@ class Shipped {
  private:
   void tick(const Vec3& at_m, const Vec3& velocity_mps, std::uint32_t periods) {
     const Tool tool{.position_m = at_m, .velocity_mps = velocity_mps, .grip_ratio = grip_ratio_};
-    contact_->touch(tool, periods);
-    felt_ = contact_->feel(tool, true);
+    contact_->detect_contact(tool, periods);
+    rendered_ = contact_->render_force(tool, true);
     if (grip_ratio_ > 0.0) return;  // held tissue pulls
     for (std::size_t k = 0; k < rules_.size(); ++k) {
-      const contact::SphereTouch& touch = contact_->touches()[k];
+      const contact::SphereContact& sphere_contact = contact_->contacts()[k];
       for (const tests::Breach& breach :
            rules_[k].check({.centre_m = at_m + spheres()[k].offset_m,
                             .periods = periods,
-                            .touch = touch,
-                            .is_saturated = touch.law_status == law::LawStatus::kSaturated,
-                            .is_lost = felt_.is_lost}))
+                            .sphere_contact = sphere_contact,
+                            .is_saturated = sphere_contact.law_status == law::LawStatus::kSaturated,
+                            .is_lost = rendered_.is_lost}))
         if (broken_.empty()) broken_ = std::string("rule ") + breach.rule + ": " + breach.what;
     }
   }
@@ -111,7 +111,7 @@ class Shipped {
   std::optional<tests::BruteForce> body_;
   std::optional<contact::Contact> contact_;
   std::vector<tests::ContactRules> rules_;
-  contact::ContactResponse felt_;
+  contact::ContactResponse rendered_;
   std::string broken_;
   Vec3 at_m_;
   double grip_ratio_ = 0.0;
@@ -166,13 +166,13 @@ TEST(LiverActs, ALossInAPressGivesNoForceUntilOutside) {
   ASSERT_GT(liver.force_N(), 0.1);
   auto contact = liver.contact();
   const Tool tool{.position_m = {0, 0, -40_mm}};
-  contact.touch(tool, 5, 20_mm);
-  const contact::ContactResponse felt = contact.feel(tool, true);
-  EXPECT_TRUE(felt.is_lost);
-  EXPECT_TRUE(felt.is_inside);
-  EXPECT_EQ(norm(felt.wrench.force_N), 0.0);
-  for (const contact::SphereTouch& touch : contact.touches())
-    EXPECT_EQ(touch.state, TouchState::kInside);
+  contact.detect_contact(tool, 5, 20_mm);
+  const contact::ContactResponse rendered = contact.render_force(tool, true);
+  EXPECT_TRUE(rendered.is_lost);
+  EXPECT_TRUE(rendered.is_inside);
+  EXPECT_EQ(norm(rendered.wrench.force_N), 0.0);
+  for (const contact::SphereContact& sphere_contact : contact.contacts())
+    EXPECT_EQ(sphere_contact.state, ContactState::kInside);
 }
 
 class OrganActs : public ::testing::TestWithParam<const char*> {};
@@ -239,7 +239,7 @@ class PauseActs : public ::testing::TestWithParam<int> {
       act(paused, periods);
       EXPECT_LE(norm(paused.force_vector_N() - want_N), 0.05 * norm(want_N))
           << periods << " periods: " << paused.force_N() << " N, without " << norm(want_N) << " N";
-      EXPECT_EQ(paused.contact().touches()[0].state, whole.contact().touches()[0].state);
+      EXPECT_EQ(paused.contact().contacts()[0].state, whole.contact().contacts()[0].state);
     }
   }
   /// On to `to_m`, with a pause that ends 10 ms before.

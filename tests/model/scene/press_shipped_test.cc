@@ -37,7 +37,7 @@ constexpr double kSharp_cos = 0.866;      // of 30 degrees
 
 /// The largest share of presses that may fail a check.
 struct Allowed {
-  double draws_in = 0.0, changes = 0.0, too_stiff = 0.0, unfelt = 0.0, energy = 0.0;
+  double draws_in = 0.0, changes = 0.0, too_stiff = 0.0, not_rendered = 0.0, energy = 0.0;
 };
 
 struct Case {
@@ -84,12 +84,12 @@ std::vector<Vec3> edge_points(const mesh::SurfaceMesh& mesh) {
 
 struct Counts {
   std::size_t pressed = 0;
-  std::size_t draws_in = 0, changes = 0, too_stiff = 0, unfelt = 0, energy = 0;
+  std::size_t draws_in = 0, changes = 0, too_stiff = 0, not_rendered = 0, energy = 0;
 
   void add(const PressFlaws& f) {
     ++pressed;
     draws_in += f.draws_in, changes += f.changes_too_fast, too_stiff += f.is_too_stiff;
-    unfelt += f.is_unfelt, energy += f.energy_differs;
+    not_rendered += f.is_not_rendered, energy += f.energy_differs;
   }
   void expect_within(const Allowed& allowed, const std::string& what) const {
     const auto expect = [&](std::size_t count, double share, const char* name) {
@@ -99,7 +99,7 @@ struct Counts {
     expect(draws_in, allowed.draws_in, "draws the tool in");
     expect(changes, allowed.changes, "changes too fast");
     expect(too_stiff, allowed.too_stiff, "is too stiff");
-    expect(unfelt, allowed.unfelt, "comes in unfelt");
+    expect(not_rendered, allowed.not_rendered, "comes in unfelt");
     expect(energy, allowed.energy, "stores other than the work");
   }
 };

@@ -220,8 +220,8 @@ class UpAndDown {
     for (int i = 1; i <= steps; ++i) {
       const double now_m = depth_m_ + (depth_m - depth_m_) * i / steps;
       const Tool tool{.position_m = {0, 0, -now_m}, .grip_ratio = grip_ratio};
-      contact_->touch(tool);
-      force_N = contact_->feel(tool, false).wrench.force_N.z;
+      contact_->detect_contact(tool);
+      force_N = contact_->render_force(tool, false).wrench.force_N.z;
     }
     depth_m_ = depth_m;
     return force_N;
@@ -235,9 +235,10 @@ class UpAndDown {
     return force_N;
   }
   bool holds() const {
-    return std::ranges::all_of(contact_->touches(), [](const contact::SphereTouch& touch) {
-      return touch.state == contact::TouchState::kHeld;
-    });
+    return std::ranges::all_of(contact_->contacts(),
+                               [](const contact::SphereContact& sphere_contact) {
+                                 return sphere_contact.state == contact::ContactState::kHeld;
+                               });
   }
 
  private:

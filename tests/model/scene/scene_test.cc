@@ -229,10 +229,10 @@ TEST(Scene, HashChangesWithTheComplianceMapThatIsFelt) {
     EXPECT_TRUE(scene) << scene.error().sentence;
     return scene ? scene->hash : "";
   };
-  for (const char* felt :
+  for (const char* rendered :
        {"law=compliance", "varies_by_place=true", "law=spring_patch", "law=auto"}) {
-    EXPECT_EQ(hash(40.0F, felt), hash(40.0F, felt));
-    EXPECT_NE(hash(40.0F, felt), hash(40.1F, felt)) << felt;
+    EXPECT_EQ(hash(40.0F, rendered), hash(40.0F, rendered));
+    EXPECT_NE(hash(40.0F, rendered), hash(40.1F, rendered)) << rendered;
   }
   EXPECT_EQ(hash(40.0F, "varies_by_place=false"), hash(40.1F, "varies_by_place=false"));
 }

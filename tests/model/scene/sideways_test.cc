@@ -104,8 +104,8 @@ TEST(Sideways, ASpringPatchHasAStiffnessOfItsOwn) {
       const Tool tool{
           .position_m = {0, 0.02e-3 * std::max(i - 300, 0), 1e-3 - 0.0133e-3 * std::min(i, 300)},
           .grip_ratio = i < 300 ? 0.0 : grip_ratio};
-      contact.touch(tool);
-      w = contact.feel(tool, false).wrench;
+      contact.detect_contact(tool);
+      w = contact.render_force(tool, false).wrench;
     }
     return -w.force_N.y;
   };

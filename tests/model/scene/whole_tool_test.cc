@@ -39,19 +39,20 @@ class WholeTool : public ::testing::Test {
   }
 
   /// The tool comes down until its lowest points are `to_m` below z = 0 of W, its grip as said.
-  static Wrench feel(contact::Contact& contact, double from_m, double to_m, double grip_ratio) {
+  static Wrench render_force(contact::Contact& contact, double from_m, double to_m,
+                             double grip_ratio) {
     Wrench w;
     for (int i = 0; i <= 200; ++i) {
       const Tool tool{.position_m = {0, 0, -(from_m + (to_m - from_m) * i / 200.0)},
                       .grip_ratio = grip_ratio};
-      contact.touch(tool);
-      w = contact.feel(tool, false).wrench;
+      contact.detect_contact(tool);
+      w = contact.render_force(tool, false).wrench;
     }
     return w;
   }
   double pressed_N(double depth_m) {
     contact::Contact contact(tissue_->contact_scene());
-    return feel(contact, -0.010, depth_m, 0.0).force_N.z;
+    return render_force(contact, -0.010, depth_m, 0.0).force_N.z;
   }
   /// Against the finite or boundary elements of two_jaws_liver.json.
   void expect_pressed_within(double ratio) {
@@ -66,7 +67,7 @@ class WholeTool : public ::testing::Test {
     }
   }
   /// Against the way, at a place of liver_tool.json: down to each depth, 20 um a tick.
-  std::vector<double> felt_down_the_way_N(const nlohmann::json& place) {
+  std::vector<double> rendered_down_the_way_N(const nlohmann::json& place) {
     contact::Contact contact(tissue_->contact_scene());
     const Vec3 along = vec3(place["direction"]), at_m = vec3(place["point_m"]);
     const auto& q = place["orientation_wxyz"];
@@ -74,15 +75,15 @@ class WholeTool : public ::testing::Test {
     std::vector<double> out;
     double at_depth_m = -0.003;
     for (const auto& one : place["cases"]) {
-      double felt_N = 0.0;
+      double rendered_N = 0.0;
       for (const double to_m = one["depth_m"]; at_depth_m < to_m;) {
         at_depth_m = std::min(at_depth_m + 2e-5, to_m);
         const Tool tool{.position_m = at_m + scene_.organ.position_m - (reach - at_depth_m) * along,
                         .orientation = {q[0], q[1], q[2], q[3]}};
-        contact.touch(tool);
-        felt_N = -dot(contact.feel(tool, false).wrench.force_N, along);
+        contact.detect_contact(tool);
+        rendered_N = -dot(contact.render_force(tool, false).wrench.force_N, along);
       }
-      out.push_back(felt_N);
+      out.push_back(rendered_N);
     }
     return out;
   }
@@ -91,21 +92,21 @@ class WholeTool : public ::testing::Test {
     contact::ContactScene scene = tissue_->contact_scene();
     scene.spheres = jaws;
     contact::Contact contact(scene);
-    feel(contact, -0.010, 0.001, 0.0);
-    const double near_N = feel(contact, 0.001, -0.002, 1.0).force_N.z;
-    const double far_N = feel(contact, -0.002, -0.004, 1.0).force_N.z;
+    render_force(contact, -0.010, 0.001, 0.0);
+    const double near_N = render_force(contact, 0.001, -0.002, 1.0).force_N.z;
+    const double far_N = render_force(contact, -0.002, -0.004, 1.0).force_N.z;
     return (near_N - far_N) / 0.002;
   }
 
   /// How far the held jaws are dragged until they tear.
   double torn_after_m(const Vec3& along) {
     contact::Contact contact(tissue_->contact_scene());
-    feel(contact, -0.010, 0.003, 0.0);
+    render_force(contact, -0.010, 0.003, 0.0);
     for (double way_m = 0.0;; way_m += 2e-5) {
       const Tool tool{.position_m = Vec3{0, 0, -0.003} + way_m * along, .grip_ratio = 1.0};
-      contact.touch(tool);
-      contact.feel(tool, false);
-      if (contact.touches()[0].state != contact::TouchState::kHeld || way_m > 0.1) return way_m;
+      contact.detect_contact(tool);
+      contact.render_force(tool, false);
+      if (contact.contacts()[0].state != contact::ContactState::kHeld || way_m > 0.1) return way_m;
     }
   }
 
@@ -125,15 +126,16 @@ TEST_F(WholeTool, PressesEveryPlaceOfTheReferenceAsFiniteElementsDo) {
   const nlohmann::json truth = reference("liver_tool.json");
   ASSERT_EQ(truth["places"].size(), 9U);
   for (const nlohmann::json& place : truth["places"]) {
-    const std::vector<double> felt_N = felt_down_the_way_N(place);
-    ASSERT_EQ(felt_N.size(), 4U);
-    for (std::size_t i = 0; i < felt_N.size(); ++i) {
+    const std::vector<double> rendered_N = rendered_down_the_way_N(place);
+    ASSERT_EQ(rendered_N.size(), 4U);
+    for (std::size_t i = 0; i < rendered_N.size(); ++i) {
       const auto& one = place["cases"][i];
       const double want_N = one["force_N"], depth_m = one["depth_m"];
       const bool is_known_error = (place["vertex"] == 2482 && depth_m == 0.001) ||
                                   (place["vertex"] == 1586 && depth_m == 0.010);
       const double ratio = is_known_error ? 0.09 : 0.07;
-      EXPECT_NEAR(felt_N[i], want_N, ratio * want_N) << place["vertex"] << ", " << depth_m << " m";
+      EXPECT_NEAR(rendered_N[i], want_N, ratio * want_N)
+          << place["vertex"] << ", " << depth_m << " m";
     }
   }
 }

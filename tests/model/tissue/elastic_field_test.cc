@@ -105,19 +105,20 @@ void expect_slope_of_energy(Bench& bench, const Vec3& at_m) {
   const auto feel = [&bench](const Vec3& p_m, const Vec3& from_m) {
     contact::Contact contact = bench.contact();
     for (int i = 0; i <= 400; ++i)
-      contact.touch({.position_m = from_m + (i / 400.0) * (p_m - from_m)}), contact.feel({}, false);
-    contact.touch({.position_m = p_m});
-    const Wrench w = contact.feel({.position_m = p_m}, false).wrench;
-    return std::pair{w.force_N, contact.touches()[0].energy_J};
+      contact.detect_contact({.position_m = from_m + (i / 400.0) * (p_m - from_m)}),
+          contact.render_force({}, false);
+    contact.detect_contact({.position_m = p_m});
+    const Wrench w = contact.render_force({.position_m = p_m}, false).wrench;
+    return std::pair{w.force_N, contact.contacts()[0].energy_J};
   };
   const Vec3 outside_m = at_m + Vec3{0, 0, 10_mm};
   const double h = 1e-7;
-  const auto [force_N, energy_J] = feel(at_m, outside_m);
+  const auto [force_N, energy_J] = render_force(at_m, outside_m);
   const Vec3 axis[3] = {{h, 0, 0}, {0, h, 0}, {0, 0, h}};
   const double part_N[3] = {force_N.x, force_N.y, force_N.z};
   for (int i = 0; i < 3; ++i) {
-    const double ahead_J = feel(at_m + axis[i], outside_m).second;
-    const double behind_J = feel(at_m - axis[i], outside_m).second;
+    const double ahead_J = render_force(at_m + axis[i], outside_m).second;
+    const double behind_J = render_force(at_m - axis[i], outside_m).second;
     EXPECT_NEAR(-(ahead_J - behind_J) / (2.0 * h), part_N[i], 2e-5) << "axis " << i;
   }
   EXPECT_GT(energy_J, 0.0);
@@ -147,8 +148,8 @@ std::pair<double, double> closed_stroke_J(double deepest_m) {
   const int ticks = 40'000;
   for (int i = 0; i <= ticks; ++i) {
     const Vec3 at_m = path(static_cast<double>(i) / ticks);
-    contact.touch({.position_m = at_m});
-    const Vec3 force_N = contact.feel({.position_m = at_m}, false).wrench.force_N;
+    contact.detect_contact({.position_m = at_m});
+    const Vec3 force_N = contact.render_force({.position_m = at_m}, false).wrench.force_N;
     const double part_J = -0.5 * dot(force_N + before_N, at_m - before_m);
     work_J += part_J;
     size_J += std::abs(part_J);

@@ -25,7 +25,7 @@ import statistics
 ALLOWED_GROWTH = 1.05
 KERNEL_GROWTH = 1.25
 MOST = "p99.9_ns"
-PHASES = ("wake", "read", "touch", "feel", "judge", "write", "tell", "total")
+PHASES = ("wake", "read", "detect", "render", "limit", "write", "publish", "total")
 CALLING = ("wake", "read", "write", "total")
 OWN = tuple(phase for phase in PHASES if phase not in CALLING)
 LONGEST = "longest_ns"

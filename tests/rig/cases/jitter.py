@@ -3,7 +3,7 @@
 from bench.back_ends import BACK, LOOP_BACK
 from bench.case import Case
 
-IN_THE_PULSE = ("read", "touch", "feel", "judge", "write")  # the scope line is up for as long as these
+IN_THE_PULSE = ("read", "detect", "render", "limit", "write")  # the scope line is up for as long as these
 
 
 def pin_agrees(run):

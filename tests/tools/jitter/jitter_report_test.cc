@@ -206,7 +206,7 @@ TEST_F(JitterProgram, WritesAReportOfARealLoopThatComparesWithItself) {
   const json result = json::parse(read_file(out + "/jitter.json"));
   EXPECT_EQ(result["ticks"].get<int>() + result["skipped"].get<int>(), 240);
   EXPECT_EQ(result["series"]["every_wake"]["samples"], 240);
-  EXPECT_EQ(result["series"]["feel"]["samples"], result["ticks"]);
+  EXPECT_EQ(result["series"]["render"]["samples"], result["ticks"]);
   EXPECT_TRUE(result["thread"]["allocations"] == 0 || result["thread"]["allocations"].is_null());
   EXPECT_GE(result["pc"].size(), 15u);
   EXPECT_FALSE(result["environment"]["kernel_release"].get<std::string>().empty());
@@ -252,7 +252,7 @@ TEST_F(JitterProgram, ABareLoopFeelsNothing) {
   ASSERT_EQ(run.status, 0) << run.output;
   const json result = json::parse(run.output);
   EXPECT_EQ(result["series"]["every_wake"]["samples"], 200);
-  EXPECT_FALSE(result["series"].contains("feel"));
+  EXPECT_FALSE(result["series"].contains("render"));
   EXPECT_FALSE(result["series"].contains("deadline_to_force"));
 }
 

@@ -103,9 +103,9 @@ TEST_F(NewScene, AScanBecomesASceneThatIsFelt) {
       "tactd",
       out_ + " --free-run --seconds 5 --no-telemetry --no-black-box --json " + path("run"));
   ASSERT_EQ(run.status, 0) << run.output;
-  const double felt_N = json::parse(tests::read_text(path("run")))["force_max_N"];
-  EXPECT_GT(felt_N, 0.1);
-  EXPECT_LT(felt_N, 5.0);
+  const double rendered_N = json::parse(tests::read_text(path("run")))["force_max_N"];
+  EXPECT_GT(rendered_N, 0.1);
+  EXPECT_LT(rendered_N, 5.0);
 }
 
 TEST_F(NewScene, ASoundObjFileIsTakenAsItIsAndAnEarlierSceneIsKeptUnlessForced) {

@@ -26,9 +26,9 @@ TEST(MemoryLaws, EveryLawOfTheMapsIsMade) {
 
 TEST(MemoryLaws, EachRunMeetsAFreshTissue) {
   for (const NamedLaw& named : probed_laws()) {
-    FeltTissue first = named.fresh();
-    for (int i = 0; i < 50; ++i) first.tick(0.5 * named.felt_range_m);
-    FeltTissue second = named.fresh(), third = named.fresh();
+    RenderedTissue first = named.fresh();
+    for (int i = 0; i < 50; ++i) first.tick(0.5 * named.rendered_range_m);
+    RenderedTissue second = named.fresh(), third = named.fresh();
     for (int i = 0; i < 50; ++i)
       EXPECT_EQ(second.tick(1e-5 * i).force_N, third.tick(1e-5 * i).force_N) << named.name;
   }
@@ -36,7 +36,7 @@ TEST(MemoryLaws, EachRunMeetsAFreshTissue) {
 
 TEST(MemoryLaws, ARelaxingLawSettlesAtTheHalfThatStays) {
   const double elastic_N = law_named("compliance").fresh().settle(0.004).force_N;
-  FeltTissue relaxing = law_named("compliance relaxing").fresh();
+  RenderedTissue relaxing = law_named("compliance relaxing").fresh();
   // new, all of it resists, but for what fades in the first tick
   EXPECT_NEAR(relaxing.tick(0.004).force_N / elastic_N, 1.0, 0.03);
   EXPECT_NEAR(relaxing.settle(0.004).force_N / elastic_N, 0.5, 1e-6);

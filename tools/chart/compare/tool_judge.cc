@@ -63,8 +63,8 @@ class Press {
  private:
   double tick(double depth_m) {
     const Tool tool = tool_at(scene_, place_, depth_m);
-    contact_.touch(tool);
-    return -dot(contact_.feel(tool, false).wrench.force_N, place_.direction);
+    contact_.detect_contact(tool);
+    return -dot(contact_.render_force(tool, false).wrench.force_N, place_.direction);
   }
 
   const Scene& scene_;
@@ -134,7 +134,7 @@ ToolErrors summarize_tool(const std::vector<ToolSample>& samples, const std::vec
     place_peak_N[s.place] = std::max(place_peak_N[s.place], std::abs(s.reference_N));
   }
   double all = 0.0, others = 0.0;
-  std::size_t other_count = 0, felt_right = 0;
+  std::size_t other_count = 0, rendered_right = 0;
   std::vector<std::size_t> place_count(unseen.size(), 0);
   for (const ToolSample& s : samples) {
     const double e_N = s.force_N - s.reference_N, e = e_N / peak_N;
@@ -147,10 +147,10 @@ ToolErrors summarize_tool(const std::vector<ToolSample>& samples, const std::vec
     double& own = out.own_worst_ratio[s.depth];
     if (std::abs(s.own_ratio()) > std::abs(own)) own = s.own_ratio();
     out.own_largest_ratio = std::max(out.own_largest_ratio, std::abs(own));
-    if (std::abs(s.own_ratio()) <= report::kJustNoticeable_ratio) ++felt_right;
+    if (std::abs(s.own_ratio()) <= report::kJustNoticeable_ratio) ++rendered_right;
   }
   out.rms_ratio = std::sqrt(all / static_cast<double>(samples.size()));
-  out.within_jnd_ratio = static_cast<double>(felt_right) / static_cast<double>(samples.size());
+  out.within_jnd_ratio = static_cast<double>(rendered_right) / static_cast<double>(samples.size());
   out.unseen_rms_ratio = std::sqrt(others / static_cast<double>(other_count));  // 0 / 0: NaN
   for (std::size_t i = 0; i < unseen.size(); ++i)
     out.place_rms_ratio[i] =

@@ -51,7 +51,7 @@ ErrorSummary summarize(std::span<const Sample> samples) {
   }
   Rms all, press, pull, held_out, shape;
   std::map<std::size_t, Rms> of_site;
-  std::size_t felt_right = 0;
+  std::size_t rendered_right = 0;
   for (const Sample& s : samples) {
     const double e_N = s.force_N - s.reference_N;
     const double e = e_N / peak_N;
@@ -68,7 +68,7 @@ ErrorSummary summarize(std::span<const Sample> samples) {
     if (s.held_out) held_out.add(e);
     of_site[s.site].add(e_N / site_peak_N[s.site]);
     out.force_worst_ratio = std::max(out.force_worst_ratio, std::abs(e));
-    if (std::abs(e_N) <= report::kJustNoticeable_ratio * std::abs(s.reference_N)) ++felt_right;
+    if (std::abs(e_N) <= report::kJustNoticeable_ratio * std::abs(s.reference_N)) ++rendered_right;
     const double u = shape_error(s);
     if (!std::isfinite(u)) continue;
     shape.add(u);
@@ -83,7 +83,7 @@ ErrorSummary summarize(std::span<const Sample> samples) {
   out.shape_rms_ratio = shape.value();
   out.within_jnd_ratio =
       samples.empty() ? kNan
-                      : static_cast<double>(felt_right) / static_cast<double>(samples.size());
+                      : static_cast<double>(rendered_right) / static_cast<double>(samples.size());
   return out;
 }
 

@@ -188,7 +188,8 @@ Result<std::vector<std::string>> draw_chart(const report::Table& table, const st
   script +=
       "unset arrow 1\n"
       "set size 1,0.25\nset origin 0,0\n"
-      "set xlabel \"time of a tick, median, us; of a law: touch, feel, judge of the whole tool\\n"
+      "set xlabel \"time of a tick, median, us; of a law: detect, render, limit of the whole "
+      "tool\\n"
       "beside a point: knots, layers, rings, nodes, curves; of fem mm, else iterations\\n" +
       source_of_peers(table) + "\"\nset ylabel 'shape error, RMS, %'\n";
   script += plot_of(families, kShape);

@@ -168,7 +168,7 @@ std::string chart_text(const report::Table& table) {
          "The reference is linear: compliance is judged with large_strain off.\n"
          "force, worst: one sphere, of the peak; 1 mm and so on: of the own force at the worst "
          "site.\n"
-         "tool: the whole tool, RMS of the peak. Time of a law: touch, feel, judge of the whole "
+         "tool: the whole tool, RMS of the peak. Time of a law: detect, render, limit of the whole "
          "tool;\nof a peer: its own answer to one sphere.\n"
          "instr. n/a: too many to step through, and this processor lets nobody count them.\n";
 }

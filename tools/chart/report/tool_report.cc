@@ -114,7 +114,7 @@ std::string tool_text(const std::vector<ToolRow>& rows, const ToolReference& ref
   return out +
          "RMS and worst: % of the largest force of the reference, at a place % of its own "
          "largest.\n1 mm and so on: % of the own force there, for a law the worst place's. Time: "
-         "touch, feel, judge.\n";
+         "detect, render, limit.\n";
 }
 
 model::Result<std::vector<model::scene::Accuracy>> accuracy_of(

@@ -75,8 +75,8 @@ std::vector<NamedSeries> series_of(const JitterResult& result) {
   add("wake", "wake-up", sink.phase(Phase::kWake));
   if (result.peer) add("peer_wake", "wake-up of cyclictest", *result.peer);
   add("every_wake", "every wake-up", sink.every_wake());
-  for (const Phase p :
-       {Phase::kRead, Phase::kTouch, Phase::kFeel, Phase::kJudge, Phase::kWrite, Phase::kTell}) {
+  for (const Phase p : {Phase::kRead, Phase::kDetect, Phase::kRender, Phase::kLimit, Phase::kWrite,
+                        Phase::kPublish}) {
     const char* name = firmware::loop::kPhaseName[static_cast<std::size_t>(p)];
     add(name, name, sink.phase(p));
   }

@@ -10,8 +10,8 @@ using firmware::loop::Phase;
 namespace {
 
 constexpr std::uint64_t kKeptBefore = 20, kKeptAfter = 5;  // ticks around a late one
-constexpr std::array kOfThisTick{Phase::kWake, Phase::kRead,  Phase::kTouch,
-                                 Phase::kFeel, Phase::kJudge, Phase::kWrite};
+constexpr std::array kOfThisTick{Phase::kWake,   Phase::kRead,  Phase::kDetect,
+                                 Phase::kRender, Phase::kLimit, Phase::kWrite};
 
 }  // namespace
 
@@ -40,7 +40,7 @@ void TickSink::add(const firmware::loop::TickRecord& record) {
   skipped_ += times.skipped_before;
   if (times.skipped_before > 0) ++late_;
   if (unfinished_) {
-    for (const Phase p : {Phase::kTell, Phase::kTotal})
+    for (const Phase p : {Phase::kPublish, Phase::kTotal})
       unfinished_->phase_ns[static_cast<std::size_t>(p)] = times.phase(p);
     finish(*unfinished_);
   }
@@ -56,7 +56,7 @@ void TickSink::add(const firmware::loop::TickRecord& record) {
   }
   measure_round_trip(times, record);
   // These two are those of the tick before, and were given to it above.
-  times.phase_ns[static_cast<std::size_t>(Phase::kTell)] = 0;
+  times.phase_ns[static_cast<std::size_t>(Phase::kPublish)] = 0;
   times.phase_ns[static_cast<std::size_t>(Phase::kTotal)] = 0;
   keep(times);
   const std::int64_t worst_ns =
@@ -66,7 +66,7 @@ void TickSink::add(const firmware::loop::TickRecord& record) {
 }
 
 void TickSink::finish(TickTimes times) {
-  for (const Phase p : {Phase::kTell, Phase::kTotal})
+  for (const Phase p : {Phase::kPublish, Phase::kTotal})
     phases_[static_cast<std::size_t>(p)].record(times.phase(p), times.tick, times.due_ns);
   for (auto* kept : {&newest_, &around_late_})
     if (const auto at = kept->find(times.tick); at != kept->end()) at->second = times;

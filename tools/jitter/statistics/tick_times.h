@@ -30,7 +30,7 @@ struct TickTimes {
   std::int64_t deadline_to_force_ns() const {
     using enum firmware::loop::Phase;
     std::int64_t sum = 0;
-    for (const auto p : {kWake, kRead, kTouch, kFeel, kJudge, kWrite}) sum += phase(p);
+    for (const auto p : {kWake, kRead, kDetect, kRender, kLimit, kWrite}) sum += phase(p);
     return sum;
   }
   std::int64_t written_ns() const { return due_ns + deadline_to_force_ns(); }

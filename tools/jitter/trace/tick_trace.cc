@@ -15,8 +15,8 @@ namespace {
 using firmware::loop::Phase;
 using nlohmann::json;
 
-constexpr std::array kInside{Phase::kRead,  Phase::kTouch, Phase::kFeel,
-                             Phase::kJudge, Phase::kWrite, Phase::kTell};
+constexpr std::array kInside{Phase::kRead,  Phase::kDetect, Phase::kRender,
+                             Phase::kLimit, Phase::kWrite,  Phase::kPublish};
 constexpr int kWakeTrack = 1, kLoopTrack = 2;
 
 std::int64_t now_ns(clockid_t clock) {

@@ -162,7 +162,7 @@ CaseRun::CaseRun(const Case& c, const LimitsBench& bench)
 bool CaseRun::play() {
   const int ticks = static_cast<int>(std::lround(case_.duration_s / moment_.period_s));
   firmware::loop::TickRecord record;
-  bool touches = false;
+  bool contacts = false;
   int waited = 0, open = 0;
   bool going = true;
   while (going && waited < most_wait_ticks_ && open < lead_ticks_ + ticks) {
@@ -171,9 +171,9 @@ bool CaseRun::play() {
     const bool cause = in_trouble(case_, moment_);
     loop_->step();
     while (ring_->pop(record)) keep(record, cause);
-    if (!touches && record.input.sample.fresh) {
+    if (!contacts && record.input.sample.fresh) {
       approach(record.input);
-      touches = true;
+      contacts = true;
       requests_.arm_at_start.store(true);
     }
     rows_.empty() ? ++waited : ++open;
@@ -199,8 +199,8 @@ void CaseRun::approach(const firmware::loop::TickInput& at) {
   above.skipped_periods = kPeriods - 1;
   for (double height_m = kClear_m; height_m > -step_m; height_m -= step_m) {
     above.sample.tool.position_m.z = at.sample.tool.position_m.z + std::max(height_m, 0.0);
-    controller_->touch(above);
-    controller_->feel(above);
+    controller_->detect_contact(above);
+    controller_->render_force(above);
   }
 }
 

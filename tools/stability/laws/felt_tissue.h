@@ -13,10 +13,10 @@ namespace tact::tools::stability {
 /// Makes a law with memory, at rest, on the plate of memory_laws.h.
 using SiteLawMaker = std::function<std::unique_ptr<model::contact::SiteLaw>()>;
 
-class FeltTissue {
+class RenderedTissue {
  public:
   /// A closed-form law, or one with memory if `make` is there.
-  FeltTissue(std::shared_ptr<const model::law::Law> law, const SiteLawMaker& make)
+  RenderedTissue(std::shared_ptr<const model::law::Law> law, const SiteLawMaker& make)
       : law_(std::move(law)), site_(make ? make() : nullptr) {}
 
   /// One tick of 1 ms at this depth, in the middle of the plate; a pull holds the tissue.

@@ -30,13 +30,14 @@ void add(std::vector<NamedLaw>& laws, const char* name, const model::Result<L>& 
   if (!law) return;
   const auto direct = std::make_shared<const L>(*law);
   // Laws in closed form are felt as they are.
-  std::shared_ptr<const model::law::Law> felt = direct;
+  std::shared_ptr<const model::law::Law> rendered = direct;
   if constexpr (std::is_same_v<L, model::indent::RhombusChain> ||
                 std::is_same_v<L, model::indent::HexSheet>) {
     if (auto table = model::law::tabulate(*direct, kKnots))
-      felt = std::make_shared<const model::law::TabulatedLaw>(*table);
+      rendered = std::make_shared<const model::law::TabulatedLaw>(*table);
   }
-  laws.push_back({name, direct, felt, beyond, direct->range().press_m, felt->range().press_m});
+  laws.push_back(
+      {name, direct, rendered, beyond, direct->range().press_m, rendered->range().press_m});
 }
 
 /// Laws with memory; the one that relaxes is the last closed-form law.
@@ -45,19 +46,19 @@ void add_memory(std::vector<NamedLaw>& laws) {
     const NamedLaw& closed = laws.back();
     laws.push_back({.name = closed.name + " relaxing",
                     .law = nullptr,
-                    .felt = nullptr,
+                    .rendered = nullptr,
                     .beyond = "each part of the force stays at the working depth's and fades",
                     .range_m = closed.range_m,
-                    .felt_range_m = closed.felt_range_m,
-                    .make_site = relaxing_maker(closed.felt)});
+                    .rendered_range_m = closed.rendered_range_m,
+                    .make_site = relaxing_maker(closed.rendered)});
   }
   for (const bool relaxes : {false, true})
     laws.push_back({.name = relaxes ? "spring patch relaxing" : "spring patch",
                     .law = nullptr,
-                    .felt = nullptr,
+                    .rendered = nullptr,
                     .beyond = "the nodes are pushed no further: the force stays",
                     .range_m = kPatchRange_m,
-                    .felt_range_m = kPatchRange_m,
+                    .rendered_range_m = kPatchRange_m,
                     .make_site = patch_maker(relaxes)});
 }
 
@@ -172,10 +173,10 @@ const std::vector<NamedLaw>& probed_laws() {
 double steepest_N_per_m(const NamedLaw& named) {
   constexpr int kSamples = 200;
   // From rest and down in steps, as a tool comes: one with memory answers to the way, too.
-  FeltTissue tissue = named.fresh();
+  RenderedTissue tissue = named.fresh();
   double most = 0.0;
   for (int i = 1; i <= kSamples; ++i)
-    most = std::max(most, tissue.tick(named.felt_range_m * i / kSamples).stiffness_N_per_m);
+    most = std::max(most, tissue.tick(named.rendered_range_m * i / kSamples).stiffness_N_per_m);
   return most;
 }
 

@@ -13,16 +13,16 @@ namespace tact::tools::stability {
 
 struct NamedLaw {
   std::string name;
-  std::shared_ptr<const model::law::Law> law;   // none if the law has memory
-  std::shared_ptr<const model::law::Law> felt;  // as the loop reads it: a table, if it has one
-  std::string beyond;         // what a press beyond its range does, in words without commas
-  double range_m = 0.0;       // of the press
-  double felt_range_m = 0.0;  // of the table
-  SiteLawMaker make_site{};   // of a law with memory
+  std::shared_ptr<const model::law::Law> law;       // none if the law has memory
+  std::shared_ptr<const model::law::Law> rendered;  // as the loop reads it: a table, if it has one
+  std::string beyond;             // what a press beyond its range does, in words without commas
+  double range_m = 0.0;           // of the press
+  double rendered_range_m = 0.0;  // of the table
+  SiteLawMaker make_site{};       // of a law with memory
 
   bool remembers() const { return static_cast<bool>(make_site); }
   /// Untouched until now.
-  FeltTissue fresh() const { return {felt, make_site}; }
+  RenderedTissue fresh() const { return {rendered, make_site}; }
 };
 
 /// Made once; a law that this build cannot make is left out.

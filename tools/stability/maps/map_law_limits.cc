@@ -69,7 +69,7 @@ report::Row run(std::size_t job, Grid grid) {
   GateWatch gate(kRate_Hz);
   gate.open(0.0);
   const int ticks = static_cast<int>(std::ceil(std::abs(depth_m) / kSpeed_mps * kRate_Hz));
-  FeltTissue tissue = named.fresh();
+  RenderedTissue tissue = named.fresh();
   for (int i = 1; i <= ticks; ++i) gate.step(tissue.tick(depth_m * i / ticks).force_N, true);
   // The law itself and not its table: the map is about the law's own limit.
   const model::law::LawResponse at =

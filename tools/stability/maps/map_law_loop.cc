@@ -57,7 +57,7 @@ std::vector<report::Column> columns() {
 
 /// New, and settled at the depth of balance.
 TissueForce settled(const NamedLaw& named, double balance_m) {
-  const auto tissue = std::make_shared<FeltTissue>(named.fresh());
+  const auto tissue = std::make_shared<RenderedTissue>(named.fresh());
   tissue->settle(balance_m);
   return [tissue](double depth_m) { return tissue->tick(depth_m).force_N; };
 }
@@ -76,7 +76,7 @@ report::Row run(std::size_t job, Grid grid) {
   const Settings s = settings(grid);
   const auto [which, delay, damping, depth] = axes(grid).at(job);
   const NamedLaw& named = probed_laws()[which];
-  const double range_m = named.felt_range_m;
+  const double range_m = named.rendered_range_m;
   LoopCase loop;
   loop.device.damping_Ns_per_m = s.damping_Ns_per_m[damping];
   loop.device.delay_s = s.delay_s[delay];
