@@ -50,7 +50,7 @@ ThermalLimit thermal_limit(const model::Limits& limits, double peak, double peri
 }
 
 // It is the cause of what follows in the same tick.
-void latch_first(Fault fault, GateVerdict& verdict) RT_SAFE {
+void latch_first(Fault fault, LimitedForce& verdict) RT_SAFE {
   if (!latches(verdict.fault)) verdict.fault = fault;
 }
 
@@ -75,9 +75,9 @@ Gate::Gate(const model::Limits& limits, double period_s, double force_share)
   ramp_.set(0.0);
 }
 
-GateVerdict Gate::judge(const GateInput& input) RT_SAFE {
+LimitedForce Gate::limit(const GateInput& input) RT_SAFE {
   const double periods = 1.0 + input.skipped_periods;  // since the last write
-  GateVerdict verdict{.wrench = input.wanted};
+  LimitedForce verdict{.wrench = input.wanted};
   book_last_write(input, periods);
   // In the order of gate.h; each stage keeps what the ones before it promised (README.md).
   check_finite(input, verdict);
@@ -97,7 +97,7 @@ GateVerdict Gate::judge(const GateInput& input) RT_SAFE {
   return verdict;
 }
 
-void Gate::note(Stage stage, Fault reason, GateVerdict& verdict) RT_SAFE {
+void Gate::note(Stage stage, Fault reason, LimitedForce& verdict) RT_SAFE {
   ++counter_[static_cast<std::size_t>(stage)];
   if (latches(reason))
     latch_first(reason, verdict);
@@ -112,7 +112,7 @@ void Gate::book_last_write(const GateInput& input, double periods) RT_SAFE {
   warm_torque_.heat(written_.torque_Nm, periods);
 }
 
-void Gate::check_finite(const GateInput& input, GateVerdict& verdict) RT_SAFE {
+void Gate::check_finite(const GateInput& input, LimitedForce& verdict) RT_SAFE {
   if (!is_finite(input.tool)) note(Stage::kFinite, Fault::kSampleNotFinite, verdict);
   if (is_finite(input.wanted)) return;
   note(Stage::kFinite, Fault::kForceNotFinite, verdict);
@@ -120,7 +120,7 @@ void Gate::check_finite(const GateInput& input, GateVerdict& verdict) RT_SAFE {
 }
 
 // A period that was skipped has missed its sample, unless a fresh one tells in the end.
-void Gate::fade_missed_samples(const GateInput& input, GateVerdict& verdict) RT_SAFE {
+void Gate::fade_missed_samples(const GateInput& input, LimitedForce& verdict) RT_SAFE {
   // Closes by the periods missed since the last tick, the first of a row not among them.
   const std::int64_t held = std::max<std::int64_t>(missed_, 1);  // the first one is held
   const bool missing = !input.fresh && input.armed;  // a device may take its time to wake
@@ -132,11 +132,11 @@ void Gate::fade_missed_samples(const GateInput& input, GateVerdict& verdict) RT_
   verdict.wrench = level * verdict.wrench;
 }
 
-void Gate::check_energy(bool armed, GateVerdict& verdict) RT_SAFE {
+void Gate::check_energy(bool armed, LimitedForce& verdict) RT_SAFE {
   if (armed && tank_.is_overdrawn()) note(Stage::kPassivity, Fault::kEnergyOverdrawn, verdict);
 }
 
-bool Gate::check_armed(bool armed, GateVerdict& verdict) RT_SAFE {
+bool Gate::check_armed(bool armed, LimitedForce& verdict) RT_SAFE {
   // Nobody is pushed: a new budget, and no motion of before is counted.
   if (!armed) tank_.refill();
   if (armed && !latches(verdict.fault)) return true;
@@ -144,7 +144,7 @@ bool Gate::check_armed(bool armed, GateVerdict& verdict) RT_SAFE {
   return false;
 }
 
-void Gate::fade_outside(const model::Tool& tool, double periods, GateVerdict& verdict) RT_SAFE {
+void Gate::fade_outside(const model::Tool& tool, double periods, LimitedForce& verdict) RT_SAFE {
   const double inside = workspace_.step(is_inside(limits_, tool.position_m), period_s_, periods);
   const double slow = speed_.step(is_slow(limits_, tool), period_s_, periods);
   if (slow < 1.0) note(Stage::kWorkspace, Fault::kTooFast, verdict);
@@ -165,7 +165,7 @@ Gate::Permitted Gate::permitted_now() const RT_SAFE {
   return {.energy = {passive_N, passive_Nm}, .heat = {warm_N, warm_Nm}, .all = all};
 }
 
-void Gate::keep_passive(const Permitted& permitted, GateVerdict& verdict) RT_SAFE {
+void Gate::keep_passive(const Permitted& permitted, LimitedForce& verdict) RT_SAFE {
   const Magnitude &energy = permitted.energy, &heat = permitted.heat;
   Wrench& w = verdict.wrench;
   // Of energy and heat the tighter one shortens and is told: here, or in the next stage.
@@ -176,7 +176,7 @@ void Gate::keep_passive(const Permitted& permitted, GateVerdict& verdict) RT_SAF
   if (damped || braked || turn_braked) note(Stage::kPassivity, Fault::kEnergyLimited, verdict);
 }
 
-void Gate::limit_magnitudes(const Magnitude& heat, GateVerdict& verdict) RT_SAFE {
+void Gate::limit_magnitudes(const Magnitude& heat, LimitedForce& verdict) RT_SAFE {
   if (limit_magnitude(verdict.wrench.force_N, heat.force_N))
     note(Stage::kMagnitude,
          heat.force_N < force_limit_N_ ? Fault::kContinuousLimited : Fault::kForceLimited, verdict);
@@ -186,13 +186,13 @@ void Gate::limit_magnitudes(const Magnitude& heat, GateVerdict& verdict) RT_SAFE
          verdict);
 }
 
-void Gate::limit_slew(const Magnitude& most, double periods, GateVerdict& verdict) RT_SAFE {
+void Gate::limit_slew(const Magnitude& most, double periods, LimitedForce& verdict) RT_SAFE {
   if (step_towards(verdict.wrench, periods, most)) note(Stage::kSlew, Fault::kSlewLimited, verdict);
 }
 
 // What is taken along the motion may turn the force: it keeps its slew once more.
 void Gate::limit_power(const model::Tool& tool, const Magnitude& most, double periods,
-                       GateVerdict& verdict) RT_SAFE {
+                       LimitedForce& verdict) RT_SAFE {
   Wrench& w = verdict.wrench;
   if (limit_surplus(w, tool.velocity_mps, tool.angular_velocity_radps,
                     kPowerAim * limits_.power_W)) {
@@ -212,20 +212,20 @@ bool Gate::step_towards(Wrench& w, double periods, const Magnitude& most) const 
          slow;
 }
 
-void Gate::ramp_up(GateVerdict& verdict) RT_SAFE {
+void Gate::ramp_up(LimitedForce& verdict) RT_SAFE {
   const double ramp = ramp_.step(true, period_s_);
   if (ramp < 1.0) note(Stage::kRamp, Fault::kRampingUp, verdict);
   verdict.wrench = ramp * verdict.wrench;
 }
 
 // Of the force after the ramp, as it would be written. NaN fails, and latches.
-void Gate::check_power(const model::Tool& tool, GateVerdict& verdict) RT_SAFE {
+void Gate::check_power(const model::Tool& tool, LimitedForce& verdict) RT_SAFE {
   if (!(power_W(verdict.wrench, tool) <= limits_.power_W))
     note(Stage::kPower, Fault::kPowerExceeded, verdict);
 }
 
 // Zero now: what comes after starts from zero and ramps up again.
-GateVerdict Gate::without_force(GateVerdict verdict) RT_SAFE {
+LimitedForce Gate::without_force(LimitedForce verdict) RT_SAFE {
   before_ramp_ = {};
   ramp_.set(0.0);
   written_ = {};

@@ -71,7 +71,7 @@ struct GateInput {
   std::uint32_t skipped_periods = 0;  // between the tick before and this one
 };
 
-struct GateVerdict {
+struct LimitedForce {
   Wrench wrench;                // to the device
   Fault acting = Fault::kNone;  // why the last stage that acted did, 1..99
   Fault fault = Fault::kNone;   // 100+: the supervisor must stop
@@ -82,7 +82,7 @@ class Gate {
   /// `force_share` scales the magnitude limits: 1, or kNonRtForceShare.
   Gate(const model::Limits& limits, double period_s, double force_share);
 
-  GateVerdict judge(const GateInput& input) RT_SAFE;
+  LimitedForce limit(const GateInput& input) RT_SAFE;
   /// How often each stage acted.
   const std::array<std::uint64_t, kStageCount>& counters() const RT_SAFE { return counter_; }
   double force_limit_N() const RT_SAFE { return force_limit_N_; }
@@ -105,25 +105,25 @@ class Gate {
     Magnitude energy, heat, all;
   };
 
-  void note(Stage stage, Fault reason, GateVerdict& verdict) RT_SAFE;
+  void note(Stage stage, Fault reason, LimitedForce& verdict) RT_SAFE;
   // The stages, one function each; passivity and power have a check that latches besides.
-  void check_finite(const GateInput& input, GateVerdict& verdict) RT_SAFE;
-  void fade_missed_samples(const GateInput& input, GateVerdict& verdict) RT_SAFE;
-  void check_energy(bool armed, GateVerdict& verdict) RT_SAFE;
-  bool check_armed(bool armed, GateVerdict& verdict) RT_SAFE;  // false: no force
-  void fade_outside(const model::Tool& tool, double periods, GateVerdict& verdict) RT_SAFE;
-  void keep_passive(const Permitted& permitted, GateVerdict& verdict) RT_SAFE;
-  void limit_magnitudes(const Magnitude& heat, GateVerdict& verdict) RT_SAFE;
-  void limit_slew(const Magnitude& most, double periods, GateVerdict& verdict) RT_SAFE;
+  void check_finite(const GateInput& input, LimitedForce& verdict) RT_SAFE;
+  void fade_missed_samples(const GateInput& input, LimitedForce& verdict) RT_SAFE;
+  void check_energy(bool armed, LimitedForce& verdict) RT_SAFE;
+  bool check_armed(bool armed, LimitedForce& verdict) RT_SAFE;  // false: no force
+  void fade_outside(const model::Tool& tool, double periods, LimitedForce& verdict) RT_SAFE;
+  void keep_passive(const Permitted& permitted, LimitedForce& verdict) RT_SAFE;
+  void limit_magnitudes(const Magnitude& heat, LimitedForce& verdict) RT_SAFE;
+  void limit_slew(const Magnitude& most, double periods, LimitedForce& verdict) RT_SAFE;
   void limit_power(const model::Tool& tool, const Magnitude& most, double periods,
-                   GateVerdict& verdict) RT_SAFE;
-  void ramp_up(GateVerdict& verdict) RT_SAFE;
-  void check_power(const model::Tool& tool, GateVerdict& verdict) RT_SAFE;
+                   LimitedForce& verdict) RT_SAFE;
+  void ramp_up(LimitedForce& verdict) RT_SAFE;
+  void check_power(const model::Tool& tool, LimitedForce& verdict) RT_SAFE;
 
   void book_last_write(const GateInput& input, double periods) RT_SAFE;
   Permitted permitted_now() const RT_SAFE;
   bool step_towards(Wrench& w, double periods, const Magnitude& most) const RT_SAFE;
-  GateVerdict without_force(GateVerdict verdict) RT_SAFE;
+  LimitedForce without_force(LimitedForce verdict) RT_SAFE;
 
   model::Limits limits_;
   double period_s_;

@@ -25,7 +25,7 @@ struct GripInput {
   std::uint32_t skipped_periods = 0;
 };
 
-struct GripVerdict {
+struct LimitedGrip {
   double force_N = 0.0;  // to the device
   Fault acting = Fault::kNone;
   Fault fault = Fault::kNone;
@@ -60,8 +60,8 @@ class GripGate {
     return GripGate(own, period_s, force_share);
   }
 
-  GripVerdict limit(const GripInput& in) RT_SAFE {
-    const GateVerdict verdict = gate_.judge(
+  LimitedGrip limit(const GripInput& in) RT_SAFE {
+    const LimitedForce verdict = gate_.limit(
         {.wanted = {.force_N = {in.wanted_N, 0.0, 0.0}, .torque_Nm = {}},
          .tool = {.position_m = {in.gap_m, 0.0, 0.0}, .velocity_mps = {in.speed_mps, 0.0, 0.0}},
          .fresh = in.fresh,

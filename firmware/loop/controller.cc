@@ -110,7 +110,7 @@ Fault Controller::find_limit(Fault acting, bool is_coupled) const RT_SAFE {
 }
 
 // Where the gate lets the hand go, it lets the fingers go, too.
-gate::GripVerdict Controller::limit_grip(const TickInput& input) RT_SAFE {
+gate::LimitedGrip Controller::limit_grip(const TickInput& input) RT_SAFE {
   if (!grip_gate_) return {};
   const hal::Sample& sample = input.sample;
   return grip_gate_->limit(
@@ -122,7 +122,7 @@ gate::GripVerdict Controller::limit_grip(const TickInput& input) RT_SAFE {
        .skipped_periods = input.skipped_periods});
 }
 
-TickOutput Controller::judge(const TickInput& input) RT_SAFE {
+TickOutput Controller::limit(const TickInput& input) RT_SAFE {
   const bool finite = is_finite(input.sample.tool);
   const bool too_late = late_watch_.step(input.skipped_periods);
   const Fault fault = find_fault(input, finite, too_late);
@@ -131,15 +131,15 @@ TickOutput Controller::judge(const TickInput& input) RT_SAFE {
       input.commands,
       {.sample_good = input.sample.fresh && finite, .ready = input.ready, .fault = fault});
   // The fingers first: a fault found there has zero force on the hand in this tick.
-  const gate::GripVerdict grip = limit_grip(input);
+  const gate::LimitedGrip grip = limit_grip(input);
   supervisor_.trip(grip.fault);
   // Where the gate latches it makes the force zero by itself; the state follows.
   // Its workspace is the device's, so it is given the handle.
   hal::Tool handle = input.sample.tool;
   handle.position_m = handle.position_m - input.clutch_shift_m;
   const bool is_coupled = input.clutch == ClutchState::kCoupled;
-  const gate::GateVerdict verdict =
-      gate_.judge({.wanted = is_coupled ? rendered_.wrench : model::Wrench{},
+  const gate::LimitedForce verdict =
+      gate_.limit({.wanted = is_coupled ? rendered_.wrench : model::Wrench{},
                    .tool = handle,
                    .fresh = input.sample.fresh,
                    .armed = supervisor_.armed(),

@@ -53,13 +53,13 @@ class Controller {
 
   void detect_contact(const TickInput& input) RT_SAFE;
   void render_force(const TickInput& input) RT_SAFE;
-  TickOutput judge(const TickInput& input) RT_SAFE;
+  TickOutput limit(const TickInput& input) RT_SAFE;
 
   /// The three phases in a row.
   TickOutput tick(const TickInput& input) RT_SAFE {
     detect_contact(input);
     render_force(input);
-    return judge(input);
+    return limit(input);
   }
 
   /// What a stepped law looks like now goes to the slot; nothing for laws with a profile.
@@ -78,7 +78,7 @@ class Controller {
  private:
   Fault find_fault(const TickInput& input, bool finite, bool too_late) const RT_SAFE;
   Fault find_limit(Fault acting, bool is_coupled) const RT_SAFE;
-  gate::GripVerdict limit_grip(const TickInput& input) RT_SAFE;
+  gate::LimitedGrip limit_grip(const TickInput& input) RT_SAFE;
   double reach_m(std::uint64_t periods, std::int64_t stamp_ns) const RT_SAFE;
 
   model::contact::Contact contact_;

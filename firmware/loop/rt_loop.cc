@@ -190,7 +190,7 @@ void RtLoop::cycle(std::int64_t due_ns) RT_SAFE {
   const std::int64_t detected_ns = end_phase(Phase::kDetect, read_ns);
   controller_.render_force(input);
   const std::int64_t rendered_ns = end_phase(Phase::kRender, detected_ns);
-  record_.output = controller_.judge(input);
+  record_.output = controller_.limit(input);
   answer_requests();
   const std::int64_t limited_ns = end_phase(Phase::kLimit, rendered_ns);
 

@@ -62,7 +62,7 @@ auto BasicCanBus<Frame>::receive() RT_SAFE -> std::span<const Received> {
       received_[frames++] = {.frame = *frame, .age_ns = arrival.age_ns};
     else if (const auto error =
                  decode_can_error(std::span(arrival.bytes).template first<kCanFrameBytes>()))
-      judge(*error);
+      evaluate(*error);
     else
       ++counts_.unreadable;
   }
@@ -70,7 +70,7 @@ auto BasicCanBus<Frame>::receive() RT_SAFE -> std::span<const Received> {
 }
 
 template <class Frame>
-void BasicCanBus<Frame>::judge(const CanError& error) RT_SAFE {
+void BasicCanBus<Frame>::evaluate(const CanError& error) RT_SAFE {
   ++counts_.error_frames;
   classes_seen_ |= error.classes;
   controller_seen_ = static_cast<std::uint8_t>(controller_seen_ | error.controller);

@@ -73,7 +73,7 @@ class BasicCanBus {
   const CanRate& rate() const { return socket_->rate(); }
 
  private:
-  void judge(const CanError& error) RT_SAFE;
+  void evaluate(const CanError& error) RT_SAFE;
   void miss() RT_SAFE;
 
   std::unique_ptr<Socket> socket_;

@@ -50,12 +50,12 @@ class GpioLines final : public SafetyLines {
     // A failed read leaves zeros: every contact open, which is a stop.
     Levels values{};
     if (!is_lost() && !lines_.inputs.empty() && !lines_.inputs.get(values)) lose();
-    const Fault fault = logic_.judge({.estop_a = level(values, lines_.estop_a),
-                                      .estop_b = level(values, lines_.estop_b),
-                                      .dead_man = level(values, lines_.dead_man),
-                                      .grip = grip_pressed(values),
-                                      .clutch = level(values, lines_.clutch)},
-                                     now_ns);
+    const Fault fault = logic_.evaluate({.estop_a = level(values, lines_.estop_a),
+                                         .estop_b = level(values, lines_.estop_b),
+                                         .dead_man = level(values, lines_.dead_man),
+                                         .grip = grip_pressed(values),
+                                         .clutch = level(values, lines_.clutch)},
+                                        now_ns);
     return is_lost() ? Fault::kLinesLost : fault;
   }
 

@@ -64,7 +64,7 @@ void SafetyLogic::compare(const SafetyLevels& levels) RT_SAFE {
     stuck_ = a_moved ? LinesCause::kBStaysOpen : LinesCause::kAStaysOpen;
 }
 
-Fault SafetyLogic::judge(const SafetyLevels& levels, std::int64_t now_ns) RT_SAFE {
+Fault SafetyLogic::evaluate(const SafetyLevels& levels, std::int64_t now_ns) RT_SAFE {
   now_ns_ = now_ns;
   LinesCause cause = LinesCause::kNone;
   const bool stood = fault_ != Fault::kNone;

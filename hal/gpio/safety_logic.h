@@ -71,11 +71,11 @@ class SafetyLogic {
   explicit SafetyLogic(const SafetyWiring& wiring) : wiring_(wiring) {}
 
   /// Levels of this tick. kNone, or what stands.
-  model::Fault judge(const SafetyLevels& levels, std::int64_t now_ns) RT_SAFE;
-  /// Outputs of this tick, after judge().
+  model::Fault evaluate(const SafetyLevels& levels, std::int64_t now_ns) RT_SAFE;
+  /// Outputs of this tick, after evaluate().
   SafetyOutputs drive(const LinesTick& tick) RT_SAFE;
 
-  /// Of the last judge(); nothing where none is wired.
+  /// Of the last evaluate(); nothing where none is wired.
   std::optional<bool> grip() const RT_SAFE {
     return wiring_.grip ? std::optional(grip_.pressed()) : std::nullopt;
   }

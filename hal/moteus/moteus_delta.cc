@@ -92,7 +92,7 @@ class Moteuses final : public can::CanFdDrives {
                        .is_ready = loop.power == CanPower::kReady,
                        .is_late = loop.start_is_late()};
     for (std::size_t i = 0; i < 3; ++i) {
-      judge(loop, i, before);
+      evaluate(loop, i, before);
       settled = settled && axes_[i].settled >= kSettledTicks;
     }
     if (loop.power == CanPower::kStarting && settled) loop.become_ready();
@@ -184,7 +184,7 @@ class Moteuses final : public can::CanFdDrives {
   };
 
   /// One drive that shall have power.
-  void judge(Loop& loop, std::size_t i, const Asked& before) const RT_SAFE {
+  void evaluate(Loop& loop, std::size_t i, const Asked& before) const RT_SAFE {
     const Axis& axis = axes_[i];
     const auto mode = static_cast<std::uint32_t>(axis.mode);
     // The first reply after a stop may still tell of the time before it.

@@ -132,7 +132,7 @@ bool PhantomWorker::cycle() {
 void PhantomWorker::exchange() {
   LibraryPose pose{.position_m = {}, .orientation = {}, .stamp_ns = monotonic_ns()};
   session_.hd.begin_frame(session_.id);
-  const bool sound = judge(pose);
+  const bool sound = evaluate(pose);
   // The time once more: the library may have waited for the state, and the command has aged.
   const auto force = sound ? next_force(monotonic_ns()) : std::nullopt;
   const Vec3 force_N = force ? force->wrench.force_N : Vec3{};
@@ -148,7 +148,7 @@ void PhantomWorker::exchange() {
 }
 
 /// The state of this frame; false when no force may follow it.
-bool PhantomWorker::judge(LibraryPose& pose) {
+bool PhantomWorker::evaluate(LibraryPose& pose) {
   const HdFunctions& hd = session_.hd;
   double transform[16] = {};
   hd.get_doubles(kHdCurrentTransform, transform);

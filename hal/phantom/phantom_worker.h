@@ -41,7 +41,7 @@ class PhantomWorker final : public maker_library::LibraryWorker {
   static unsigned on_cycle(void* of);
   bool cycle();
   void exchange();
-  bool judge(maker_library::LibraryPose& pose);
+  bool evaluate(maker_library::LibraryPose& pose);
   bool errors();
   void send(const model::Vec3& force_N);
   void let_go();

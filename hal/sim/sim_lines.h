@@ -25,12 +25,12 @@ class SimLines final : public SafetyLines {
   model::Fault read(std::int64_t now_ns) RT_SAFE override {
     if (inputs_.chip_lost.load(std::memory_order_relaxed)) lost_ = true;
     const model::Fault fault =
-        logic_.judge({.estop_a = inputs_.estop_a.load(std::memory_order_relaxed),
-                      .estop_b = inputs_.estop_b.load(std::memory_order_relaxed),
-                      .dead_man = inputs_.dead_man.load(std::memory_order_relaxed),
-                      .grip = inputs_.grip.load(std::memory_order_relaxed),
-                      .clutch = inputs_.clutch.load(std::memory_order_relaxed)},
-                     now_ns);
+        logic_.evaluate({.estop_a = inputs_.estop_a.load(std::memory_order_relaxed),
+                         .estop_b = inputs_.estop_b.load(std::memory_order_relaxed),
+                         .dead_man = inputs_.dead_man.load(std::memory_order_relaxed),
+                         .grip = inputs_.grip.load(std::memory_order_relaxed),
+                         .clutch = inputs_.clutch.load(std::memory_order_relaxed)},
+                        now_ns);
     return lost_ ? model::Fault::kLinesLost : fault;
   }
   model::Fault write(const LinesTick& tick) RT_SAFE override {

@@ -50,7 +50,7 @@ void Keys::store(const toml::node& node, std::string_view key, Result<T> value, 
   if (value)
     out = std::move(*value);
   else
-    judge(node, key, value.error().sentence);
+    check(node, key, value.error().sentence);
 }
 
 void Keys::text(std::string_view key, std::string_view meaning, std::string& out, Need need) {
@@ -161,7 +161,7 @@ bool Keys::section(std::string_view key, std::string_view meaning, const Inside&
   const toml::node* node = take(key, fmt::format("a section [{}]", path_to(key)), meaning, times);
   if (!node) return false;
   if (!node->is_table()) {
-    judge(*node, key, fmt::format("is {}, not a section", type_name(*node)));
+    check(*node, key, fmt::format("is {}, not a section", type_name(*node)));
     return false;
   }
   Keys keys(visit_, node->as_table(), path_to(key));
@@ -184,9 +184,9 @@ void Keys::entries(std::string_view key, CountRange range, std::string_view mean
   const toml::node* node = take(key, allowed, meaning, range.low == 0 ? "none" : "");
   if (!node) return;
   const toml::array* array = node->as_array();
-  if (!array) return judge(*node, key, fmt::format("is {}", type_name(*node)));
+  if (!array) return check(*node, key, fmt::format("is {}", type_name(*node)));
   if (array->size() < range.low || array->size() > range.high)
-    return judge(*node, key, fmt::format("has {} entries", array->size()));
+    return check(*node, key, fmt::format("has {} entries", array->size()));
   for (std::size_t i = 0; i < array->size(); ++i) {
     const toml::node& entry = *array->get(i);
     const std::string name = fmt::format("{}.{}", key, i);
@@ -241,7 +241,7 @@ std::optional<std::size_t> Keys::match(std::string_view key, std::span<const Cho
   const Result<std::string> value = as_text(node);
   for (std::size_t i = 0; value && i < choices.size(); ++i)
     if (*value == choices[i].name) return i;
-  judge(node, key,
+  check(node, key,
         value ? fmt::format("= \"{}\" is unknown", on_one_line(*value)) : value.error().sentence);
   return std::nullopt;
 }
@@ -259,7 +259,7 @@ void Keys::tell(std::string_view key, double value, Range range, bool is_whole,
 }
 
 /// Called after the key was taken, so what is allowed stands in the last known entry.
-void Keys::judge(const toml::node& node, std::string_view key, std::string_view problem) {
+void Keys::check(const toml::node& node, std::string_view key, std::string_view problem) {
   visit_.note(ProblemKind::kWrong, visit_.document()->place_of(node),
               fmt::format("{} {}; allowed: {}", path_to(key), problem, known_.back().allowed));
 }

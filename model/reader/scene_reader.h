@@ -128,7 +128,7 @@ class Keys {
   void describe(std::string_view key, std::span<const Choice> choices);
   template <typename T>
   void store(const toml::node& node, std::string_view key, Result<T> value, T& out);
-  void judge(const toml::node& node, std::string_view key, std::string_view problem);
+  void check(const toml::node& node, std::string_view key, std::string_view problem);
   void tell(std::string_view key, double value, Range range, bool is_whole,
             std::string_view meaning);
   void finish();

@@ -77,7 +77,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     tests::GateRules rules(setting);
     Story story(setting);
     for (int tick = 0; tick < kMaxTicks && !input.empty(); ++tick)
-      require(rules.judge(story.next(input, rules.verdict().wrench)) == nullptr);
+      require(rules.check(story.next(input, rules.verdict().wrench)) == nullptr);
   }
   return 0;
 }

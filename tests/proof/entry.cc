@@ -46,7 +46,7 @@ using tact::model::Tool;
 using tact::model::Vec3;
 
 extern "C" {
-void judge(Gate* gate, const GateInput* input, GateVerdict* out) { *out = gate->judge(*input); }
+void limit(Gate* gate, const GateInput* input, LimitedForce* out) { *out = gate->limit(*input); }
 void make(Gate* gate, const Limits* limits, double period_s, double share) {
   new (gate) Gate(*limits, period_s, share);
 }

@@ -14,7 +14,7 @@
 
 using tact::firmware::gate::Gate;
 using tact::firmware::gate::GateInput;
-using tact::firmware::gate::GateVerdict;
+using tact::firmware::gate::LimitedForce;
 namespace gate = tact::firmware::gate;
 
 namespace {
@@ -71,10 +71,10 @@ void name_input() {
 }
 
 void name_output() {
-  vector("FORCE", "out", offsetof(GateVerdict, wrench.force_N));
-  vector("TORQUE", "out", offsetof(GateVerdict, wrench.torque_Nm));
-  name("LIMIT", "out", offsetof(GateVerdict, acting), "s");
-  name("FAULT", "out", offsetof(GateVerdict, fault), "s");
+  vector("FORCE", "out", offsetof(LimitedForce, wrench.force_N));
+  vector("TORQUE", "out", offsetof(LimitedForce, wrench.torque_Nm));
+  name("LIMIT", "out", offsetof(LimitedForce, acting), "s");
+  name("FAULT", "out", offsetof(LimitedForce, fault), "s");
 }
 
 void name_parts() {

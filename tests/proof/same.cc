@@ -93,8 +93,8 @@ int main() {
       in.skipped_periods = random_bits() % 20 == 0 ? random_bits() % 30 : 0;
       load_gate(bytes_of(gate));
       load_input(bytes_of(in));
-      judge();
-      const GateVerdict verdict = gate.judge(in);
+      limit();
+      const LimitedForce verdict = gate.limit(in);
       forces += norm(verdict.wrench.force_N) > 0.0;
       if (is_same_out(bytes_of(verdict)) && is_same_gate(bytes_of(gate))) continue;
       std::printf("not the same in run %d, tick %d\n", run, tick);

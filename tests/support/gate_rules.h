@@ -16,7 +16,7 @@
 namespace tact::tests {
 
 using firmware::gate::GateInput;
-using firmware::gate::GateVerdict;
+using firmware::gate::LimitedForce;
 using model::Vec3;
 
 inline constexpr std::uint64_t kLost = 20;  // missed samples in a row
@@ -33,11 +33,11 @@ class GateRules {
         witness_(model::limits_in_use(setting.limits, setting.force_share), setting.period_s()) {}
 
   /// One tick. The rule that it broke, or null.
-  const char* judge(RuleTick tick) {
+  const char* check(RuleTick tick) {
     GateInput& input = tick.gate;
     const double angle_rad = std::remainder(tick.angle_rad, 4.0 * std::numbers::pi);
     input.tool.orientation = {std::cos(0.5 * angle_rad), std::sin(0.5 * angle_rad), 0, 0};
-    verdict_ = gate_.judge(input);
+    verdict_ = gate_.limit(input);
     const char* broken = witness_.check({.written = verdict_.wrench,
                                          .tool = input.tool,
                                          .fresh = input.fresh,
@@ -48,7 +48,7 @@ class GateRules {
     return broken != nullptr ? broken : broken_latch_rule(input);
   }
 
-  const GateVerdict& verdict() const { return verdict_; }
+  const LimitedForce& verdict() const { return verdict_; }
   const firmware::gate::Gate& gate() const { return gate_; }
   /// Where no step was too long for its time.
   double most_given_J() const { return most_given_J_; }
@@ -72,7 +72,7 @@ class GateRules {
 
   firmware::gate::Gate gate_;
   model::LimitWitness witness_;
-  GateVerdict verdict_;
+  LimitedForce verdict_;
   double most_given_J_ = 0.0;
 };
 

@@ -56,8 +56,8 @@ model::Fault run_gated(hal::Device& device, firmware::loop::Clock& clock, hal::S
     const bool armed = more && up_N != 0.0;
     if (armed && !firmware::gate::is_inside(limits, sample.tool.position_m))
       note(Fault::kOutsideWorkspace);
-    const firmware::gate::GateVerdict verdict =
-        gate.judge({.wanted = {.force_N = {0.0, 0.0, up_N}, .torque_Nm = {}},
+    const firmware::gate::LimitedForce verdict =
+        gate.limit({.wanted = {.force_N = {0.0, 0.0, up_N}, .torque_Nm = {}},
                     .tool = sample.tool,
                     .fresh = sample.fresh,
                     .armed = armed && fault == Fault::kNone,

@@ -31,7 +31,7 @@ std::string rows_of(const FitReport& report) {
                          at < i ? site.samples[at - first].force_N : std::nan(""));
       for (const FittedLaw& law : report.laws)
         out += fmt::format(",{:.6g}",
-                           at < i ? law.judged.sites[s].scale * law.answers[at].force_N : 0.0);
+                           at < i ? law.checked.sites[s].scale * law.answers[at].force_N : 0.0);
       out += "\n";
     }
     out += "\n";  // lines end with their site
@@ -49,7 +49,7 @@ std::string script_of(const FitReport& report, const std::string& csv) {
   for (std::size_t k = 0; k < report.laws.size(); ++k)
     plots += fmt::format(", '{}' using 3:{} with lines lw 1.5 lc rgb '{}' title '{} ({:.1f} %)'",
                          csv, k + 5, report::kInk[k % kColours], report.laws[k].title,
-                         100.0 * report.laws[k].judged.fitted.rms_ratio());
+                         100.0 * report.laws[k].checked.fitted.rms_ratio());
   return "set xlabel 'depth, mm (pull below 0)'\n"
          "set ylabel 'force, N'\nset key top left\nset grid lc rgb '#dddddd'\n"
          "plot " +

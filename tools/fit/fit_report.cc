@@ -12,8 +12,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
-double judged_ratio(const FittedLaw& law) {
-  const Judgement& j = law.judged;
+double checked_ratio(const FittedLaw& law) {
+  const Evaluation& j = law.checked;
   // More parameters never fit worse: only a site that the law has not seen can tell.
   return j.held_out.samples > 0 ? j.held_out.rms_ratio() : j.fitted.rms_ratio();
 }
@@ -70,7 +70,7 @@ std::string toml_of_relaxation(const PronyFit& fit) {
 }
 
 std::string text_of_law(const FittedLaw& law) {
-  const Judgement& j = law.judged;
+  const Evaluation& j = law.checked;
   std::string out = fmt::format("\n{}: {}, {}\n", law.name, law.title,
                                 j.follows ? "follows the data" : "CANNOT FOLLOW the data");
   for (const std::string& reason : j.reasons) out += "  " + reason + "\n";
@@ -106,7 +106,7 @@ ordered_json json_of(double value) {
 }
 
 ordered_json json_of(const FittedLaw& law) {
-  const Judgement& j = law.judged;
+  const Evaluation& j = law.checked;
   ordered_json sites = ordered_json::array(), keys = ordered_json::array();
   for (const SiteResidual& s : j.sites)
     sites.push_back({{"site", s.name},
@@ -137,7 +137,7 @@ ordered_json json_of(const FittedLaw& law) {
 
 bool FitReport::follows() const {
   const bool one = laws.empty() || std::any_of(laws.begin(), laws.end(), [](const FittedLaw& law) {
-                     return law.judged.follows;
+                     return law.checked.follows;
                    });
   return one && (!relaxation || relaxation->is_good);
 }
@@ -145,7 +145,7 @@ bool FitReport::follows() const {
 void FitReport::sort() {
   std::sort(laws.begin(), laws.end(), [](const FittedLaw& a, const FittedLaw& b) {
     // By name where two are alike: std::sort keeps no order of its own.
-    return std::tuple(judged_ratio(a), a.name) < std::tuple(judged_ratio(b), b.name);
+    return std::tuple(checked_ratio(a), a.name) < std::tuple(checked_ratio(b), b.name);
   });
 }
 
@@ -177,10 +177,10 @@ std::string toml_of(const FitReport& report) {
   for (const FittedLaw& law : report.laws) {
     out += fmt::format(
         "\n# {}: RMS {} of the peak, held-out sites {}\n", law.title,
-        percent(law.judged.fitted.rms_ratio()),
-        law.judged.held_out.samples > 0 ? percent(law.judged.held_out.rms_ratio()) : "-");
-    for (const std::string& reason : law.judged.reasons)
-      out += (law.judged.follows ? "# limit: " : "# cannot follow: ") + reason + "\n";
+        percent(law.checked.fitted.rms_ratio()),
+        law.checked.held_out.samples > 0 ? percent(law.checked.held_out.rms_ratio()) : "-");
+    for (const std::string& reason : law.checked.reasons)
+      out += (law.checked.follows ? "# limit: " : "# cannot follow: ") + reason + "\n";
     out += toml_of_keys(law, written);
   }
   if (report.relaxation) out += "\n" + toml_of_relaxation(*report.relaxation);

@@ -225,7 +225,7 @@ Result<FittedLaw> fit_law(const FitLaw& law, const Scene& scene, const FitData& 
   if (!answers) return answers.error();
   out.title = (*made)->title();
   out.answers = std::move(*answers);
-  out.judged = judge(data, out.answers, options.scale_by_site, (*made)->range().press_m);
+  out.checked = check(data, out.answers, options.scale_by_site, (*made)->range().press_m);
   for (const FitParameter& p : law.parameters) out.keys.push_back(key_of(p, fit.scene()));
   for (const FitParameter& p : law.followers) out.keys.push_back(key_of(p, fit.scene()));
   add_raised(law, scene, fit.scene(), out.keys);

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "model/result.h"
-#include "tools/fit/fit_judge.h"
+#include "tools/fit/fit_check.h"
 #include "tools/fit/fit_law.h"
 
 namespace tact::tools::fit {
@@ -39,7 +39,7 @@ struct FittedLaw {
   std::string title{};   // for people
   std::string choice{};  // as FitLaw
   std::vector<FittedKey> keys{};
-  Judgement judged{};
+  Evaluation checked{};
   std::vector<FitAnswer> answers{};  // in the order of the data, before factors of sites
   int evaluations = 0;
 };

@@ -138,7 +138,7 @@ int compare(const program::Program& program, const Options& o) {
   if (o.json_path != "-") fmt::print("{}", make_comparison_text(*comparison));
   if (auto error = write_json(to_json(*comparison), o.json_path)) return program.fail(*error);
   // A gate that judged nothing must not look passed.
-  if (gate && !comparison->judged_any())
+  if (gate && !comparison->checked_any())
     return program.fail(Error{"nothing could be judged: too few samples; measure for longer"});
   return comparison->is_worse() ? 1 : 0;
 }
@@ -178,7 +178,7 @@ int measure(const program::Program& program, Options& o) {
   if (result->interrupted)
     return program.fail(program::interruption(),
                         "what was measured until then is told, without a picture");
-  const auto verdict = judge_peer(*result);
+  const auto verdict = check_peer(*result);
   if (verdict && !verdict->passed()) fmt::print(stderr, "tact-jitter: {}\n", verdict->sentence());
   return exit_status(*result);
 }

@@ -78,7 +78,7 @@ Provenance provenance_of(const Scene& scene, const Options& o) {
 }
 
 /// Judges the whole tool, law by law, and writes tool.csv and tool.json.
-Result<int> judge_whole_tool(const program::Program& program, const Options& o,
+Result<int> check_whole_tool(const program::Program& program, const Options& o,
                              const Scene& scene) {
   const auto reference = ground_truth::read_tool_reference(o.tool_reference);
   if (!reference) return reference.error();
@@ -88,7 +88,7 @@ Result<int> judge_whole_tool(const program::Program& program, const Options& o,
     // Laws without a section of their own would be judged with numbers that nobody wrote.
     if (!scene.describes(name.kind)) continue;
     if (!laws.empty() && std::find(laws.begin(), laws.end(), name.name) == laws.end()) continue;
-    auto row = judge_tool(scene, name.kind, *reference, o.chart.timing);
+    auto row = check_tool(scene, name.kind, *reference, o.chart.timing);
     if (!row) return row.error();
     rows.push_back(std::move(*row));
   }
@@ -179,7 +179,7 @@ Result<int> run(const program::Program& program, Options& o) {
     return Error{"no reference given; --reference or --tool-reference is needed"};
   const auto scene = o.scene.load();
   if (!scene) return scene.error();
-  return o.reference.empty() ? judge_whole_tool(program, o, *scene)
+  return o.reference.empty() ? check_whole_tool(program, o, *scene)
                              : make_chart(program, o, *scene);
 }
 

@@ -79,11 +79,11 @@ void name_the_rest(LimitsReport& report, const PlanOptions& options) {
 Result<LimitsReport> finished(LimitsReport report, const Runs& runs, const LimitsBench& bench,
                               const hal::DeviceInfo& device, bool wall) {
   if (program::is_interrupted()) return program::interruption();
-  report.limits = judged_limits(Case{}, bench);
+  report.limits = checked_limits(Case{}, bench);
   report.force_share = bench.force_share;
   report.hard_real_time = bench.hard_real_time;
   for (const auto& run : runs)
-    report.cases.push_back({.verdict = judge_case(*run), .rows = run->rows()});
+    report.cases.push_back({.verdict = check_case(*run), .rows = run->rows()});
   if (wall) {
     report.wall = measure_wall(bench, device);
     if (!report.wall) return program::interruption();

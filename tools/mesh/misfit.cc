@@ -15,7 +15,7 @@ namespace {
 
 using model::scene::Scene;
 
-void judge_held_box(const Scene& after, bool is_same, std::vector<Misfit>& misfits) {
+void check_held_box(const Scene& after, bool is_same, std::vector<Misfit>& misfits) {
   if (!after.elastic) return;
   auto organ = after.organ_mesh;
   shift(organ, -after.organ.position_m);
@@ -30,7 +30,7 @@ void judge_held_box(const Scene& after, bool is_same, std::vector<Misfit>& misfi
                            held, organ.triangle.size(), toml_of(box.min_m), toml_of(box.max_m))});
 }
 
-void judge_sites(const Scene& after, bool is_same_file, std::vector<Misfit>& misfits) {
+void check_sites(const Scene& after, bool is_same_file, std::vector<Misfit>& misfits) {
   const auto& sites = after.reference_sites;
   const std::size_t vertices = after.organ_mesh.vertex_m.size();
   const bool all_exist = std::all_of(sites.begin(), sites.end(),
@@ -42,7 +42,7 @@ void judge_sites(const Scene& after, bool is_same_file, std::vector<Misfit>& mis
                                          sites.size(), vertices - 1)});
 }
 
-void judge_map(const Scene& after, std::vector<Misfit>& misfits) {
+void check_map(const Scene& after, std::vector<Misfit>& misfits) {
   if (after.compliance.map_path.empty()) return;
   const auto map = read_scene_map(after);
   if (!map) misfits.push_back({.keys = "compliance.map", .text = map.error().sentence});
@@ -54,9 +54,9 @@ std::vector<Misfit> misfits_of(const Scene* before, const Scene& after) {
   const auto shape = [](const Scene& s) { return model::scene::surface_hash(s.organ_mesh.view()); };
   const bool is_same_file = before != nullptr && before->organ.mesh_path == after.organ.mesh_path;
   std::vector<Misfit> misfits;
-  judge_held_box(after, is_same_file && shape(*before) == shape(after), misfits);
-  judge_sites(after, is_same_file, misfits);
-  judge_map(after, misfits);
+  check_held_box(after, is_same_file && shape(*before) == shape(after), misfits);
+  check_sites(after, is_same_file, misfits);
+  check_map(after, misfits);
   return misfits;
 }
 

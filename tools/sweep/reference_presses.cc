@@ -67,7 +67,7 @@ Way way_to(const model::contact::ContactScene& contact, const Vec3& point_m, con
 }
 
 /// A press of the scene, step by step, held against one of the reference.
-Result<ReferencePress> judge(const model::contact::ContactScene& scene, const Way& way,
+Result<ReferencePress> check(const model::contact::ContactScene& scene, const Way& way,
                              const json& truth) {
   ReferencePress out;
   out.place = truth.at("place");
@@ -123,7 +123,7 @@ Result<std::vector<ReferencePress>> press_reference(const model::scene::Scene& s
           way_to(contact, is_of_vertex ? smooth.organ_mesh.vertex_m[v] : smooth.hand_site_m,
                  is_of_vertex ? -smooth.organ_mesh.vertex_normal[v] : smooth.hand_inward,
                  truth.value("turned_deg", 0.0));
-      auto press = judge(contact, way, truth);
+      auto press = check(contact, way, truth);
       if (!press) return Error{path + ": " + press.error().sentence};
       out.push_back(std::move(*press));
     }

@@ -20,7 +20,7 @@ void call_unreadable(Report& report, const std::string& why) {
   report.compare("reads", why, "a whole case", false, 0.0, 0.0);
 }
 
-void judge_encoded(const json& one, Report& report) {
+void check_encoded(const json& one, Report& report) {
   const std::string message = one.at("message");
   const json& args = one.at("args");
   std::optional<CanFdFrame> frame;
@@ -77,7 +77,7 @@ bool refuses_damage(const CanFdFrame& sound, int node) {
          !hal::moteus::decode_moteus(foreign, node);
 }
 
-void judge_decoded(const json& one, Report& report) {
+void check_decoded(const json& one, Report& report) {
   Report hex;
   const auto bytes = from_hex(one.at("data"), hex);
   if (!hex.damage().empty()) return call_unreadable(report, hex.damage());
@@ -96,13 +96,13 @@ void judge_decoded(const json& one, Report& report) {
   report.compare("refuses damage", refuses_damage(frame, address.source), true, false, 0.0, 0.0);
 }
 
-template <class Judge>
-void judge_each(const json& file, const char* section, Judge judge, Report& report) {
+template <class Check>
+void check_each(const json& file, const char* section, Check check, Report& report) {
   int number = 0;
   for (const json& one : file.at(section)) {
     report.begin_case(fmt::format("{}/{}", section, number++));
     try {  // nlohmann/json reports a field that is missing, or is no number, by exceptions
-      judge(one, report);
+      check(one, report);
     } catch (const std::exception& damage) {
       call_unreadable(report, damage.what());
     }
@@ -115,8 +115,8 @@ void verify_moteus(const json& file, Report& report) {
   report.begin_case("bitrate");
   report.compare("bitrate", {hal::can::kCanFdSlow_bps, hal::can::kCanFdFast_bps},
                  file.at("bitrate"), false, 0.0, 0.0);
-  judge_each(file, "encode", judge_encoded, report);
-  judge_each(file, "decode", judge_decoded, report);
+  check_each(file, "encode", check_encoded, report);
+  check_each(file, "decode", check_decoded, report);
 }
 
 }  // namespace tact::tools::verify

@@ -21,7 +21,7 @@ TEST(TickBudget, RefusesALawThatCannotKeepItsBudget) {
   EXPECT_EQ(free->budget_us, 500.0) << "without a tolerance: half a period";
   EXPECT_GT(free->measured.median_us, 0.0);
   EXPECT_LE(free->measured.median_us, free->measured.p999_us);
-  EXPECT_EQ(free->judged_us, free->measured.median_us);
+  EXPECT_EQ(free->checked_us, free->measured.median_us);
   scene.tolerance = {.force_error_ratio = 0.07, .shape_error_ratio = 0.2, .tick_budget_us = 1e-4};
   const auto refused = check_budget(scene, {});
   ASSERT_FALSE(refused);
@@ -32,9 +32,9 @@ TEST(TickBudget, RefusesALawThatCannotKeepItsBudget) {
 TEST(TickBudget, WithHardRealTimeTheTailIsJudged) {
   model::scene::Scene scene = tests::make_plate_scene();
   scene.tolerance = {.force_error_ratio = 0.07, .shape_error_ratio = 0.2, .tick_budget_us = 1e6};
-  const auto judged = check_budget(scene, pc::RtSettings{});
-  ASSERT_TRUE(judged) << judged.error().sentence;
-  EXPECT_EQ(judged->judged_us, judged->measured.p999_us);
+  const auto checked = check_budget(scene, pc::RtSettings{});
+  ASSERT_TRUE(checked) << checked.error().sentence;
+  EXPECT_EQ(checked->checked_us, checked->measured.p999_us);
   scene.tolerance->tick_budget_us = 1e-4;
   const auto refused = check_budget(scene, pc::RtSettings{});
   ASSERT_FALSE(refused);

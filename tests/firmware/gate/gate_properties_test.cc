@@ -21,7 +21,7 @@ std::string run(Temper temper, const GateSetting& setting, GateRules& rules,
   for (std::uint64_t seed = 0; seed < sequences; ++seed) {
     Sequence sequence(seed, temper, setting);
     for (int tick = 0; tick < ticks; ++tick)
-      if (const char* broken = rules.judge(sequence.next(rules.verdict().wrench)))
+      if (const char* broken = rules.check(sequence.next(rules.verdict().wrench)))
         return std::string(broken) + ": " + setting.name + ", temper " +
                std::to_string(static_cast<int>(temper)) + ", seed " + std::to_string(seed) +
                ", tick " + std::to_string(tick);
@@ -71,7 +71,7 @@ TEST(GateProperties, WhoPushesForEverComesToTheContinuousForceFromBelow) {
   RuleTick push;
   push.gate.wanted.force_N = {50, 0, 0};
   push.gate.fresh = push.gate.armed = true;
-  for (int i = 0; i < 10000; ++i) ASSERT_EQ(rules.judge(push), nullptr);
+  for (int i = 0; i < 10000; ++i) ASSERT_EQ(rules.check(push), nullptr);
   EXPECT_GT(rules.most_heat_ratio(), 0.999);
   EXPECT_NEAR(rules.verdict().wrench.force_N.x, kRulesLimits.continuous_force_N, 0.01);
   EXPECT_EQ(rules.verdict().acting, model::Fault::kContinuousLimited);
@@ -82,7 +82,7 @@ TEST(GateProperties, WhoTwistsForEverComesToTheContinuousTorqueFromBelow) {
   RuleTick twist;
   twist.gate.wanted.torque_Nm = {0, 1, 0};
   twist.gate.fresh = twist.gate.armed = true;
-  for (int i = 0; i < 10000; ++i) ASSERT_EQ(rules.judge(twist), nullptr);
+  for (int i = 0; i < 10000; ++i) ASSERT_EQ(rules.check(twist), nullptr);
   EXPECT_GT(rules.most_torque_heat_ratio(), 0.999);
   EXPECT_NEAR(rules.verdict().wrench.torque_Nm.y, 0.1, 0.001) << "half of its peak, as the force";
   EXPECT_EQ(rules.verdict().acting, model::Fault::kContinuousLimited);
@@ -111,7 +111,7 @@ Wall lean_on_wall(double stiffness_N_per_m, double budget_J) {
     input.tool.position_m.x = x_m;
     input.tool.velocity_mps.x = v_mps;
     input.fresh = input.armed = true;
-    const firmware::gate::GateVerdict verdict = gate.judge(input);
+    const firmware::gate::LimitedForce verdict = gate.limit(input);
     out.is_latched = out.is_latched || latches(verdict.fault);
     for (int i = 0; i < 4; ++i) {
       v_mps +=
@@ -227,7 +227,7 @@ TEST(GateProperties, JudgingLeavesTheHeapAlone) {
   GateRules rules;
   Sequence sequence(1, Temper::kAny);
   const NoAlloc guard;
-  for (int i = 0; i < 10000; ++i) rules.judge(sequence.next({}));
+  for (int i = 0; i < 10000; ++i) rules.check(sequence.next({}));
   EXPECT_EQ(guard.calls(), 0u);
 }
 

@@ -26,7 +26,7 @@ GateInput wanting(const Vec3& force_N) {
 // A gate that has been armed long enough to be fully open and already passes this force.
 Gate open_gate(const Vec3& force_N = {}) {
   Gate gate(kLimits, kPeriod_s, 1.0);
-  for (int i = 0; i < 1000; ++i) gate.judge(wanting(force_N));
+  for (int i = 0; i < 1000; ++i) gate.limit(wanting(force_N));
   return gate;
 }
 
@@ -36,7 +36,7 @@ std::uint64_t count(const Gate& gate, Stage stage) {
 
 TEST(Gate, PassesASmallSteadyForceUntouched) {
   Gate gate = open_gate({0.1, -0.2, 0.3});
-  const GateVerdict v = gate.judge(wanting({0.1, -0.2, 0.3}));
+  const LimitedForce v = gate.limit(wanting({0.1, -0.2, 0.3}));
   EXPECT_EQ(v.wrench.force_N, (Vec3{0.1, -0.2, 0.3}));
   EXPECT_EQ(v.acting, Fault::kNone);
 }
@@ -45,7 +45,7 @@ TEST(Gate, IsShutUnlessArmed) {
   Gate gate(kLimits, kPeriod_s, 1.0);
   GateInput input = wanting({1, 0, 0});
   input.armed = false;
-  const GateVerdict v = gate.judge(input);
+  const LimitedForce v = gate.limit(input);
   EXPECT_EQ(v.wrench, Wrench{});
   EXPECT_EQ(v.acting, Fault::kNotArmed);
   EXPECT_EQ(count(gate, Stage::kArmed), 1u);
@@ -54,7 +54,7 @@ TEST(Gate, IsShutUnlessArmed) {
 TEST(Gate, NotANumberGivesZeroAtOnceAndLatches) {
   for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
     Gate gate = open_gate({1, 0, 0});
-    const GateVerdict v = gate.judge(wanting({bad, 0, 0}));
+    const LimitedForce v = gate.limit(wanting({bad, 0, 0}));
     EXPECT_EQ(v.wrench, Wrench{});
     EXPECT_EQ(v.fault, Fault::kForceNotFinite);
     EXPECT_EQ(count(gate, Stage::kFinite), 1u);
@@ -65,7 +65,7 @@ TEST(Gate, TheFirstFaultOfATickIsTold) {
   Gate gate = open_gate({1, 0, 0});
   GateInput input = wanting({std::nan(""), 0, 0});
   input.tool.position_m.x = std::nan("");
-  const GateVerdict v = gate.judge(input);
+  const LimitedForce v = gate.limit(input);
   EXPECT_EQ(v.fault, Fault::kSampleNotFinite) << "a law that gets no number gives none";
   EXPECT_EQ(v.wrench, Wrench{});
 }
@@ -74,7 +74,7 @@ TEST(Gate, OneMissedSampleHoldsTheForce) {
   Gate gate = open_gate({1, 0, 0});
   GateInput stale = wanting({1, 0, 0});
   stale.fresh = false;
-  const GateVerdict v = gate.judge(stale);
+  const LimitedForce v = gate.limit(stale);
   EXPECT_NEAR(v.wrench.force_N.x, 1.0, 1e-12);
   EXPECT_EQ(v.acting, Fault::kSampleHeld);
 }
@@ -83,10 +83,10 @@ TEST(Gate, FromTheSecondMissedSampleTheForceFadesToZeroInTenMilliseconds) {
   Gate gate = open_gate({1, 0, 0});
   GateInput stale = wanting({1, 0, 0});
   stale.fresh = false;
-  gate.judge(stale);
+  gate.limit(stale);
   double before_N = 1.0;
   for (int i = 0; i < 10; ++i) {
-    const GateVerdict v = gate.judge(stale);
+    const LimitedForce v = gate.limit(stale);
     EXPECT_LT(v.wrench.force_N.x, before_N);
     EXPECT_EQ(v.acting, Fault::kSampleStale);
     before_N = v.wrench.force_N.x;
@@ -98,13 +98,13 @@ TEST(Gate, TwentyMissedSamplesInARowLoseTheDevice) {
   Gate gate = open_gate();
   GateInput stale = wanting({});
   stale.fresh = false;
-  for (int i = 1; i < 20; ++i) EXPECT_EQ(gate.judge(stale).fault, Fault::kNone) << i;
-  EXPECT_EQ(gate.judge(stale).fault, Fault::kDeviceLost);
+  for (int i = 1; i < 20; ++i) EXPECT_EQ(gate.limit(stale).fault, Fault::kNone) << i;
+  EXPECT_EQ(gate.limit(stale).fault, Fault::kDeviceLost);
   // One good sample in between starts the count again.
   Gate other = open_gate();
-  for (int i = 0; i < 19; ++i) other.judge(stale);
-  other.judge(wanting({}));
-  EXPECT_EQ(other.judge(stale).fault, Fault::kNone);
+  for (int i = 0; i < 19; ++i) other.check(stale);
+  other.check(wanting({}));
+  EXPECT_EQ(other.check(stale).fault, Fault::kNone);
 }
 
 // A loop of so many periods a tick, without samples.
@@ -118,24 +118,24 @@ GateInput late_and_missing(const Vec3& force_N, std::uint32_t skipped_periods) {
 TEST(Gate, ALoopThatIsLateFadesInTenMillisecondsOfTimeNotOfTicks) {
   Gate two = open_gate({4, 0, 0});  // two periods a tick: 2, 4, .. samples are missing
   for (const double left : {0.9, 0.7, 0.5, 0.3, 0.1, 0.0}) {
-    const GateVerdict v = two.judge(late_and_missing({4, 0, 0}, 1));
+    const LimitedForce v = two.check(late_and_missing({4, 0, 0}, 1));
     EXPECT_NEAR(v.wrench.force_N.x, 4.0 * left, 1e-12);
     EXPECT_EQ(v.acting, Fault::kSampleStale);
     EXPECT_EQ(v.fault, Fault::kNone);
   }
   Gate five = open_gate({8, 0, 0});  // more than one period's slew in a tick, as more time passed
   for (const double left : {0.6, 0.1, 0.0})
-    EXPECT_LE(five.judge(late_and_missing({8, 0, 0}, 4)).wrench.force_N.x, 8.0 * left + 1e-12);
+    EXPECT_LE(five.check(late_and_missing({8, 0, 0}, 4)).wrench.force_N.x, 8.0 * left + 1e-12);
 }
 
 TEST(Gate, AForceFarAboveItsLimitFadesInTenMillisecondsToo) {
   GateInput much = wanting({1000, 0, 0});
   much.wanted.torque_Nm = {0, 0, 50};
   Gate gate = open_gate();
-  for (int i = 0; i < 100; ++i) gate.judge(much);
+  for (int i = 0; i < 100; ++i) gate.limit(much);
   much.fresh = false;
   for (int missed = 1; missed <= 11; ++missed) {
-    const Wrench w = gate.judge(much).wrench;
+    const Wrench w = gate.limit(much).wrench;
     EXPECT_LE(w.force_N.x, 8.0 * (1.0 - 0.1 * (missed - 1)) + 1e-12) << missed;
     EXPECT_LE(w.torque_Nm.z, 0.2 * (1.0 - 0.1 * (missed - 1)) + 1e-12) << missed;
   }
@@ -144,26 +144,26 @@ TEST(Gate, AForceFarAboveItsLimitFadesInTenMillisecondsToo) {
 TEST(Gate, TwentyPeriodsWithoutASampleLoseTheDeviceInHoweverFewTicks) {
   Gate two = open_gate();
   for (int tick = 1; tick < 10; ++tick)
-    EXPECT_EQ(two.judge(late_and_missing({}, 1)).fault, Fault::kNone) << tick;
-  EXPECT_EQ(two.judge(late_and_missing({}, 1)).fault, Fault::kDeviceLost);
+    EXPECT_EQ(two.check(late_and_missing({}, 1)).fault, Fault::kNone) << tick;
+  EXPECT_EQ(two.check(late_and_missing({}, 1)).fault, Fault::kDeviceLost);
   Gate once = open_gate({1, 0, 0});
-  EXPECT_EQ(once.judge(late_and_missing({1, 0, 0}, 19)).fault, Fault::kDeviceLost);
+  EXPECT_EQ(once.check(late_and_missing({1, 0, 0}, 19)).fault, Fault::kDeviceLost);
   Gate late = open_gate({1, 0, 0});
   GateInput fresh = wanting({1, 0, 0});
   fresh.skipped_periods = 19;
-  EXPECT_EQ(late.judge(fresh).acting, Fault::kNone) << "a sample after all: nothing is missing";
+  EXPECT_EQ(late.check(fresh).acting, Fault::kNone) << "a sample after all: nothing is missing";
 }
 
 TEST(Gate, AfterALateTickAForceGrowsByOnePeriodsSlew) {
   Gate gate = open_gate();
   GateInput late = wanting({8, 0, 0});
   late.skipped_periods = 4;
-  EXPECT_LE(gate.judge(late).wrench.force_N.x, 1.0);
+  EXPECT_LE(gate.limit(late).wrench.force_N.x, 1.0);
   GateInput back = wanting({8, 0, 0});
   Gate faded = open_gate({8, 0, 0});
-  for (int i = 0; i < 11; ++i) faded.judge(late_and_missing({8, 0, 0}, 0));
+  for (int i = 0; i < 11; ++i) faded.check(late_and_missing({8, 0, 0}, 0));
   back.skipped_periods = 4;
-  EXPECT_LE(faded.judge(back).wrench.force_N.x, 1.0);
+  EXPECT_LE(faded.check(back).wrench.force_N.x, 1.0);
 }
 
 TEST(Gate, ALoopThatIsLateFadesOutsideTheWorkspaceInFiftyMilliseconds) {
@@ -172,27 +172,27 @@ TEST(Gate, ALoopThatIsLateFadesOutsideTheWorkspaceInFiftyMilliseconds) {
   outside.tool.position_m = {0, 0.19, 0};
   outside.skipped_periods = 4;
   for (int tick = 1; tick <= 10; ++tick)
-    EXPECT_NEAR(gate.judge(outside).wrench.force_N.x, 1.0 - 0.1 * tick, 1e-12);
+    EXPECT_NEAR(gate.limit(outside).wrench.force_N.x, 1.0 - 0.1 * tick, 1e-12);
 }
 
 TEST(Gate, OutsideTheWorkspaceTheForceFadesAndComesBackInside) {
   Gate gate = open_gate({1, 0, 0});
   GateInput outside = wanting({1, 0, 0});
   outside.tool.position_m = {0, 0.19, 0};
-  const GateVerdict first = gate.judge(outside);
+  const LimitedForce first = gate.limit(outside);
   EXPECT_GT(first.wrench.force_N.x, 0.9) << "fades, never cuts";
   EXPECT_EQ(first.acting, Fault::kOutsideWorkspace);
-  for (int i = 0; i < 60; ++i) gate.judge(outside);
-  EXPECT_EQ(gate.judge(outside).wrench.force_N.x, 0.0);
-  for (int i = 0; i < 60; ++i) gate.judge(wanting({1, 0, 0}));
-  EXPECT_NEAR(gate.judge(wanting({1, 0, 0})).wrench.force_N.x, 1.0, 1e-12);
+  for (int i = 0; i < 60; ++i) gate.limit(outside);
+  EXPECT_EQ(gate.limit(outside).wrench.force_N.x, 0.0);
+  for (int i = 0; i < 60; ++i) gate.limit(wanting({1, 0, 0}));
+  EXPECT_NEAR(gate.limit(wanting({1, 0, 0})).wrench.force_N.x, 1.0, 1e-12);
   outside.tool.position_m = {-0.151, 0, 0};  // against the force: it takes the energy
-  EXPECT_EQ(gate.judge(outside).acting, Fault::kOutsideWorkspace);
+  EXPECT_EQ(gate.limit(outside).acting, Fault::kOutsideWorkspace);
 }
 
 TEST(Gate, LimitsTheMagnitudeAndKeepsTheDirection) {
   Gate gate = open_gate({30, 40, 0});
-  const GateVerdict v = gate.judge(wanting({30, 40, 0}));
+  const LimitedForce v = gate.limit(wanting({30, 40, 0}));
   EXPECT_NEAR(norm(v.wrench.force_N), 8.0, 1e-9);
   EXPECT_NEAR(v.wrench.force_N.x / v.wrench.force_N.y, 0.75, 1e-12);
   EXPECT_EQ(v.acting, Fault::kForceLimited);
@@ -201,7 +201,7 @@ TEST(Gate, LimitsTheMagnitudeAndKeepsTheDirection) {
 TEST(Gate, WithoutHardRealTimeAQuarterOfTheForceIsLeft) {
   Gate gate(kLimits, kPeriod_s, 0.25);
   Vec3 last;
-  for (int i = 0; i < 1000; ++i) last = gate.judge(wanting({100, 0, 0})).wrench.force_N;
+  for (int i = 0; i < 1000; ++i) last = gate.limit(wanting({100, 0, 0})).wrench.force_N;
   EXPECT_NEAR(last.x, 2.0, 1e-9);
 }
 
@@ -209,8 +209,8 @@ TEST(Gate, LimitsTheTorque) {
   Gate gate = open_gate();
   GateInput twist = wanting({});
   twist.wanted.torque_Nm = {0, 0, 5};
-  GateVerdict v;
-  for (int i = 0; i < 100; ++i) v = gate.judge(twist);
+  LimitedForce v;
+  for (int i = 0; i < 100; ++i) v = gate.limit(twist);
   EXPECT_NEAR(v.wrench.torque_Nm.z, 0.2, 1e-9);
   EXPECT_EQ(v.acting, Fault::kTorqueLimited);
 }
@@ -219,49 +219,49 @@ TEST(Gate, RampsUpAfterArming) {
   Gate gate(kLimits, kPeriod_s, 1.0);
   double before_N = -1.0;
   for (int i = 1; i <= 500; ++i) {
-    const double force_N = gate.judge(wanting({1, 0, 0})).wrench.force_N.x;
+    const double force_N = gate.limit(wanting({1, 0, 0})).wrench.force_N.x;
     EXPECT_GT(force_N, before_N);
     EXPECT_NEAR(force_N, i / 500.0, 0.01);
     before_N = force_N;
   }
   GateInput off = wanting({1, 0, 0});
   off.armed = false;
-  gate.judge(off);
-  EXPECT_LT(gate.judge(wanting({1, 0, 0})).wrench.force_N.x, 0.01) << "arming again ramps again";
+  gate.limit(off);
+  EXPECT_LT(gate.limit(wanting({1, 0, 0})).wrench.force_N.x, 0.01) << "arming again ramps again";
 }
 
 TEST(Gate, TooFastTheForceFadesAndComesBackWhenItIsSlow) {
   Gate gate = open_gate({0.1, 0, 0});
   GateInput fast = wanting({0.1, 0, 0});
   fast.tool.velocity_mps = {0, 1.6, 0};
-  const GateVerdict first = gate.judge(fast);
+  const LimitedForce first = gate.limit(fast);
   EXPECT_GT(first.wrench.force_N.x, 0.09) << "fades, never cuts";
   EXPECT_EQ(first.acting, Fault::kTooFast);
-  for (int i = 0; i < 60; ++i) gate.judge(fast);
-  EXPECT_EQ(gate.judge(fast).wrench.force_N.x, 0.0);
-  for (int i = 0; i < 60; ++i) gate.judge(wanting({0.1, 0, 0}));
-  EXPECT_EQ(gate.judge(wanting({0.1, 0, 0})).acting, Fault::kNone);
+  for (int i = 0; i < 60; ++i) gate.limit(fast);
+  EXPECT_EQ(gate.limit(fast).wrench.force_N.x, 0.0);
+  for (int i = 0; i < 60; ++i) gate.limit(wanting({0.1, 0, 0}));
+  EXPECT_EQ(gate.limit(wanting({0.1, 0, 0})).acting, Fault::kNone);
   fast.tool.velocity_mps = {};
   fast.tool.angular_velocity_radps = {0, 0, 11};
-  EXPECT_EQ(gate.judge(fast).acting, Fault::kTooFast) << "turning counts too";
+  EXPECT_EQ(gate.limit(fast).acting, Fault::kTooFast) << "turning counts too";
 }
 
 TEST(Gate, AToolThatSpeedsUpAsAHandDoesMeetsThePowerLimitWithoutAStop) {
   model::Limits limits = kLimits;
   limits.power_W = 4.0;
   Gate gate(limits, kPeriod_s, 1.0);
-  for (int i = 0; i < 1000; ++i) gate.judge(wanting({7, 0, 0}));
+  for (int i = 0; i < 1000; ++i) gate.limit(wanting({7, 0, 0}));
   GateInput input = wanting({7, 0, 0});
   double most_W = 0.0;
   for (; input.tool.velocity_mps.x < 1.4; input.tool.velocity_mps.x += 0.02) {  // 20 m/s2
-    const GateVerdict v = gate.judge(input);
+    const LimitedForce v = gate.limit(input);
     ASSERT_EQ(v.fault, Fault::kNone);
     most_W = std::max(most_W, v.wrench.force_N.x * input.tool.velocity_mps.x);
   }
   EXPECT_NEAR(most_W, 3.0, 0.01) << "three quarters of the limit";
-  EXPECT_EQ(gate.judge(input).acting, Fault::kPowerLimited);
+  EXPECT_EQ(gate.limit(input).acting, Fault::kPowerLimited);
   input.tool.velocity_mps.x = 50.0;  // in one tick: no slew can follow
-  const GateVerdict v = gate.judge(input);
+  const LimitedForce v = gate.limit(input);
   EXPECT_EQ(v.fault, Fault::kPowerExceeded);
   EXPECT_EQ(v.wrench, Wrench{});
 }
@@ -270,11 +270,11 @@ TEST(Gate, AToolThatJumpsUnderForceOverdrawsTheEnergyAndStaysStoppedUntilItIsDis
   Gate gate = open_gate({2, 0, 0});
   GateInput jump = wanting({2, 0, 0});
   jump.tool.position_m.x = 0.06;  // 2 N * 60 mm = 0.12 J, of 0.1 J
-  EXPECT_EQ(gate.judge(jump).fault, Fault::kEnergyOverdrawn);
-  EXPECT_EQ(gate.judge(jump).fault, Fault::kEnergyOverdrawn);
+  EXPECT_EQ(gate.limit(jump).fault, Fault::kEnergyOverdrawn);
+  EXPECT_EQ(gate.limit(jump).fault, Fault::kEnergyOverdrawn);
   EXPECT_NEAR(gate.given_energy_J(), 0.12, 1e-6);
   jump.armed = false;
-  EXPECT_EQ(gate.judge(jump).fault, Fault::kNone);
+  EXPECT_EQ(gate.limit(jump).fault, Fault::kNone);
   EXPECT_EQ(gate.given_energy_J(), 0.0);
 }
 
@@ -282,7 +282,7 @@ TEST(Gate, AFaultFoundWhileArmedIsZeroInTheSameTick) {
   Gate gate = open_gate({1, 0, 0});
   GateInput bad = wanting({1, 0, 0});
   bad.tool.velocity_mps.y = std::nan("");
-  const GateVerdict v = gate.judge(bad);
+  const LimitedForce v = gate.limit(bad);
   EXPECT_EQ(v.fault, Fault::kSampleNotFinite);
   EXPECT_EQ(v.wrench, Wrench{});
 }
@@ -290,7 +290,7 @@ TEST(Gate, AFaultFoundWhileArmedIsZeroInTheSameTick) {
 TEST(Gate, LeavesTheHeapAlone) {
   Gate gate = open_gate();
   const tests::NoAlloc guard;
-  for (int i = 0; i < 100; ++i) gate.judge(wanting({100, 0, 0}));
+  for (int i = 0; i < 100; ++i) gate.limit(wanting({100, 0, 0}));
   EXPECT_EQ(guard.calls(), 0u);
 }
 

@@ -25,7 +25,7 @@ class GripGateTest : public testing::Test {
  protected:
   GripGateTest() { ticks(300, 0.0); }
 
-  GripVerdict tick(double wanted_N, bool fresh = true, bool armed = true) {
+  LimitedGrip tick(double wanted_N, bool fresh = true, bool armed = true) {
     gap_m += kPeriod_s * speed_mps;
     verdict = gate.limit({.wanted_N = wanted_N,
                           .gap_m = gap_m,
@@ -40,7 +40,7 @@ class GripGateTest : public testing::Test {
 
   GripGate gate = *GripGate::make(limits(), kPeriod_s, 1.0);
   double gap_m = 0.02, speed_mps = 0.0;
-  GripVerdict verdict;
+  LimitedGrip verdict;
 };
 
 TEST_F(GripGateTest, LetsAModerateForceThrough) {

@@ -264,11 +264,11 @@ TEST(Supervisor, TheModelFadesAndLosesAfterAsManyMissedSamplesAsTheGate) {
                              .workspace_half_length_m = 0.15};
   gate::Gate gate(limits, 0.001, 1.0);
   gate::GateInput input{.wanted = {{1, 0, 0}, {}}, .tool = {}, .fresh = true, .armed = true};
-  for (int i = 0; i < 200; ++i) gate.judge(input);
+  for (int i = 0; i < 200; ++i) gate.limit(input);
   input.fresh = false;
   int missed_to_zero = 0, missed_to_lost = 0;
   for (int missed = 1; missed < 100 && missed_to_lost == 0; ++missed) {
-    const gate::GateVerdict v = gate.judge(input);
+    const gate::LimitedForce v = gate.limit(input);
     if (missed_to_zero == 0 && norm(v.wrench.force_N) < 1e-12) missed_to_zero = missed;
     if (latches(v.fault)) missed_to_lost = missed;
   }

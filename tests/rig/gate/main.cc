@@ -146,7 +146,7 @@ std::int64_t clock_ns() {
   return least;
 }
 
-struct JudgedTick {
+struct CheckedTick {
   std::int64_t took_ns = std::numeric_limits<std::int64_t>::max();
   std::array<bool, kStageCount> acted{};
   bool acted_in(std::size_t row) const {
@@ -154,15 +154,15 @@ struct JudgedTick {
   }
 };
 
-std::vector<JudgedTick> judge(const std::vector<GateInput>& inputs) {
-  std::vector<JudgedTick> ticks(inputs.size());
+std::vector<CheckedTick> check(const std::vector<GateInput>& inputs) {
+  std::vector<CheckedTick> ticks(inputs.size());
   const std::int64_t clock = clock_ns();
   for (int time = 0; time < kTimes; ++time) {
     Gate gate(kLimits, kPeriod_s, 1.0);
     for (std::size_t i = 0; i < inputs.size(); ++i) {
       const auto before = gate.counters();
       const std::int64_t start_ns = now_ns();
-      const firmware::gate::GateVerdict verdict = gate.judge(inputs[i]);
+      const firmware::gate::LimitedForce verdict = gate.limit(inputs[i]);
       const std::int64_t end_ns = now_ns();
       asm volatile("" : : "g"(&verdict) : "memory");
       ticks[i].took_ns = std::min(ticks[i].took_ns, end_ns - start_ns - clock);
@@ -174,9 +174,9 @@ std::vector<JudgedTick> judge(const std::vector<GateInput>& inputs) {
 }
 
 /// Of the ticks in which that stage acted; null: it never did.
-json longest(const std::vector<JudgedTick>& ticks, std::size_t row) {
+json longest(const std::vector<CheckedTick>& ticks, std::size_t row) {
   std::int64_t most = -1;
-  for (const JudgedTick& tick : ticks)
+  for (const CheckedTick& tick : ticks)
     if (tick.acted_in(row)) most = std::max(most, tick.took_ns);
   return most < 0 ? json(nullptr) : json(most);
 }
@@ -185,13 +185,13 @@ json measure() {
   Chance chance;
   std::vector<GateInput> any(kChanceTicks);
   for (GateInput& in : any) in = chance.next();
-  const std::vector<JudgedTick> by_chance = judge(any);
+  const std::vector<CheckedTick> by_chance = check(any);
   json out;
   for (std::size_t row = 0; row <= kNone; ++row) {
     std::vector<GateInput> own(kTicks);
     for (int i = 0; i < kTicks; ++i) own[static_cast<std::size_t>(i)] = input_for(row, i);
     const char* name = row == kNone ? "none" : firmware::gate::kStageName[row];
-    out[name] = {{"alone", longest(judge(own), row)}, {"longest", longest(by_chance, row)}};
+    out[name] = {{"alone", longest(check(own), row)}, {"longest", longest(by_chance, row)}};
   }
   return out;
 }

@@ -64,19 +64,19 @@ TEST_F(Deploy, TheBusStaysDownAfterBusOff) {
 }
 
 TEST_F(Deploy, AnOlderDebianIsRefusedWithTheReleasesThatDo) {
-  const auto judged = [this](const std::string& os) {
+  const auto checked = [this](const std::string& os) {
     std::ofstream(folder + "/os-release") << os;
     return std::system(("cmake -DTACT_OS_RELEASE=" + folder +
                         "/os-release -P " TACT_SOURCE_DIR "/tools/cmake/release.cmake >" + said +
                         " 2>&1")
                            .c_str());
   };
-  EXPECT_NE(judged("ID=debian\nVERSION_ID=\"11\"\n"), 0);
+  EXPECT_NE(checked("ID=debian\nVERSION_ID=\"11\"\n"), 0);
   EXPECT_NE(content(said).find("This is Debian 11; tact needs Debian 12 or 13."), std::string::npos)
       << content(said);
-  EXPECT_EQ(judged("ID=debian\nVERSION_ID=\"13\"\n"), 0) << content(said);
-  EXPECT_EQ(judged("ID=debian\n"), 0) << "testing has no number: " << content(said);
-  EXPECT_EQ(judged("ID=arch\nVERSION_ID=1\n"), 0) << content(said);
+  EXPECT_EQ(checked("ID=debian\nVERSION_ID=\"13\"\n"), 0) << content(said);
+  EXPECT_EQ(checked("ID=debian\n"), 0) << "testing has no number: " << content(said);
+  EXPECT_EQ(checked("ID=arch\nVERSION_ID=1\n"), 0) << content(said);
 }
 
 TEST_F(Deploy, NoUnitArms) {

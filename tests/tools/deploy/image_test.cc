@@ -56,8 +56,8 @@ TEST(Image, TheSceneOfARealDeviceHasItsExampleKeys) {
     EXPECT_NE(scene.str().find("\nkind = \"" + device + "\""), std::string::npos) << scene.str();
     EXPECT_NE(scene.str().find("\n[device." + section + "]\n"), std::string::npos) << device;
     EXPECT_EQ(scene.str().find("[device.sim]"), std::string::npos) << device;
-    const Outcome judged = tests::run_program("tactd", folder + "/liver.toml --check");
-    EXPECT_NE(judged.output.find(missing), std::string::npos) << device << ": " << judged.output;
+    const Outcome checked = tests::run_program("tactd", folder + "/liver.toml --check");
+    EXPECT_NE(checked.output.find(missing), std::string::npos) << device << ": " << checked.output;
   }
   fs::remove_all(folder);
 }

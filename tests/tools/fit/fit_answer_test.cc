@@ -58,11 +58,11 @@ TEST_F(FitOfAnOrgan, FindsTheModulus) {
   start.elastic->youngs_modulus_Pa = 900.0;
   const FittedLaw fitted = fit("compliance", start, data_);
   EXPECT_NEAR(value_of(fitted, "youngs_modulus_Pa"), 5000.0, 1.0);
-  EXPECT_LT(fitted.judged.held_out.rms_ratio(), 1e-3);  // the map knows the other site
+  EXPECT_LT(fitted.checked.held_out.rms_ratio(), 1e-3);  // the map knows the other site
   // One stiffness for both places cannot be right, and says so.
   const FittedLaw chain = fit("disc_stack_linear", start, data_);
-  EXPECT_FALSE(chain.judged.follows);
-  EXPECT_GT(chain.judged.held_out.rms_ratio(), 2.0 * fitted.judged.held_out.rms_ratio());
+  EXPECT_FALSE(chain.checked.follows);
+  EXPECT_GT(chain.checked.held_out.rms_ratio(), 2.0 * fitted.checked.held_out.rms_ratio());
 }
 
 TEST_F(FitOfAnOrgan, AReferenceIsFittedAtItsOwnStrainWhateverTheSceneSays) {
@@ -90,9 +90,9 @@ TEST_F(FitOfAnOrgan, FindsALawInSeriesWithItsPlaces) {
     law.most_evaluations = 300;
     const auto fitted = fit_law(law, start, data_, {});
     ASSERT_TRUE(fitted) << fitted.error().sentence;
-    EXPECT_LT(fitted->judged.fitted.rms_ratio(), 2e-3) << name;
-    EXPECT_LT(fitted->judged.held_out.rms_ratio(), 2e-3) << name;
-    EXPECT_NEAR(fitted->judged.sites[0].best_scale, 1.0, 2e-3) << name;
+    EXPECT_LT(fitted->checked.fitted.rms_ratio(), 2e-3) << name;
+    EXPECT_LT(fitted->checked.held_out.rms_ratio(), 2e-3) << name;
+    EXPECT_NEAR(fitted->checked.sites[0].best_scale, 1.0, 2e-3) << name;
   }
 }
 

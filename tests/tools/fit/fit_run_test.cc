@@ -34,8 +34,8 @@ TEST(FitRun, FindsTheRhombusChainThatMadeTheData) {
   start.rhombus.tangential_stiffness_N_per_m = 90.0;
   start.rhombus.growth = 4.0;
   const FittedLaw fitted = fit("rhombus", start, data);
-  EXPECT_TRUE(fitted.judged.follows);
-  EXPECT_LT(fitted.judged.fitted.rms_ratio(), 1e-4);
+  EXPECT_TRUE(fitted.checked.follows);
+  EXPECT_LT(fitted.checked.fitted.rms_ratio(), 1e-4);
   EXPECT_NEAR(value_of(fitted, "rod_length_m"), 5_mm, 0.02 * 5_mm);
   EXPECT_NEAR(value_of(fitted, "initial_angle_rad"), 0.5236, 0.02);
   EXPECT_NEAR(value_of(fitted, "normal_stiffness_N_per_m"), 150.0, 3.0);
@@ -48,7 +48,7 @@ TEST(FitRun, FindsTheRhombusChainThatMadeTheData) {
   quick.most_evaluations = 200;
   const auto noisy = fit_law(quick, start, data, {});
   ASSERT_TRUE(noisy);
-  EXPECT_LT(noisy->judged.fitted.rms_ratio(), 0.012);
+  EXPECT_LT(noisy->checked.fitted.rms_ratio(), 0.012);
   EXPECT_NEAR(noisy->keys[5].value, 45.0, 1.0);
 }
 
@@ -118,11 +118,11 @@ TEST(FitRun, FindsTheHexagonalSheetThatMadeTheData) {
   start.hex_sheet.surface_stiffness_N_per_m = 10.0;
   start.hex_sheet.tension_N = 0.1;
   const FittedLaw fitted = fit("hex_sheet", start, data);
-  EXPECT_LT(fitted.judged.fitted.rms_ratio(), 1e-3);
+  EXPECT_LT(fitted.checked.fitted.rms_ratio(), 1e-3);
   EXPECT_NEAR(value_of(fitted, "ring_pitch_m"), 2_mm, 0.1_mm);
   EXPECT_NEAR(value_of(fitted, "body_stiffness_N_per_m"), 4.0, 0.4);
   spoil(data);
-  EXPECT_LT(fit("hex_sheet", start, data).judged.fitted.rms_ratio(), 0.012);
+  EXPECT_LT(fit("hex_sheet", start, data).checked.fitted.rms_ratio(), 0.012);
 }
 
 TEST(FitRun, FactorsOfTheSitesHaveTheMeanOne) {
@@ -132,9 +132,9 @@ TEST(FitRun, FactorsOfTheSitesHaveTheMeanOne) {
   for (FitSample& s : data.sites[1].samples) s.force_N *= 4.0;
   const FittedLaw fitted =
       fit("disc_stack_linear", truth, data, {.shape_weight = 0.0, .scale_by_site = true});
-  EXPECT_TRUE(fitted.judged.follows);
-  EXPECT_NEAR(fitted.judged.sites[0].scale, 0.5, 1e-3);
-  EXPECT_NEAR(fitted.judged.sites[1].scale, 2.0, 4e-3);
+  EXPECT_TRUE(fitted.checked.follows);
+  EXPECT_NEAR(fitted.checked.sites[0].scale, 0.5, 1e-3);
+  EXPECT_NEAR(fitted.checked.sites[1].scale, 2.0, 4e-3);
   EXPECT_NEAR(value_of(fitted, "youngs_modulus_Pa"), 2.0 * 5200.0, 20.0);
 }
 
@@ -160,7 +160,7 @@ TEST(FitRun, KeepsThePatchAsSoftAsTheDataAndItsMassInProportion) {
   const auto result = fit_law(patient, start, data, {});
   ASSERT_TRUE(result) << result.error().sentence;
   const FittedLaw& fitted = *result;
-  EXPECT_LT(fitted.judged.fitted.rms_ratio(), 0.01);
+  EXPECT_LT(fitted.checked.fitted.rms_ratio(), 0.01);
   EXPECT_NEAR(
       value_of(fitted, "surface_stiffness_N_per_m") / value_of(fitted, "body_stiffness_N_per_m"),
       4.0, 0.4);

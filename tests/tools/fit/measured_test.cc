@@ -20,7 +20,7 @@ using model::law::PronyTerm;
 const std::string kRoot = TACT_SOURCE_DIR;
 
 /// Silicone cylinders between plates: EF10_100T is fitted, the others judge with a factor each.
-Judgement judge_silicone(const std::string& law, double deepest_m) {
+Evaluation check_silicone(const std::string& law, double deepest_m) {
   const auto scene =
       model::scene::load_scene(kRoot + "/model/scenes/liver.toml", {"varies_by_place=false"});
   EXPECT_TRUE(scene) << scene.error().sentence;
@@ -31,13 +31,13 @@ Judgement judge_silicone(const std::string& law, double deepest_m) {
                                     .deepest_m = deepest_m},
                                    {"EF10_50T", "EF30_50T"});
   EXPECT_TRUE(data) << data.error().sentence;
-  return fit(law, *scene, *data, {.scale_by_site = true}).judged;
+  return fit(law, *scene, *data, {.scale_by_site = true}).checked;
 }
 
 TEST(Measured, ASheetFittedToOneSiliconeFollowsTwoOthersTo30PercentStrain) {
-  const Judgement judged = judge_silicone("hex_sheet", 0.009);
-  ASSERT_EQ(judged.sites.size(), 3U);
-  for (const SiteResidual& site : judged.sites) {
+  const Evaluation checked = check_silicone("hex_sheet", 0.009);
+  ASSERT_EQ(checked.sites.size(), 3U);
+  for (const SiteResidual& site : checked.sites) {
     EXPECT_EQ(site.held_out, site.name != "EF10_100T");
     EXPECT_EQ(site.force.samples, 31U);  // every 0.3 mm, and at rest
     EXPECT_GT(site.force.rms_ratio(), 0.003) << site.name;
@@ -46,8 +46,8 @@ TEST(Measured, ASheetFittedToOneSiliconeFollowsTwoOthersTo30PercentStrain) {
 }
 
 TEST(Measured, NoLinearStackFollowsSiliconeTo60PercentStrain) {
-  const Judgement judged = judge_silicone("disc_stack_linear", 0.018);
-  for (const SiteResidual& site : judged.sites) {
+  const Evaluation checked = check_silicone("disc_stack_linear", 0.018);
+  for (const SiteResidual& site : checked.sites) {
     EXPECT_GT(site.force.rms_ratio(), 0.12) << site.name;
     EXPECT_LT(site.force.rms_ratio(), 0.16) << site.name;
   }

@@ -165,7 +165,7 @@ TEST(Compare, FailsOnWhatGrewByMoreThanTheGate) {
 TEST(Compare, JudgesNeitherTheLargestNorAPercentileOfTooFewSamples) {
   const auto comparison = compare_results(result_with(20'000), result_with(90'000), 0.1);
   for (const ComparedValue& v : comparison->values) {
-    EXPECT_EQ(v.judged, v.series == "wake" && (v.share == "p50" || v.share == "p99"))
+    EXPECT_EQ(v.checked, v.series == "wake" && (v.share == "p50" || v.share == "p99"))
         << v.series << " " << v.share;
     EXPECT_NE(v.share, "p99.9") << "there is none";
   }

@@ -39,7 +39,7 @@ class OnARealDevice : public testing::Test {
     EXPECT_EQ(norm(runs[0]->rows().back().written_N), 0.0);
     EXPECT_TRUE(runs[1]->rows().empty()) << "nothing pushes after it";
     EXPECT_EQ(runs[1]->refused(), fault);
-    EXPECT_FALSE(judge_case(*runs[1]).passed());
+    EXPECT_FALSE(check_case(*runs[1]).passed());
   }
 
   model::scene::Scene scene = tests::make_plate_scene();

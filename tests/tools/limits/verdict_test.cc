@@ -37,7 +37,7 @@ constexpr Limits kLimits{.force_N = 2.0,
                          .energy_J = 0.01};
 
 bool holds(const std::vector<TickRow>& rows, const std::string& words, Limits limits = kLimits) {
-  for (const Check& c : judge_rows({}, rows, limits, 0.001).checks)
+  for (const Check& c : check_rows({}, rows, limits, 0.001).checks)
     if (c.sentence.find(words) != std::string::npos) return c.holds;
   ADD_FAILURE() << "no check says " << words;
   return false;
@@ -111,7 +111,7 @@ TEST(Verdict, SeesATorqueThatStaysWhenTheForceHasGone) {
   estop.expected = {.zero_within_s = 0.002};
   estop.grip = Grip::kLever;
   const auto says = [&](const char* words) {
-    for (const Check& c : judge_rows(estop, rows, kLimits, 0.001).checks)
+    for (const Check& c : check_rows(estop, rows, kLimits, 0.001).checks)
       if (c.sentence.find(words) != std::string::npos) return c.holds;
     ADD_FAILURE() << "no check says " << words;
     return false;

@@ -32,7 +32,7 @@ Scene sized(const Scene& scene, const Variant& variant) {
 
 /// Judged without relaxation and at small strain, as the reference is linear elastic; the memory is
 /// that with the scene's relaxation.
-ChartRow judge_errors_of(const Scene& scene, const Scene& elastic, const Variant& variant,
+ChartRow check_errors_of(const Scene& scene, const Scene& elastic, const Variant& variant,
                          const std::vector<ProbeCase>& cases, double pitch_m,
                          const ground_truth::ToolReference* tool_reference) {
   ChartRow row{.variant = variant};
@@ -49,9 +49,9 @@ ChartRow judge_errors_of(const Scene& scene, const Scene& elastic, const Variant
   }
   row.memory_bytes = (*subject)->memory_bytes();
   if (tool_reference == nullptr) return row;
-  const auto judged = judge_errors(sized(scene, variant), *tool_reference);
-  row.failure = judged ? judged->failure : judged.error().sentence;
-  if (row.failure.empty()) row.tool = judged->errors;
+  const auto checked = check_errors(sized(scene, variant), *tool_reference);
+  row.failure = checked ? checked->failure : checked.error().sentence;
+  if (row.failure.empty()) row.tool = checked->errors;
   return row;
 }
 
@@ -93,11 +93,11 @@ Result<std::vector<ChartRow>> measure_chart(const Scene& scene,
   elastic.compliance.large_strain = false;
   std::vector<ChartRow> all(variants.size());
   const program::SweepOptions sweep_options{.label = options.label + ", accuracy"};
-  const bool judged = run_jobs(variants.size(), sweep_options, [&](std::size_t job) {
-    all[job] = judge_errors_of(scene, elastic, variants[job], *cases, reference.ring_pitch_m,
+  const bool checked = run_jobs(variants.size(), sweep_options, [&](std::size_t job) {
+    all[job] = check_errors_of(scene, elastic, variants[job], *cases, reference.ring_pitch_m,
                                options.tool_reference);
   });
-  if (!judged) return program::interruption();
+  if (!checked) return program::interruption();
   // One after the other: a second one on another core would share cache and memory with the first.
   const program::SweepOptions one_by_one{.label = options.label + ", time", .threads = 1};
   const bool timed = run_jobs(variants.size(), one_by_one, [&](std::size_t job) {

@@ -5,7 +5,7 @@
 // First all rows are made and judged on all cores, then timed one after the other, so that they do
 // not disturb each other. The errors are the same on every machine; times belong to the row's
 // machine. The time of a law is the tick that a user gets: touch, feel and judge of the scene's
-// whole tool (tool_judge.h).
+// whole tool (tool_check.h).
 #pragma once
 
 #include <functional>
@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/chart/compare/tool_judge.h"
+#include "tools/chart/compare/tool_check.h"
 #include "tools/chart/measure/measure.h"
 #include "tools/chart/subject/variants.h"
 #include "tools/program/sweep.h"

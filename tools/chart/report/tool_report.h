@@ -7,7 +7,7 @@
 
 #include "model/scene/accuracy_file.h"
 #include "tools/chart/compare/chart.h"
-#include "tools/chart/compare/tool_judge.h"
+#include "tools/chart/compare/tool_check.h"
 
 namespace tact::tools::chart {
 

@@ -18,8 +18,8 @@ using nlohmann::json;
 
 constexpr std::array kShown{"p50", "p99", "p99.9", "p99.99", "max"};
 // Not p99.99 and not the largest: a handful of samples makes them.
-constexpr std::array kJudgedShares{"p50", "p99", "p99.9"};
-constexpr std::array kJudgedSeries{"wake", "every_wake", "total", "deadline_to_force"};
+constexpr std::array kCheckedShares{"p50", "p99", "p99.9"};
+constexpr std::array kCheckedSeries{"wake", "every_wake", "total", "deadline_to_force"};
 // The clock's own steps and the cache lie below (jitter_compare.h).
 constexpr std::uint64_t kMin_ns = 1000;
 
@@ -65,8 +65,9 @@ bool Comparison::is_worse() const {
   return std::any_of(values.begin(), values.end(), [](const ComparedValue& v) { return v.worse; });
 }
 
-bool Comparison::judged_any() const {
-  return std::any_of(values.begin(), values.end(), [](const ComparedValue& v) { return v.judged; });
+bool Comparison::checked_any() const {
+  return std::any_of(values.begin(), values.end(),
+                     [](const ComparedValue& v) { return v.checked; });
 }
 
 Result<Comparison> compare_results(const json& before, const json& after,
@@ -88,9 +89,9 @@ Result<Comparison> compare_results(const json& before, const json& after,
       // Without a sample beyond it a percentile is none (jitter_report.h).
       if (!a || !b) continue;  // too few samples in one of them
       ComparedValue value{.series = name, .share = share, .before_ns = *a, .after_ns = *b};
-      value.judged =
-          gate_ratio && is_one_of(kJudgedSeries, name) && is_one_of(kJudgedShares, share);
-      value.worse = value.judged && *b > *a + kMin_ns && value.change_ratio() > *gate_ratio;
+      value.checked =
+          gate_ratio && is_one_of(kCheckedSeries, name) && is_one_of(kCheckedShares, share);
+      value.worse = value.checked && *b > *a + kMin_ns && value.change_ratio() > *gate_ratio;
       out.values.push_back(value);
     }
   }
@@ -126,7 +127,7 @@ json to_json(const Comparison& comparison) {
                       {"before_ns", v.before_ns},
                       {"after_ns", v.after_ns},
                       {"change_ratio", v.change_ratio()},
-                      {"judged", v.judged},
+                      {"judged", v.checked},
                       {"worse", v.worse}});
   return {{"format", "tact-jitter-compare"},
           {"version", 1},

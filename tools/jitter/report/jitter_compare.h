@@ -18,7 +18,7 @@ namespace tact::tools::jitter {
 struct ComparedValue {
   std::string series, share;  // "wake", "p99.9"
   std::uint64_t before_ns = 0, after_ns = 0;
-  bool judged = false;
+  bool checked = false;
   bool worse = false;
 
   double change_ratio() const;  // 0.1: a tenth more
@@ -29,7 +29,7 @@ struct Comparison {
   std::vector<std::string> unlike;  // conditions that differ: "kernel_release 6.1 and 6.12"
 
   bool is_worse() const;
-  bool judged_any() const;
+  bool checked_any() const;
 };
 
 /// `gate_ratio`: how much more is too much; nothing: only shown. An error when one of them is no

@@ -115,7 +115,7 @@ json facts(const JitterResult& result) {
 json peer_data(const JitterResult& result) {
   if (!result.peer) return nullptr;
   json out{{"compared", compare_with_peer(result)}};
-  if (const auto verdict = judge_peer(result))
+  if (const auto verdict = check_peer(result))
     // Too few turns are neither green nor red.
     out["gate"] = {{"color", !verdict->turns     ? "unknown"
                              : verdict->passed() ? "green"

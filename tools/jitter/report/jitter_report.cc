@@ -106,13 +106,13 @@ std::string compare_with_peer(const JitterResult& result) {
              : "");
 }
 
-std::optional<PeerVerdict> judge_peer(const JitterResult& result) {
+std::optional<PeerVerdict> check_peer(const JitterResult& result) {
   if (!result.peer_gate) return std::nullopt;
   return PeerVerdict{*result.peer_gate, middle_of(result.turn_ratios)};
 }
 
 Outcome outcome_of(const JitterResult& result) {
-  const auto verdict = judge_peer(result);
+  const auto verdict = check_peer(result);
   if (!result.fault.empty()) return {"fail", "FAIL: the run ended with a fault: " + result.fault};
   if (result.interrupted) return {"part", "NOT JUDGED: the run was ended by Ctrl-C"};
   if (!verdict)
@@ -123,7 +123,7 @@ Outcome outcome_of(const JitterResult& result) {
 }
 
 int exit_status(const JitterResult& result) {
-  const auto verdict = judge_peer(result);
+  const auto verdict = check_peer(result);
   if (!result.fault.empty()) return 1;
   // Without a gate nothing was promised.
   if (!verdict || verdict->passed()) return 0;
@@ -170,7 +170,7 @@ std::string make_summary(const JitterResult& result) {
   }
   out += fmt::format("the largest is that of {} ticks: it bounds nothing\n", result.sink->ticks());
   if (result.peer) out += compare_with_peer(result) + "\n";
-  if (const auto verdict = judge_peer(result)) out += verdict->sentence() + "\n";
+  if (const auto verdict = check_peer(result)) out += verdict->sentence() + "\n";
   const auto& thread = result.thread;
   out += fmt::format("loop's thread: {} heap calls, {} page faults, {} involuntary switches\n",
                      thread.heap_calls_known ? std::to_string(thread.heap_calls) : "unknown",
@@ -219,7 +219,7 @@ json to_json(const JitterResult& result, const std::string& command) {
           {"pin_edges_unpaired", result.pin ? json(result.pin->unpaired()) : json(nullptr)},
           {"wake_p99.9_over_peer", ratio ? json(*ratio) : json(nullptr)},
           {"wake_p99.9_over_peer_by_turn", to_json(middle_of(result.turn_ratios))},
-          {"peer_gate", to_json(judge_peer(result))},
+          {"peer_gate", to_json(check_peer(result))},
           {"thread", firmware::run::to_json(result.thread)},
           {"kernel", to_json(result.costs)},
           {"late_ticks", late},

@@ -42,7 +42,7 @@ std::optional<double> ratio_to_peer(const JitterResult& result);
 std::string compare_with_peer(const JitterResult& result);
 
 /// Nothing without a gate.
-std::optional<PeerVerdict> judge_peer(const JitterResult& result);
+std::optional<PeerVerdict> check_peer(const JitterResult& result);
 /// The run in one sentence that begins with its outcome, for the top of a report.
 struct Outcome {
   const char* style;  // of page.css: pass, fail, part

@@ -108,13 +108,13 @@ std::uint32_t acted_since(std::array<std::uint64_t, firmware::gate::kStageCount>
 
 }  // namespace
 
-model::Limits judged_limits(const Case& c, const LimitsBench& bench) {
+model::Limits checked_limits(const Case& c, const LimitsBench& bench) {
   return model::limits_in_use(limits_of(c, bench.limits), bench.force_share);
 }
 
 CaseRun::CaseRun(const Case& c, const LimitsBench& bench)
     : case_(c),
-      limits_(judged_limits(c, bench)),
+      limits_(checked_limits(c, bench)),
       moment_({.period_s = bench.period_s()}),
       scene_(plate_scene(c, bench, limits_)),
       tissue_(make_plate(scene_)),

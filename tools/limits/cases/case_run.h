@@ -48,7 +48,7 @@ struct LimitsBench {
 };
 
 /// The limits that one case is judged by: of scene, device, PC, and what the case tightens.
-model::Limits judged_limits(const Case& c, const LimitsBench& bench);
+model::Limits checked_limits(const Case& c, const LimitsBench& bench);
 
 class CaseRun {
  public:

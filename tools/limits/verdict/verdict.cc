@@ -202,7 +202,7 @@ Extremes extremes_of(const std::vector<TickRow>& rows, const model::Limits& limi
   return worst;
 }
 
-CaseVerdict judge_rows(const Case& c, const std::vector<TickRow>& rows, const model::Limits& limits,
+CaseVerdict check_rows(const Case& c, const std::vector<TickRow>& rows, const model::Limits& limits,
                        double period_s) {
   CaseVerdict v{
       .subject = c, .limits = limits, .worst = extremes_of(rows, limits, period_s), .checks = {}};
@@ -225,8 +225,8 @@ CaseVerdict judge_rows(const Case& c, const std::vector<TickRow>& rows, const mo
   return v;
 }
 
-CaseVerdict judge_case(const CaseRun& run) {
-  CaseVerdict v = judge_rows(run.subject(), run.rows(), run.limits(), run.period_s());
+CaseVerdict check_case(const CaseRun& run) {
+  CaseVerdict v = check_rows(run.subject(), run.rows(), run.limits(), run.period_s());
   if (run.refused() == Fault::kNone) return v;
   v.fault = run.refused();
   v.checks.push_back(

@@ -51,8 +51,8 @@ double continuous_torque_Nm(const model::Limits& limits);
 /// The bounds above, each with its largest value.
 std::vector<Check> check_bounds(const Extremes& worst, const model::Limits& limits,
                                 double period_s);
-CaseVerdict judge_rows(const Case& c, const std::vector<TickRow>& rows, const model::Limits& limits,
+CaseVerdict check_rows(const Case& c, const std::vector<TickRow>& rows, const model::Limits& limits,
                        double period_s);
-CaseVerdict judge_case(const CaseRun& run);
+CaseVerdict check_case(const CaseRun& run);
 
 }  // namespace tact::tools::limits

@@ -94,7 +94,7 @@ double worst_swing_m(const std::vector<WallPoint>& points, WallRun WallPoint::* 
   return most;
 }
 
-void judge(WallVerdict& v) {
+void check(WallVerdict& v) {
   v.bounded_without_N_per_m = largest(v.points, &WallPoint::without);
   v.bounded_with_N_per_m = largest(v.points, &WallPoint::with);
   v.rest_without_N_per_m = largest_at_rest(v.points, &WallPoint::without);
@@ -152,7 +152,7 @@ std::optional<WallVerdict> measure_wall(const LimitsBench& bench, const hal::Dev
     if (without->grows || beyond > 0) ++beyond;
     if (with->grows) break;
   }
-  judge(v);
+  check(v);
   return v;
 }
 

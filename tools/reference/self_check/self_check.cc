@@ -32,7 +32,7 @@ struct Known {
   double bar_ratio = 0.0;  // of the force
 };
 
-bool judge(const Known& known, double force_N) {
+bool check(const Known& known, double force_N) {
   const double off = force_N / known.force_N - 1.0;
   const bool good = std::abs(off) <= known.bar_ratio;
   fmt::print("{:<5} {:<34} {:>9.3f} mN, known {:>9.3f} mN, {:+.2f} % (bar {:g} %)\n",
@@ -55,7 +55,7 @@ Result<bool> check_block(double size_m, const std::vector<Known>& cases,
                                        .level = large_strain ? kCoarsestLevel : kLevel});
     if (!solved && !found_no_solution(solved.error())) return solved.error();
     if (!solved) fmt::print("{}: {}\n", known.name, solved.error().sentence);
-    good &= solved && judge(known, solved->force_N);
+    good &= solved && check(known, solved->force_N);
   }
   return good;
 }
@@ -122,7 +122,7 @@ Result<bool> check_patch(const model::mesh::SurfaceMesh& surface, const mesh::He
                     .force_N = c.at("force_N").get<double>(),
                     // The independent answer's own error bar.
                     .bar_ratio = 0.03};
-  return judge(known, dot(answer->force_N, direction));
+  return check(known, dot(answer->force_N, direction));
 }
 
 Result<bool> check_organ(const std::string& folder) {

@@ -43,7 +43,7 @@ class GateWatch {
   double step(double wanted_N, bool fresh) {
     firmware::gate::GateInput input{.wanted = {}, .tool = {}, .fresh = fresh, .armed = armed_};
     input.wanted.force_N.x = wanted_N;
-    const firmware::gate::GateVerdict verdict = gate_.judge(input);
+    const firmware::gate::LimitedForce verdict = gate_.limit(input);
     const bool latched = verdict.fault != model::Fault::kNone;
     const char* broken = witness_.check(
         {.written = verdict.wrench, .fresh = fresh, .armed = armed_, .faulted = latched});
@@ -80,7 +80,7 @@ class GateWatch {
 
 /// Of a table with the column beyond_the_line: the gate held, and how many cells put it to the
 /// test.
-inline Finding judge_gate(const report::Table& table) {
+inline Finding check_gate(const report::Table& table) {
   std::size_t held = 0, fought = 0;
   for (const report::Row& row : table.rows()) {
     const std::string& word = table.word(row, "beyond_the_line");

@@ -122,7 +122,7 @@ double between_counts_m(double depth_m, double position_step_m) {
   return position_step_m * (std::floor(depth_m / position_step_m) + 0.5);
 }
 
-LoopRun run_loop(const LoopCase& loop, const TissueForce& tissue, const Judge& judge) {
+LoopRun run_loop(const LoopCase& loop, const TissueForce& tissue, const Check& check) {
   const double period_s = 1.0 / loop.rate_Hz;
   const double step_m = loop.device.position_step_m;
   LoopPlant plant = plant_of(loop);
@@ -148,7 +148,7 @@ LoopRun run_loop(const LoopCase& loop, const TissueForce& tissue, const Judge& j
         count_m = now_m;
       }
       // A lost sample holds the force; the gate is told, and fades it.
-      const double force_N = judge ? judge(wanted_N, fresh) : wanted_N;
+      const double force_N = check ? check(wanted_N, fresh) : wanted_N;
       if (k > 0) run.max_step_N = std::max(run.max_step_N, std::abs(force_N - written_N));
       run.max_force_N = std::max(run.max_force_N, std::abs(force_N));
       written_N = force_N;
@@ -156,7 +156,7 @@ LoopRun run_loop(const LoopCase& loop, const TissueForce& tissue, const Judge& j
     line.push(written_N);
     move(plant, line, push_N, period_s);
     // The gate's extremes may come at any time, so such a run has no early end.
-    if (judge) continue;
+    if (check) continue;
     still = plant.is_stuck() ? still + 1 : 0;
     if (still > kStillTicks) return run;  // at rest for good
     if (!(std::abs(plant.position_m()) < kPlain * loop.kick_m)) {

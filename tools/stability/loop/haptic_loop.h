@@ -47,7 +47,7 @@ using TissueForce = std::function<double(double depth_m)>;
 /// Makes such a tissue, settled at the balance: one with memory is new for each run.
 using TissueMaker = std::function<TissueForce()>;
 /// What stands between tissue and device, once per tick: the force written for the one wanted.
-using Judge = std::function<double(double wanted_N, bool fresh)>;
+using Check = std::function<double(double wanted_N, bool fresh)>;
 
 enum class Verdict { kRest, kBuzz, kGrow };
 const char* name_of(Verdict verdict);
@@ -63,7 +63,7 @@ struct LoopRun {
 double between_counts_m(double depth_m, double position_step_m);
 
 /// Ends early when the verdict is plain, unless `judge` is there: then every tick counts.
-LoopRun run_loop(const LoopCase& loop, const TissueForce& tissue, const Judge& judge = nullptr);
+LoopRun run_loop(const LoopCase& loop, const TissueForce& tissue, const Check& check = nullptr);
 
 /// Largest factor on the tissue's force, within [low, high], with a verdict better than `worse`:
 /// bisection in the logarithm down to one percent; 0 if even `low` is too stiff.

@@ -227,7 +227,7 @@ report::Row run(std::size_t job, Grid grid) {
                                      : "comes to rest")};
 }
 
-std::vector<Finding> judge(const report::Table& t) {
+std::vector<Finding> check(const report::Table& t) {
   double low = 1e9, high = 0.0, alike_low = 1e9, alike_high = 0.0;
   std::size_t in_bounds = 0, bounced = 0;
   for (const report::Row& row : t.rows()) {
@@ -264,7 +264,7 @@ Map delta_loop_map() {
           .columns = columns,
           .jobs = [](Grid grid) { return axes(settings(grid)).jobs(); },
           .run = run,
-          .judge = judge,
+          .check = check,
           .pictures = nullptr};
 }
 

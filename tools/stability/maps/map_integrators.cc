@@ -92,7 +92,7 @@ report::Row run(std::size_t job, Grid grid) {
           std::string(growth > kGrows ? "grows" : "bounded")};
 }
 
-std::vector<Finding> judge(const report::Table& t) {
+std::vector<Finding> check(const report::Table& t) {
   std::size_t agree = 0;
   double worst = 0.0;
   std::string rest;
@@ -131,7 +131,7 @@ Map integrator_map() {
       .jobs =
           [](Grid grid) { return std::size(kProbedMethods) * cells(grid).zeta * cells(grid).z; },
       .run = run,
-      .judge = judge,
+      .check = check,
       .pictures = integrator_pictures};
 }
 

@@ -91,7 +91,7 @@ report::Row run(std::size_t job, Grid grid) {
           named.beyond};
 }
 
-std::vector<Finding> judge(const report::Table& t) {
+std::vector<Finding> check(const report::Table& t) {
   std::size_t in_bounds = 0, told = 0, beyond = 0, finite = 0;
   for (const report::Row& row : t.rows()) {
     in_bounds += t.word(row, "gate") == "in bounds";
@@ -118,7 +118,7 @@ Map law_limit_map() {
           .columns = columns,
           .jobs = [](Grid grid) { return probed_laws().size() * depths(grid); },
           .run = run,
-          .judge = judge,
+          .check = check,
           .pictures = law_limit_pictures};
 }
 

@@ -40,7 +40,7 @@ struct Point {
   const char* what = "";
 };
 
-// Chosen: so fine that the least sampled slope is the least one within the bounds of judge().
+// Chosen: so fine that the least sampled slope is the least one within the bounds of check().
 constexpr int kSamples = 2000;
 
 Point disc_cone(double t) {
@@ -147,7 +147,7 @@ double last_over_middle(const report::Table& t, const char* study) {
   return t.number(*rows.back(), "measured") / t.number(*rows[rows.size() / 2], "measured");
 }
 
-std::vector<Finding> judge(const report::Table& t) {
+std::vector<Finding> check(const report::Table& t) {
   bool refused_beyond = true;
   for (const report::Row* row : rows_of(t, "disc_cone"))
     refused_beyond &=
@@ -177,7 +177,7 @@ Map law_line_map() {
           .columns = columns,
           .jobs = [](Grid grid) { return std::size(kStudies) * points(grid); },
           .run = run,
-          .judge = judge,
+          .check = check,
           .pictures = law_line_pictures};
 }
 

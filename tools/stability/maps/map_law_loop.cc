@@ -116,7 +116,7 @@ bool remembers(const std::string& law) {
                      [&](const NamedLaw& n) { return n.name == law && n.remembers(); });
 }
 
-std::vector<Finding> judge(const report::Table& t) {
+std::vector<Finding> check(const report::Table& t) {
   struct Spread {
     double low = 1e9, high = 0.0;
   } closed, memory;
@@ -136,7 +136,7 @@ std::vector<Finding> judge(const report::Table& t) {
        fmt::format("laws with memory are stable at least as far, with the tangent that one tick "
                    "can meet: measured {:.2f} to {:.2f} of it",
                    memory.low, memory.high)},
-      judge_gate(t)};
+      check_gate(t)};
 }
 
 }  // namespace
@@ -148,7 +148,7 @@ Map law_loop_map() {
           .columns = columns,
           .jobs = [](Grid grid) { return axes(grid).jobs(); },
           .run = run,
-          .judge = judge,
+          .check = check,
           .pictures = law_loop_pictures};
 }
 

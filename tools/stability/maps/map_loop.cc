@@ -119,7 +119,7 @@ report::Row run(std::size_t job, Grid grid) {
           std::string(gate.beyond_the_line())};
 }
 
-std::vector<Finding> judge(const report::Table& t) {
+std::vector<Finding> check(const report::Table& t) {
   double least_grow = 1e9, least_rest = 1e9, low = 1e9, high = 0.0;
   std::size_t below = 0, bare = 0;
   for (const report::Row& row : t.rows()) {
@@ -154,7 +154,7 @@ std::vector<Finding> judge(const report::Table& t) {
                    "{:.3f} K",
                    bare, low, high),
        {{"bare", bare}, {"bare_least_ratio", low}, {"bare_largest_ratio", high}}},
-      judge_gate(t),
+      check_gate(t),
   };
 }
 
@@ -167,7 +167,7 @@ Map loop_map() {
           .columns = columns,
           .jobs = [](Grid grid) { return axes(settings(grid)).jobs(); },
           .run = run,
-          .judge = judge,
+          .check = check,
           .pictures = loop_pictures};
 }
 

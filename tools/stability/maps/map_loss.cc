@@ -68,7 +68,7 @@ report::Row run(std::size_t job, Grid grid) {
           std::string(state)};
 }
 
-std::vector<Finding> judge(const report::Table& t) {
+std::vector<Finding> check(const report::Table& t) {
   double worst_hold_J = 0.0, worst_gate_J = 0.0, worst_step = 0.0;
   bool ends_at_zero = true, latches = true;
   for (const report::Row& row : t.rows()) {
@@ -102,7 +102,7 @@ Map loss_map() {
           .columns = columns,
           .jobs = [](Grid grid) { return axes(grid).jobs(); },
           .run = run,
-          .judge = judge,
+          .check = check,
           .pictures = loss_pictures};
 }
 

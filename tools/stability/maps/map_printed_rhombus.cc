@@ -102,7 +102,7 @@ report::Row run(std::size_t job, Grid grid) {
           std::string(what)};
 }
 
-std::vector<Finding> judge(const report::Table& t) {
+std::vector<Finding> check(const report::Table& t) {
   std::size_t agree = 0, energy_resists = 0;
   double low = 1e9, high = 0.0;
   for (const report::Row& row : t.rows()) {
@@ -133,7 +133,7 @@ Map printed_rhombus_map() {
           .columns = columns,
           .jobs = [](Grid grid) { return cells(grid).angles * cells(grid).ratios; },
           .run = run,
-          .judge = judge,
+          .check = check,
           .pictures = printed_rhombus_pictures};
 }
 

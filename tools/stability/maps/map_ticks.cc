@@ -91,7 +91,7 @@ report::Row run(std::size_t job, Grid grid) {
           std::string(gate.beyond_the_line())};
 }
 
-std::vector<Finding> judge(const report::Table& t) {
+std::vector<Finding> check(const report::Table& t) {
   double low = 1e9, high = 0.0;
   for (const report::Row& row : t.rows()) {
     const double ratio = t.number(row, "measured_over_theory");
@@ -104,7 +104,7 @@ std::vector<Finding> judge(const report::Table& t) {
        fmt::format("held forces cost stiffness as (2 b / T) E[n] / E[n^2] says: measured {:.3f} "
                    "to {:.3f} of it",
                    low, high)},
-      judge_gate(t)};
+      check_gate(t)};
 }
 
 }  // namespace
@@ -116,7 +116,7 @@ Map tick_map() {
           .columns = columns,
           .jobs = [](Grid grid) { return axes(grid).jobs(); },
           .run = run,
-          .judge = judge,
+          .check = check,
           .pictures = tick_pictures};
 }
 

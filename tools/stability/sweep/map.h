@@ -28,7 +28,7 @@ struct Map {
   std::vector<report::Column> (*columns)() = nullptr;
   std::size_t (*jobs)(Grid grid) = nullptr;
   report::Row (*run)(std::size_t job, Grid grid) = nullptr;
-  std::vector<Finding> (*judge)(const report::Table& table) = nullptr;
+  std::vector<Finding> (*check)(const report::Table& table) = nullptr;
   std::vector<report::Picture> (*pictures)(Grid grid) = nullptr;
 };
 

@@ -34,7 +34,7 @@ Result<MapReport> finished(const Map& map, const report::Table& table,
   auto files = table.write(options.out);
   if (!files) return files.error();
   report.files = std::move(*files);
-  report.findings = map.judge(table);
+  report.findings = map.check(table);
   if (!options.draw_pictures || map.pictures == nullptr) return report;
   for (const report::Picture& picture : map.pictures(options.grid)) {
     const auto drawn = draw(picture, options.out);

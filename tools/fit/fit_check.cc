@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/fit/fit_judge.h"
+#include "tools/fit/fit_check.h"
 
 #include <fmt/format.h>
 
@@ -113,7 +113,7 @@ std::string slope_reason(const FitData& data, std::span<const FitAnswer> answers
 }
 
 std::vector<std::string> reasons_of(const FitData& data, std::span<const FitAnswer> answers,
-                                    const Judgement& j, bool scale_by_site, double press_limit_m) {
+                                    const Evaluation& j, bool scale_by_site, double press_limit_m) {
   std::vector<std::string> reasons;
   if (press_limit_m < data.deepest_m())
     reasons.push_back(fmt::format("its force stays from {:.3g} mm on, the data goes to {:.3g} mm",
@@ -154,9 +154,9 @@ double shape_error(const FitSample& sample, const FitAnswer& answer) {
   return rms.root();
 }
 
-Judgement judge(const FitData& data, std::span<const FitAnswer> answers, bool scale_by_site,
-                double press_limit_m) {
-  Judgement out;
+Evaluation check(const FitData& data, std::span<const FitAnswer> answers, bool scale_by_site,
+                 double press_limit_m) {
+  Evaluation out;
   Errors fitted, held_out, press, pull;
   RootMeanSquare shape, held_out_shape;
   std::size_t first = 0;

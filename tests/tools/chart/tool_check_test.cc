@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The whole tool judged: errors as worked by hand, and every sphere felt. Times are never asserted.
-#include "tools/chart/compare/tool_judge.h"
+#include "tools/chart/compare/tool_check.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include "tools/chart/compare/chart.h"
 #include "tools/chart/report/tool_report.h"
 
-namespace tact::tools::chart::tool_judge_test {
+namespace tact::tools::chart::tool_check_test {
 
 using ground_truth::ToolReference;
 using model::scene::LawKind;
@@ -75,12 +75,12 @@ TEST(ToolErrors, CountWhatAHandCannotTell) {
   EXPECT_EQ(summarize_tool(samples, {true}).within_jnd_ratio, 0.5);
 }
 
-TEST(JudgeTool, FindsTheErrorOfOneSphereAsWorkedByHand) {
+TEST(CheckTool, FindsTheErrorOfOneSphereAsWorkedByHand) {
   const model::scene::Scene scene = make_scene();
   const auto stack = model::indent::make_disc_stack(scene.disc_stack);
   ASSERT_TRUE(stack);
   const double k = stack->respond(0.001).force_N / 0.001;
-  const auto row = judge_tool(scene, LawKind::kDiscStack, linear_truth(scene, 1.25 * k), kShort);
+  const auto row = check_tool(scene, LawKind::kDiscStack, linear_truth(scene, 1.25 * k), kShort);
   ASSERT_TRUE(row) << row.error().sentence;
   EXPECT_EQ(row->failure, "");
   ASSERT_EQ(row->samples.size(), 4U) << "two places, two depths";
@@ -88,13 +88,13 @@ TEST(JudgeTool, FindsTheErrorOfOneSphereAsWorkedByHand) {
   EXPECT_GT(row->timing.median_us, 0.0);
 }
 
-TEST(JudgeTool, FeelsEverySphereOfTheTool) {
+TEST(CheckTool, FeelsEverySphereOfTheTool) {
   model::scene::Scene scene = make_scene();
   const auto stack = model::indent::make_disc_stack(scene.disc_stack);
   ASSERT_TRUE(stack);
   const double k = stack->respond(0.001).force_N / 0.001;
   scene.tool.spheres = {{{0, -0.03, 0}, 0.004}, {{0, 0.03, 0}, 0.004}};  // far from each other
-  const auto row = judge_tool(scene, LawKind::kDiscStack, linear_truth(scene, k), kShort);
+  const auto row = check_tool(scene, LawKind::kDiscStack, linear_truth(scene, k), kShort);
   ASSERT_TRUE(row) << row.error().sentence;
   for (const ToolSample& s : row->samples) {
     EXPECT_GT(s.own_ratio(), 0.5);
@@ -102,22 +102,22 @@ TEST(JudgeTool, FeelsEverySphereOfTheTool) {
   }
 }
 
-TEST(JudgeTool, IsWithoutFrictionAsTheReferenceIs) {
+TEST(CheckTool, IsWithoutFrictionAsTheReferenceIs) {
   model::scene::Scene scene = make_scene();
   ToolReference truth = linear_truth(scene, 20.0);
   for (auto& place : truth.places) place.direction = normalized(model::Vec3{0.3, 0.0, -1.0});
-  const auto rough = judge_tool(scene, LawKind::kDiscStack, truth, kShort);
+  const auto rough = check_tool(scene, LawKind::kDiscStack, truth, kShort);
   scene.contact.friction_ratio = 0.0;
-  const auto smooth = judge_tool(scene, LawKind::kDiscStack, truth, kShort);
+  const auto smooth = check_tool(scene, LawKind::kDiscStack, truth, kShort);
   ASSERT_TRUE(rough && smooth);
   EXPECT_EQ(rough->samples.back().force_N, smooth->samples.back().force_N);
 }
 
-TEST(JudgeTool, RefusesAReferenceOfAnotherTool) {
+TEST(CheckTool, RefusesAReferenceOfAnotherTool) {
   model::scene::Scene scene = make_scene();
   const ToolReference truth = linear_truth(scene, 20.0);
   scene.tool.spheres[0].radius_m = 0.005;
-  const auto row = judge_tool(scene, LawKind::kDiscStack, truth, kShort);
+  const auto row = check_tool(scene, LawKind::kDiscStack, truth, kShort);
   ASSERT_FALSE(row);
   EXPECT_NE(row.error().sentence.find("spheres"), std::string::npos);
 }
@@ -136,9 +136,8 @@ TEST(Chart, JudgesEverySizeByTheWholeToolWhereItIsKnown) {
   one_sphere.sites[0].cases = {
       {.depth_m = 0.001, .force_N = 1.25 * k * 0.001, .profile_m = {0.001, 0.0}}};
   ToolReference whole_tool = linear_truth(scene, 0.5 * k);
-  ChartOptions options{.wish = {.laws = {}, .quick = true},
-                       .timing = kShort,
-                       .tool_reference = &whole_tool};
+  ChartOptions options{
+      .wish = {.laws = {}, .quick = true}, .timing = kShort, .tool_reference = &whole_tool};
   const auto rows = measure_chart(scene, one_sphere, options);
   ASSERT_TRUE(rows) << rows.error().sentence;
   std::size_t linear = 0;
@@ -159,7 +158,7 @@ TEST(Chart, JudgesEverySizeByTheWholeToolWhereItIsKnown) {
 TEST(ToolReport, HasARowForEachLawPlaceAndDepthAndASummary) {
   const model::scene::Scene scene = make_scene();
   const ToolReference truth = linear_truth(scene, 20.0);
-  const auto row = judge_tool(scene, LawKind::kDiscStack, truth, kShort);
+  const auto row = check_tool(scene, LawKind::kDiscStack, truth, kShort);
   ASSERT_TRUE(row) << row.error().sentence;
   const auto j = nlohmann::json::parse(tool_json({*row}, truth, "tact-lab chart x", {}));
   EXPECT_EQ(j.at("format"), "tact-tool-chart");
@@ -185,4 +184,4 @@ TEST(ChartProgram, SaysWhichReferenceItNeeds) {
   EXPECT_EQ(both.status, 2) << "a figure is of the scene's own laws";
 }
 
-}  // namespace tact::tools::chart::tool_judge_test
+}  // namespace tact::tools::chart::tool_check_test

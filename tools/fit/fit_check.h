@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// fit_judge.h - how far a law stays from the data, and whether it can follow it at all.
+// fit_check.h - how far a law stays from the data, and whether it can follow it at all.
 //
 //     force   e = F - F_data            RMS and worst in N, and of the peak |F_data| of all sites
 //     shape   e_j = u_j - u_data,j      RMS over the rings, of |depth|, then RMS over the samples
@@ -37,7 +37,7 @@ struct SiteResidual {
   double shape_rms_ratio = 0.0;  // of the depth; NaN without shapes
 };
 
-struct Judgement {
+struct Evaluation {
   Residual fitted, held_out;  // held_out: of the peak of all sites too
   Residual press, pull;       // of all sites
   double shape_rms_ratio = 0.0, held_out_shape_rms_ratio = 0.0;  // NaN without shapes
@@ -52,7 +52,7 @@ double best_scale(std::span<const FitSample> samples, std::span<const FitAnswer>
 double shape_error(const FitSample& sample, const FitAnswer& answer);
 
 /// `answers` in the order of the data; `scale_by_site`: each site has its best factor.
-Judgement judge(const FitData& data, std::span<const FitAnswer> answers, bool scale_by_site,
-                double press_limit_m);
+Evaluation check(const FitData& data, std::span<const FitAnswer> answers, bool scale_by_site,
+                 double press_limit_m);
 
 }  // namespace tact::tools::fit

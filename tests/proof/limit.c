@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// judge.c - one tick of the gate, from every state within its invariant, with every input. The
-// words of each property begin with its stage. MADE is what run makes of Gate::judge.
+// limit.c - one tick of the gate, from every state within its invariant, with every input. The
+// words of each property begin with its stage. MADE is what run makes of Gate::limit.
 #include "tests/proof/contracts.h"
 // The translation calls the contracts.
 #include MADE
@@ -54,7 +54,7 @@ int main(void) {
            count_workspace = COUNT_workspace, count_passivity = COUNT_passivity,
            count_magnitude = COUNT_magnitude, count_slew = COUNT_slew, count_power = COUNT_power,
            count_ramp = COUNT_ramp;
-  judge();
+  limit();
   bool is_zero = IS_ZERO(FORCE) && IS_ZERO(TORQUE);
   bool latched = FAULT >= 100;
   bool let_through = IS_ARMED && ACTED(armed) == 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tool_judge.h - a scene's laws with its whole tool, as the loop feels them, against the reference.
+// tool_check.h - a scene's laws with its whole tool, as the loop feels them, against the reference.
 //
 // At each place the tool comes from above, as a press stroke brings it, 20 mm/s, through
 // model::contact::Contact (touch, then feel), all spheres; at each depth it waits until the force
@@ -50,13 +50,13 @@ struct ToolRow {
 
 /// The scene's own law: its errors, without a time. An error is Ctrl-C's or says that scene and
 /// reference do not fit.
-model::Result<ToolRow> judge_errors(const model::scene::Scene& scene,
+model::Result<ToolRow> check_errors(const model::scene::Scene& scene,
                                     const ground_truth::ToolReference& reference);
 /// The scene as it is, over the site of its hand. An error: the law cannot be made.
 model::Result<Timing> time_tool(const model::scene::Scene& scene, const TimingSettings& settings);
 
 /// Both, of one law of the scene.
-model::Result<ToolRow> judge_tool(const model::scene::Scene& scene, model::scene::LawKind law,
+model::Result<ToolRow> check_tool(const model::scene::Scene& scene, model::scene::LawKind law,
                                   const ground_truth::ToolReference& reference,
                                   const TimingSettings& timing);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/fit/fit_judge.h"
+#include "tools/fit/fit_check.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "tools/fit/fit_run.h"
 #include "tools/report/just_noticeable.h"
 
-namespace tact::tools::fit::fit_judge_test {
+namespace tact::tools::fit::fit_check_test {
 
 using model::operator""_mm;
 
@@ -30,16 +30,16 @@ std::vector<FitAnswer> line(const FitData& data, double stiffness_N_per_m) {
   return answers;
 }
 
-bool says(const Judgement& j, const std::string& words) {
+bool says(const Evaluation& j, const std::string& words) {
   for (const std::string& reason : j.reasons)
     if (reason.find(words) != std::string::npos) return true;
   return false;
 }
 
-TEST(FitJudge, MatchesPenAndPaper) {
+TEST(FitCheck, MatchesPenAndPaper) {
   FitData data{.sites = {{.name = "a", .samples = {{1_mm, 1.0}, {2_mm, 2.0}}}}};
   const std::vector<FitAnswer> answers{{.force_N = 1.1}, {.force_N = 1.7}};
-  const Judgement j = judge(data, answers, false, 10_mm);
+  const Evaluation j = check(data, answers, false, 10_mm);
   EXPECT_NEAR(j.fitted.rms_N, std::sqrt((0.01 + 0.09) / 2.0), 1e-12);
   EXPECT_NEAR(j.fitted.worst_N, 0.3, 1e-12);
   EXPECT_NEAR(j.fitted.worst_ratio(), 0.15, 1e-12);
@@ -47,32 +47,32 @@ TEST(FitJudge, MatchesPenAndPaper) {
   EXPECT_EQ(j.held_out.samples, 0U);
 }
 
-TEST(FitJudge, MeasuresTheShapeAgainstTheDepth) {
+TEST(FitCheck, MeasuresTheShapeAgainstTheDepth) {
   const FitSample sample{.depth_m = 2_mm, .force_N = 1.0, .ring_m = {2_mm, 1_mm, std::nan("")}};
   // errors 0 and 0.2 mm over 2 mm; what is not known is not compared
   EXPECT_NEAR(shape_error(sample, {.ring_m = {2_mm, 1.2_mm, 9_mm}}), 0.1 / std::sqrt(2.0), 1e-12);
   EXPECT_TRUE(std::isnan(shape_error(sample, {})));
 }
 
-TEST(FitJudge, KeepsHeldOutSitesApart) {
+TEST(FitCheck, KeepsHeldOutSitesApart) {
   FitData data{.sites = {power_site("a", 0.5, 1.0), power_site("b", 1.0, 1.0)}};
   data.sites[1].held_out = true;
-  const Judgement j = judge(data, line(data, 50.0), false, 1.0);
+  const Evaluation j = check(data, line(data, 50.0), false, 1.0);
   EXPECT_NEAR(j.fitted.rms_N, 0.0, 1e-12);
   EXPECT_NEAR(j.held_out.worst_N, 0.5, 1e-12);
   EXPECT_FALSE(j.follows);
   EXPECT_TRUE(says(j, "sites differ by ±33 %")) << j.reasons[0];
 }
 
-TEST(FitJudge, AFactorForEachSiteTakesTheirDifferenceAway) {
+TEST(FitCheck, AFactorForEachSiteTakesTheirDifferenceAway) {
   const FitData data{.sites = {power_site("a", 0.5, 1.0), power_site("b", 1.0, 1.0)}};
-  const Judgement j = judge(data, line(data, 75.0), true, 1.0);
+  const Evaluation j = check(data, line(data, 75.0), true, 1.0);
   EXPECT_TRUE(j.follows);
   EXPECT_NEAR(j.sites[0].scale, 2.0 / 3.0, 1e-12);
   EXPECT_NEAR(j.sites[1].scale, 4.0 / 3.0, 1e-12);
 }
 
-TEST(FitJudge, ARhombusChainCannotFollowARoundTip) {
+TEST(FitCheck, ARhombusChainCannotFollowARoundTip) {
   // Hertz: F grows like d^1.5; the chain softens in press (RC-5).
   model::scene::Scene scene = tests::make_plate_scene();
   scene.described = {model::scene::LawKind::kRhombus};
@@ -81,18 +81,18 @@ TEST(FitJudge, ARhombusChainCannotFollowARoundTip) {
   law.most_evaluations = 300;
   const auto fitted = fit_law(law, scene, data, {});
   ASSERT_TRUE(fitted) << fitted.error().sentence;
-  const Judgement& j = fitted->judged;
+  const Evaluation& j = fitted->checked;
   EXPECT_FALSE(j.follows);
   EXPECT_GT(j.fitted.rms_ratio(), report::kJustNoticeable_ratio);
   EXPECT_LT(j.fitted.rms_ratio(), 0.10);  // a straight line leaves 7.3 %
   EXPECT_TRUE(says(j, "while the data hardens")) << j.reasons[0];
 }
 
-TEST(FitJudge, SaysWhereALawEnds) {
+TEST(FitCheck, SaysWhereALawEnds) {
   const FitData data{.sites = {power_site("a", 0.5, 1.0)}};
   std::vector<FitAnswer> answers = line(data, 50.0);
   for (FitAnswer& a : answers) a.force_N = std::min(a.force_N, 0.2);
-  EXPECT_TRUE(says(judge(data, answers, false, 4_mm), "its force stays from 4 mm on"));
+  EXPECT_TRUE(says(check(data, answers, false, 4_mm), "its force stays from 4 mm on"));
 }
 
-}  // namespace tact::tools::fit::fit_judge_test
+}  // namespace tact::tools::fit::fit_check_test

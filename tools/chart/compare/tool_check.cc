@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/chart/compare/tool_judge.h"
+#include "tools/chart/compare/tool_check.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +23,7 @@ using model::Tool;
 using model::Vec3;
 using model::scene::Scene;
 
-constexpr double kSpeed_mps = 0.02;  // of a press stroke (tool_judge.h)
+constexpr double kSpeed_mps = 0.02;  // of a press stroke (tool_check.h)
 constexpr double kAbove_m = 0.003;   // where the way begins
 
 /// As the reference is: elastic, linear, without friction.
@@ -158,7 +158,7 @@ ToolErrors summarize_tool(const std::vector<ToolSample>& samples, const std::vec
   return out;
 }
 
-Result<ToolRow> judge_errors(const Scene& scene, const ToolReference& reference) {
+Result<ToolRow> check_errors(const Scene& scene, const ToolReference& reference) {
   if (auto differs = check_tool_reference_fits(reference, scene)) return std::move(*differs);
   ToolRow row;
   row.law = scene.law;
@@ -185,11 +185,11 @@ Result<ToolRow> judge_errors(const Scene& scene, const ToolReference& reference)
   return row;
 }
 
-Result<ToolRow> judge_tool(const Scene& scene, model::scene::LawKind law,
+Result<ToolRow> check_tool(const Scene& scene, model::scene::LawKind law,
                            const ToolReference& reference, const TimingSettings& timing) {
   Scene own = scene;
   own.law = law;
-  auto row = judge_errors(own, reference);
+  auto row = check_errors(own, reference);
   if (!row || !row->failure.empty()) return row;
   const auto timed = time_tool(own, timing);
   if (timed)
