@@ -60,7 +60,7 @@ void BlackBox::finish() {
 void BlackBox::write(const Kept& kept) {
   // The disk first, without the lock: who asks for news must not wait for it.
   const auto path = write_black_box(run_, kept);
-  const std::lock_guard lock(told_mutex_);
+  const std::lock_guard lock(reported_mutex_);
   if (!path) {
     news_.push_back("black box: " + path.error().sentence);
     return;
@@ -71,12 +71,12 @@ void BlackBox::write(const Kept& kept) {
 }
 
 std::vector<std::string> BlackBox::news() {
-  const std::lock_guard lock(told_mutex_);
+  const std::lock_guard lock(reported_mutex_);
   return std::exchange(news_, {});
 }
 
 std::vector<std::string> BlackBox::files() const {
-  const std::lock_guard lock(told_mutex_);
+  const std::lock_guard lock(reported_mutex_);
   return files_;
 }
 

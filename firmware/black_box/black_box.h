@@ -51,7 +51,7 @@ class BlackBox final : public telemetry::Recorder {
   std::uint64_t to_wait_ = 0;  // ticks
   std::atomic<bool> writing_{false};
   std::thread writer_;
-  mutable std::mutex told_mutex_;  // never met by the loop
+  mutable std::mutex reported_mutex_;  // never met by the loop
   std::vector<std::string> news_, files_;
 };
 

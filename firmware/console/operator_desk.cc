@@ -29,8 +29,8 @@ void OperatorDesk::obey(std::int64_t longest_ns) {
   // were told must not count as an answer to them.
   const auto asked = next_request();
   if (ends) stop();
-  const bool just_told = show();
-  if (asked) asked->answer(do_word(asked->word(), just_told));
+  const bool just_reported = show();
+  if (asked) asked->answer(do_word(asked->word(), just_reported));
 }
 
 std::optional<ControlRequest> OperatorDesk::next_request() const {
@@ -107,7 +107,7 @@ std::optional<bool> OperatorDesk::wait_for(std::uint32_t number) {
 Answer OperatorDesk::not_done(const char* what, const std::optional<bool>& answer,
                               const char* why) const {
   const auto words = fmt::format("not {}: {}", what, answer ? why : "the loop gives no answer");
-  view_.tell(words);
+  view_.report(words);
   return {.done = false, .sentence = fmt::format("{}: {}", view_.device(), words)};
 }
 
@@ -120,7 +120,7 @@ Answer OperatorDesk::stop() {
 Answer OperatorDesk::refuse(const char* what, const std::string& why) const {
   // Counted with those that the loop refuses: the report has one number.
   requests_.refused.fetch_add(1);
-  view_.tell(fmt::format("not {}: {}", what, why));
+  view_.report(fmt::format("not {}: {}", what, why));
   return {.done = false, .sentence = fmt::format("{}: not {}: {}", view_.device(), what, why)};
 }
 
@@ -130,8 +130,8 @@ std::unique_ptr<ControlSocket> open_control(const std::string& scene_path,
   auto control = folder ? ControlSocket::open(control_path(*folder, scene_path, getpid()))
                         : model::Result<std::unique_ptr<ControlSocket>>(folder.error());
   if (control) return std::move(*control);
-  view.tell(fmt::format("tactctl does not reach this tactd, so nobody can arm it: {}",
-                        control.error().sentence));
+  view.report(fmt::format("tactctl does not reach this tactd, so nobody can arm it: {}",
+                          control.error().sentence));
   return nullptr;
 }
 

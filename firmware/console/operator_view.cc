@@ -37,55 +37,55 @@ OperatorView::OperatorView(const hal::Device& device, const hal::SafetyLines& li
       arms_itself_(arms_itself) {}
 
 bool OperatorView::show(const telemetry::Frame& newest) {
-  const bool was_told = told_ready_;
+  const bool was_reported = reported_ready_;
   if (newest.state == loop::State::kArmed || newest.state == loop::State::kStopped)
     arms_itself_ = false;  // at the start alone
   // Each time it becomes ready it is told anew: the words before are no leave to arm.
-  if (newest.state != loop::State::kReady) told_ready_ = false;
+  if (newest.state != loop::State::kReady) reported_ready_ = false;
   // Each fault once, when it latches.
   if (newest.fault != before_.fault && newest.fault != 0) {
     const auto number = static_cast<Fault>(newest.fault);
     const model::FaultEntry& fault = model::describe(number);
     const std::string trouble = trouble_behind(number, device_, lines_);
-    tell(fmt::format("fault {}, {}: {}{}{}; {}", newest.fault, fault.name, fault.cause,
-                     trouble.empty() ? "" : ": ", trouble, fault.cure));
+    report(fmt::format("fault {}, {}: {}{}{}; {}", newest.fault, fault.name, fault.cause,
+                       trouble.empty() ? "" : ": ", trouble, fault.cure));
   } else if (newest.fault == 0 && waits(newest.state)) {
     const std::string now = device_.trouble();
-    if (!now.empty() && now != waits_for_) tell(now);
+    if (!now.empty() && now != waits_for_) report(now);
     waits_for_ = now;
-  } else if (newest.state == loop::State::kReady && !told_ready_ && !arms_itself_) {
+  } else if (newest.state == loop::State::kReady && !reported_ready_ && !arms_itself_) {
     waits_for_.clear();
-    told_ready_ = true;
-    tell(fmt::format("ready, force is off: hold the device, then arm it (tactctl {} arm)",
-                     scene_path_));
+    reported_ready_ = true;
+    report(fmt::format("ready, force is off: hold the device, then arm it (tactctl {} arm)",
+                       scene_path_));
   }
-  tell_inside(newest);
+  report_inside(newest);
   const std::string noticed = std::exchange(notice_, lines_.notice());
-  if (!notice_.empty() && notice_ != noticed) tell(notice_);
+  if (!notice_.empty() && notice_ != noticed) report(notice_);
   if (terminal_) say(stdout, "\r\033[K{}", status_line(newest, before_));
   // A live line has no line end that would send it.
   std::fflush(stdout);
   before_ = newest;
-  return told_ready_ && !was_told;
+  return reported_ready_ && !was_reported;
 }
 
 // A device may tell where it is while its motors have no power yet: it is not ready then.
 bool OperatorView::waits(loop::State state) {
   if (state == loop::State::kOff) return true;
   const bool without_power = state == loop::State::kReady && !device_.trouble().empty();
-  if (without_power) told_ready_ = false;
+  if (without_power) reported_ready_ = false;
   return without_power;
 }
 
 // Each time the tool is found inside: nothing else says why an armed device has no force.
-void OperatorView::tell_inside(const telemetry::Frame& newest) {
+void OperatorView::report_inside(const telemetry::Frame& newest) {
   const auto is_inside = [](const telemetry::FrameSite& site) {
     return site.state == telemetry::SiteState::kInside;
   };
   const bool was_inside = std::exchange(inside_, std::ranges::any_of(newest.site, is_inside));
   if (!inside_ || was_inside) return;
   const model::FaultEntry& limit = model::describe(Fault::kToolInside);
-  tell(fmt::format("{}: {}; {}", limit.name, limit.cause, limit.cure));
+  report(fmt::format("{}: {}; {}", limit.name, limit.cause, limit.cure));
 }
 
 std::string OperatorView::why_not_arm() const {
@@ -94,7 +94,7 @@ std::string OperatorView::why_not_arm() const {
       return waits_for_.empty() ? "the device is not ready yet" : waits_for_;
     case loop::State::kReady:
       if (!waits_for_.empty()) return waits_for_;
-      return told_ready_ ? "" : "it arms itself as soon as it has power";
+      return reported_ready_ ? "" : "it arms itself as soon as it has power";
     case loop::State::kArmed:
       return "it is armed already";
     case loop::State::kStopped:
@@ -123,7 +123,7 @@ std::string OperatorView::status() const {
   return out;
 }
 
-void OperatorView::tell(const std::string& sentence) const {
+void OperatorView::report(const std::string& sentence) const {
   say(stderr, "{}tactd: {}\n", terminal_ ? "\n" : "", sentence);
 }
 

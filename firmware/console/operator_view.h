@@ -30,18 +30,18 @@ class OperatorView {
   std::string status() const;
   const std::string& device() const { return name_; }
   /// One sentence to standard error, beside the live line.
-  void tell(const std::string& sentence) const;
+  void report(const std::string& sentence) const;
   /// Ends the live line.
   void end() const;
 
  private:
   bool waits(loop::State state);
-  void tell_inside(const telemetry::Frame& newest);
+  void report_inside(const telemetry::Frame& newest);
 
   const hal::Device& device_;
   const hal::SafetyLines& lines_;
   std::string name_, scene_path_;
-  bool terminal_, arms_itself_, told_ready_ = false;
+  bool terminal_, arms_itself_, reported_ready_ = false;
   bool inside_ = false;  // the tool, in the organ, without force
   telemetry::Frame before_;
   std::string waits_for_, notice_;

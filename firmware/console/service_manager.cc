@@ -40,14 +40,14 @@ ServiceManager::~ServiceManager() {
   close(socket_);
 }
 
-void ServiceManager::tell(const ServiceNews& news) {
+void ServiceManager::report(const ServiceNews& news) {
   if (socket_ < 0) return;
-  const bool first_ready = news.may_be_armed && !told_ready_;
+  const bool first_ready = news.may_be_armed && !reported_ready_;
   // READY at once, since systemctl start waits for it; all else once a second.
   if (!first_ready && news.now_ns < next_ns_) return;
   std::string words = first_ready ? "READY=1\n" : "";
   if (news.ticks != ticks_) words += "WATCHDOG=1\n";
-  told_ready_ = told_ready_ || news.may_be_armed;
+  reported_ready_ = reported_ready_ || news.may_be_armed;
   ticks_ = news.ticks;
   next_ns_ = news.now_ns + kPeriod_ns;
   send(words + "STATUS=" + news.status + "\n");

@@ -36,7 +36,7 @@ class ServiceManager {
 
   /// READY=1 once it may be armed. Each second WATCHDOG=1, if the loop has ticked since the last
   /// one, and STATUS: a loop that stands still is ended by the manager.
-  void tell(const ServiceNews& news);
+  void report(const ServiceNews& news);
 
  private:
   void send(const std::string& words) const;
@@ -44,7 +44,7 @@ class ServiceManager {
   int socket_ = -1;
   sockaddr_un address_{};
   socklen_t address_bytes_ = 0;
-  bool told_ready_ = false;
+  bool reported_ready_ = false;
   std::int64_t next_ns_ = 0;
   std::uint64_t ticks_ = 0;
 };

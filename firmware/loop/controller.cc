@@ -81,7 +81,7 @@ void Controller::render_force(const TickInput& input) RT_SAFE {
   jaw_force_N_ = jaw_force_N(contact_.contacts(), input.sample.tool.grip_ratio);
 }
 
-void Controller::tell_shape() RT_SAFE {
+void Controller::publish_shape() RT_SAFE {
   if (contact_.shape(shape_)) shapes_.write(shape_);
 }
 

@@ -63,7 +63,7 @@ class Controller {
   }
 
   /// What a stepped law looks like now goes to the slot; nothing for laws with a profile.
-  void tell_shape() RT_SAFE;
+  void publish_shape() RT_SAFE;
   ShapeSlot& shapes() { return shapes_; }
 
   std::span<const model::contact::SphereContact> contacts() const RT_SAFE {

@@ -144,7 +144,7 @@ void RtLoop::write() RT_SAFE {
 }
 
 // The record is dropped when nobody has read the last ones.
-void RtLoop::tell() RT_SAFE {
+void RtLoop::publish() RT_SAFE {
   statistics_.max_force_N = std::max(statistics_.max_force_N, norm(record_.output.written.force_N));
   statistics_.max_torque_Nm =
       std::max(statistics_.max_torque_Nm, norm(record_.output.written.torque_Nm));
@@ -160,7 +160,7 @@ void RtLoop::tell() RT_SAFE {
   record_.contacts.assign(controller_.contacts());
   ring_.push(record_);
   if (settings_.ticks_per_shape != 0 && record_.tick % settings_.ticks_per_shape == 0)
-    controller_.tell_shape();
+    controller_.publish_shape();
 }
 
 bool RtLoop::may_run() const RT_SAFE {
@@ -201,7 +201,7 @@ void RtLoop::cycle(std::int64_t due_ns) RT_SAFE {
   stop_watch_.step(input, record_.output, wake_ns, stopped ? clock_.now_ns() : written_ns);
   statistics_.stop = stop_watch_.times();
 
-  tell();
+  publish();
   const std::int64_t end_ns = end_phase(Phase::kPublish, written_ns);
   record_phase(Phase::kTotal, end_ns - wake_ns);
 }

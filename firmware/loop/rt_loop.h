@@ -84,7 +84,7 @@ class RtLoop {
   Fault read(std::int64_t now_ns) RT_SAFE;
   void use_clutch(bool pressed) RT_SAFE;
   void write() RT_SAFE;
-  void tell() RT_SAFE;
+  void publish() RT_SAFE;
   /// Reads the clock; marked_ns() the time since then by marks, for phases alone.
   std::int64_t now_ns() RT_SAFE;
   std::int64_t marked_ns() RT_SAFE { return marked_.at_ns(clock_.mark()); }

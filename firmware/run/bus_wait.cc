@@ -8,14 +8,14 @@
 namespace tact::firmware::run {
 
 bool wait_for_bus(const model::scene::Scene& scene, const console::OperatorSignals& signals) {
-  std::string told;
+  std::string reported;
   for (;;) {
     const std::string missing = hal::registry::missing_interface(scene.device);
     if (missing.empty()) return true;
-    if (told != missing)
+    if (reported != missing)
       console::say(stderr, "tactd: waiting for {}: it is not there, or not up; ip link shows it\n",
                    missing);
-    told = missing;
+    reported = missing;
     if (signals.wait_for_end(model::kSecond_ns)) return false;
   }
 }

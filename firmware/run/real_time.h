@@ -15,7 +15,7 @@ class RealTime {
   /// Locks memory and the like, and tries what the loop's threads need.
   void enter(const pc::RtSettings& settings);
   /// What is missing, and what of this PC will make the loop late, to standard error.
-  void tell(const pc::RtSettings& settings) const;
+  void report(const pc::RtSettings& settings) const;
   /// Empty: hard real time, or nobody asked for it.
   const std::vector<pc::Shortfall>& shortfalls() const { return shortfalls_; }
 

@@ -96,7 +96,7 @@ int Session::run() {
   operator_.emplace();
   if (!options_.free_run) {
     real_time_.enter(rt_);
-    real_time_.tell(rt_);
+    real_time_.report(rt_);
     non_rt_ = !real_time_.shortfalls().empty();
   }
   if (non_rt_ && options_.strict) return fail("refused by --strict: no hard real time here", 1);
@@ -213,26 +213,26 @@ void Session::serve_operator(LoopExecutor& executor) {
   console::OperatorDesk desk(
       *operator_, requests_, view, [this] { return telemetry_->newest_frame(); }, control.get());
   console::ServiceManager service;
-  const auto tell_news = [&] {
+  const auto report_news = [&] {
     if (const auto lost = telemetry_->lost_record())
-      view.tell(lost->sentence + "; the loop goes on without its record");
+      view.report(lost->sentence + "; the loop goes on without its record");
     if (black_box_ == nullptr) return;
-    for (const std::string& sentence : black_box_->news()) view.tell(sentence);
+    for (const std::string& sentence : black_box_->news()) view.report(sentence);
   };
   while (!executor.ended()) {
     const std::int64_t now_ns = monotonic_clock_.now_ns();
     const std::int64_t until_ns = loop::next_half_way_ns(now_ns + kStatusPeriod_ns, period_ns());
     desk.obey(until_ns - now_ns);
-    service.tell({now_ns, view.why_not_arm().empty(), loop_->progress().ticks(), view.status()});
-    tell_news();
+    service.report({now_ns, view.why_not_arm().empty(), loop_->progress().ticks(), view.status()});
+    report_news();
     if (!executor.hangs()) continue;
     executor.leave_behind(1, [&] {
-      view.tell(
+      view.report(
           "the loop does not come back, so tactd ends without it: switch the device's power off");
       // The loop is lost: an outlet that was not written to its end is the smaller trouble.
       static_cast<void>(telemetry_->stop());
       view.show(telemetry_->newest_frame());
-      tell_news();
+      report_news();
     });
   }
   view.end();

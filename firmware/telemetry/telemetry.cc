@@ -62,8 +62,8 @@ void Telemetry::drain() {
     if (sinks_.recorder) sinks_.recorder->add(record_);
   }
   // Told once: a full disk loses every tick from then on.
-  if (told_lost_ || !sinks_.log || !sinks_.log->trouble()) return;
-  told_lost_ = true;
+  if (reported_lost_ || !sinks_.log || !sinks_.log->trouble()) return;
+  reported_lost_ = true;
   const std::lock_guard lock(newest_mutex_);
   lost_ = sinks_.log->trouble();
 }

@@ -85,7 +85,7 @@ class Telemetry {
   mutable std::mutex newest_mutex_;  // never met by the loop
   Frame newest_;
   std::optional<model::Error> lost_;  // with the newest frame's lock
-  bool told_lost_ = false;
+  bool reported_lost_ = false;
   loop::TickRecord record_;
   std::uint64_t force_hash_;
   std::thread thread_;

@@ -190,7 +190,7 @@ Frame FrameBuilder::take(std::uint64_t dropped_records) {
 
 void FrameBuilder::add_patch(FramePatch& patch) {
   static_assert(kMaxPatchVertices == model::contact::kMaxShapeNodes &&
-                kMaxCutsTold == model::contact::kCutWindow);
+                kMaxCutsReported == model::contact::kCutWindow);
   constexpr double kMax_um = std::numeric_limits<std::int16_t>::max();
   shapes_.read(shape_);  // or the one before
   patch.vertex_count = shape_.node_count;

@@ -23,7 +23,7 @@ inline constexpr std::uint16_t kTelemetryVersion = 5;
 inline constexpr std::size_t kMaxSites = 4;            // probe spheres on the tool
 inline constexpr std::size_t kMaxRings = 32;           // profile points of one site
 inline constexpr std::size_t kMaxPatchVertices = 180;  // told one by one
-inline constexpr std::size_t kMaxCutsTold = 32;        // in one frame
+inline constexpr std::size_t kMaxCutsReported = 32;    // in one frame
 inline constexpr std::size_t kMaxPieces = 4;           // of the organ's mesh, with a colour each
 
 enum class MessageKind : std::uint16_t { kHello = 1, kFrame = 2 };
@@ -79,11 +79,11 @@ struct FrameSite {
 /// What a mass-spring law shows instead of profiles: vertices that are not at rest, and the cut
 /// triangles, told in a window over their list that moves on from frame to frame.
 struct FramePatch {
-  std::uint32_t vertex_count = 0;                 // in use
-  std::uint32_t cut_total = 0, cut_first = 0;     // of the list, so far; first one told here
-  std::uint32_t cut_count = 0;                    // told here
-  std::uint32_t vertex[kMaxPatchVertices] = {};   // of the organ mesh
-  std::uint32_t cut_triangle[kMaxCutsTold] = {};  // of the organ mesh
+  std::uint32_t vertex_count = 0;                     // in use
+  std::uint32_t cut_total = 0, cut_first = 0;         // of the list, so far; first one told here
+  std::uint32_t cut_count = 0;                        // told here
+  std::uint32_t vertex[kMaxPatchVertices] = {};       // of the organ mesh
+  std::uint32_t cut_triangle[kMaxCutsReported] = {};  // of the organ mesh
   std::int16_t displacement_um[kMaxPatchVertices][3] = {};  // from rest, W
 };
 
@@ -117,7 +117,7 @@ struct Frame {
 static_assert(std::is_trivially_copyable_v<Hello> && std::is_trivially_copyable_v<Frame>);
 // No hidden padding: recordings are checked by a sum over all bytes, and padding has no value.
 static_assert(sizeof(FrameSite) == (13 + kMaxRings) * sizeof(float) + 4);
-static_assert(sizeof(FramePatch) == 16 + kMaxPatchVertices * 10 + kMaxCutsTold * 4);
+static_assert(sizeof(FramePatch) == 16 + kMaxPatchVertices * 10 + kMaxCutsReported * 4);
 static_assert(sizeof(Frame) ==
               48 + 25 * sizeof(float) + 8 + 4 + kMaxSites * sizeof(FrameSite) + sizeof(FramePatch));
 static_assert(sizeof(Frame) <= 4096);

@@ -125,14 +125,14 @@ std::optional<std::string> DriveSettings::expect_sync(int node, const CstConfigu
   if (words && (has & 0x7FFF'FFFFu) != kCanopenSyncId) return words;
   const std::uint32_t period_us = 1000u * wanted.period_ms;
   const std::uint32_t counter = sdo_.read(node, {0x1019, 0, 1}, failure).value_or(0);
-  const std::uint32_t told_us = sdo_.read(node, {0x1006, 0, 4}, failure).value_or(0);
+  const std::uint32_t reported_us = sdo_.read(node, {0x1006, 0, 4}, failure).value_or(0);
   if (counter != 0) {
     // CiA 301: while there is a period, the counter does not change.
-    if (told_us != 0)
+    if (reported_us != 0)
       if (auto error = write({.index = 0x1006, .sub = 0, .value = 0, .size = 4})) return error;
     if (auto error = write({.index = 0x1019, .sub = 0, .value = 0, .size = 1})) return error;
   }
-  if (told_us == 0 || (counter == 0 && told_us == period_us)) return std::nullopt;
+  if (reported_us == 0 || (counter == 0 && reported_us == period_us)) return std::nullopt;
   return write({.index = 0x1006, .sub = 0, .value = period_us, .size = 4});
 }
 

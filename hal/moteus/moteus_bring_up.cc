@@ -65,10 +65,10 @@ class BringUp {
   }
 
   std::optional<Error> check_kind() {
-    const auto told = [](const Heard& a) {
+    const auto reported = [](const Heard& a) {
       return a.kind && (a.kind->refused_register || (a.kind->home_state && a.kind->register_map));
     };
-    run_until(moteus_ask_kind, told, kKind_ms);
+    run_until(moteus_ask_kind, reported, kKind_ms);
     if (auto error = wrong(
             [](const Heard& a) { return !a.kind || a.kind->register_map != kMoteusRegisterMap; },
             "does not speak register map 5: install its maker's firmware of today")) {
@@ -165,8 +165,8 @@ class BringUp {
       const auto reply = decode_moteus(frame, axis.node);
       if (!reply) continue;
       if (!reply->mode) {
-        const bool tells = reply->home_state || reply->register_map || reply->refused_register;
-        if (tells) axis.kind = reply;  // else it only acknowledges a stop
+        const bool reports = reply->home_state || reply->register_map || reply->refused_register;
+        if (reports) axis.kind = reply;  // else it only acknowledges a stop
         continue;
       }
       axis.last = *reply;

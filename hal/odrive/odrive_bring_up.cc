@@ -77,11 +77,11 @@ class BringUp {
     drives_.each([](int node) { return odrive_clear_errors(node, false); });
     drives_.forget_heartbeats();
     // The first heartbeat may have been on its way; the second one tells.
-    const auto told = [](const Axis& a) { return a.heartbeats > 1; };
-    const bool all_told = drives_.run_until(told, kIdleWait_ms);
+    const auto reported = [](const Axis& a) { return a.heartbeats > 1; };
+    const bool all_reported = drives_.run_until(reported, kIdleWait_ms);
     if (auto error = slow_heartbeat()) return error;
-    if (!all_told) {
-      return drives_.wrong([&](const Axis& a) { return !told(a); },
+    if (!all_reported) {
+      return drives_.wrong([&](const Axis& a) { return !reported(a); },
                            "stopped sending its heartbeat: check its supply and the CAN cable");
     }
     if (auto error = error_of_first()) return error;
@@ -175,7 +175,7 @@ class BringUp {
   std::optional<Error> wake(std::size_t i) {
     Axis& axis = drives_.axes[i];
     const auto others = [&axis](const Axis& a) { return &a != &axis; };
-    drives_.tell(odrive_request(axis.node, OdriveCommand::kGetEncoderCount05));
+    drives_.report(odrive_request(axis.node, OdriveCommand::kGetEncoderCount05));
     drives_.run_until([&](const Axis& a) { return others(a) || a.shadow_count; }, kCount_ms);
     // A motor without supply leaves closed loop at once, with an error: its estimates live on.
     const auto entered = [](const Axis& a) {
@@ -188,10 +188,10 @@ class BringUp {
     };
     axis.heartbeats = 0;
     axis.forget_positions();
-    drives_.tell(odrive_axis_state(axis.node, OdriveAxisState::kClosedLoop));
+    drives_.report(odrive_axis_state(axis.node, OdriveAxisState::kClosedLoop));
     const bool good =
         drives_.run_until([&](const Axis& a) { return others(a) || awake(a); }, kWake_ms);
-    drives_.tell(odrive_axis_state(axis.node, OdriveAxisState::kIdle));
+    drives_.report(odrive_axis_state(axis.node, OdriveAxisState::kIdle));
     if (good) return {};
     const auto words = odrive_error_sentence(OdriveGeneration::k05, axis.error, axis.parts);
     return Error{fmt::format(

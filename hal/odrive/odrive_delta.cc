@@ -187,8 +187,8 @@ class Odrives final : public can::CanDrives {
 
   bool all_in_closed_loop(const CanLoop& loop) const RT_SAFE {
     for (std::size_t i = 0; i < 3; ++i) {
-      const bool told = loop.axes[i].heartbeat_ns > loop.asked_ns;
-      if (!told || !axes_[i].is_in(OdriveAxisState::kClosedLoop)) return false;
+      const bool reported = loop.axes[i].heartbeat_ns > loop.asked_ns;
+      if (!reported || !axes_[i].is_in(OdriveAxisState::kClosedLoop)) return false;
     }
     return true;
   }

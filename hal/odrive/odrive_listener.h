@@ -52,7 +52,7 @@ class OdriveListener {
     for (const OdriveHeard& axis : axes) bus_.push(message(axis.node));
     bus_.send();
   }
-  void tell(const std::optional<can::CanFrame>& frame) {
+  void report(const std::optional<can::CanFrame>& frame) {
     bus_.push(frame);
     bus_.send();
   }

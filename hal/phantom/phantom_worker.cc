@@ -86,12 +86,12 @@ std::optional<Error> PhantomWorker::wait_until_calibrated() {
 }
 
 std::string PhantomWorker::words_of_trouble() const {
-  const auto told = first_trouble();
-  switch (static_cast<Source>(told.source)) {
+  const auto reported = first_trouble();
+  switch (static_cast<Source>(reported.source)) {
     case Source::kNone:
       return {};
     case Source::kError:
-      return fmt::format("the PHANTOM failed: {}", words_of_hd_error(told.code));
+      return fmt::format("the PHANTOM failed: {}", words_of_hd_error(reported.code));
     case Source::kForceOff:
       return "the PHANTOM's force output is off; end other programs that use the device, then "
              "start tactd again";
@@ -169,8 +169,8 @@ bool PhantomWorker::evaluate(LibraryPose& pose) {
   pose.position_m = to_w(transform + 12, 1e-3) - session_.middle_m;
   pose.grip_ratio = (buttons & kHdButton1) != 0 ? 1.0 : 0.0;
   if (session_.wrist) pose.orientation = orientation_of(transform);
-  const bool told = is_finite(pose.position_m) && std::isfinite(pose.orientation.w);
-  return told || fail(Fault::kSampleNotFinite, Source::kPose, 0);
+  const bool reported = is_finite(pose.position_m) && std::isfinite(pose.orientation.w);
+  return reported || fail(Fault::kSampleNotFinite, Source::kPose, 0);
 }
 
 /// Takes the library's errors; true when there was one.

@@ -74,7 +74,7 @@ const FigurePose& Figure::update(double time_s, const Pose& tool, const TrackedO
   pose_left_arm(bodies);
   place_leg(false, bodies);
   place_leg(true, bodies);
-  tell(bodies, pose_);
+  report(bodies, pose_);
   return pose_;
 }
 

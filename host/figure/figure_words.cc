@@ -37,7 +37,7 @@ const char* words_for(TrackingTrouble trouble) {
   return "no pose";
 }
 
-void tell(const TrackedOperator& bodies, FigurePose& pose) {
+void report(const TrackedOperator& bodies, FigurePose& pose) {
   pose.trouble = FigureTrouble::kNone;
   pose.words.clear();
   const auto say = [&pose](FigureTrouble trouble, const std::string& words) {

@@ -13,6 +13,6 @@ std::string words_for(BodyRole role);
 /// "silent", "too few points seen": why there is no pose.
 const char* words_for(TrackingTrouble trouble);
 /// Sets trouble and words of a pose: the worst of its bodies, its arm and its legs.
-void tell(const TrackedOperator& bodies, FigurePose& pose);
+void report(const TrackedOperator& bodies, FigurePose& pose);
 
 }  // namespace tact::host::figure

@@ -51,7 +51,7 @@ IgtlLink::IgtlLink(boost::asio::io_context& io, Say say)
       say_(std::move(say)),
       began_(Clock::now()),
       sent_(began_ - kFrameGap),
-      told_(began_ - kStatusGap) {}
+      reported_(began_ - kStatusGap) {}
 
 IgtlLink::~IgtlLink() { stop(); }
 
@@ -140,12 +140,12 @@ void IgtlLink::go_to_server() {
     if (wrong == boost::asio::error::operation_aborted) return;
     if (wrong) {
       // Once for each loss, not each second.
-      if (!std::exchange(told_away_, true))
+      if (!std::exchange(reported_away_, true))
         say_(fmt::format("OpenIGTLink: no server at {} ({}); asked again each second", server_name_,
                          wrong.message()));
       return come_back();
     }
-    told_away_ = false;
+    reported_away_ = false;
     tracker_ = std::make_shared<IgtlSession>(
         std::move(*calling_), events_of([this](const std::string& reason) {
           say_(fmt::format("OpenIGTLink: {} has gone{}{}", server_name_, reason.empty() ? "" : ": ",
@@ -173,7 +173,7 @@ SessionEvents IgtlLink::events_of(std::function<void(const std::string& reason)>
 void IgtlLink::take(const MessageHead& head, const pose::Pose& pose) {
   const auto role = role_of(head.device);
   if (role) return bodies_.take(*role, pose, head.time_s, now_s());
-  if (!std::exchange(told_strange_, true))
+  if (!std::exchange(reported_strange_, true))
     say_(
         fmt::format("OpenIGTLink: \"{}\" is no body of the operator; it is left out, and others "
                     "whose name is that of no role (host/igtl/README.md)",
@@ -190,20 +190,20 @@ void IgtlLink::add(const record::Frame& frame) {
   const Clock::time_point now = Clock::now();
   const Status status = status_of(frame);
   const bool is_due = now - sent_ >= kFrameGap;
-  const bool tells = status != last_ || now - told_ >= kStatusGap;
+  const bool reports = status != last_ || now - reported_ >= kStatusGap;
   // A frame's messages are made for somebody only.
-  if (clients_.empty() || (!is_due && !tells)) return;
+  if (clients_.empty() || (!is_due && !reports)) return;
   sent_ = now;
   const std::string messages = frame_messages(frame, utc_s());
-  if (tells) return tell(status, messages);
+  if (reports) return report(status, messages);
   for (const Session& client : clients_) client->send(messages);
 }
 
-void IgtlLink::lose() { tell(lost_status(), {}); }
+void IgtlLink::lose() { report(lost_status(), {}); }
 
-void IgtlLink::tell(const Status& status, const std::string& before) {
+void IgtlLink::report(const Status& status, const std::string& before) {
   last_ = status;
-  told_ = Clock::now();
+  reported_ = Clock::now();
   const std::string batch = before + igtl::status("Tact", utc_s(), status);
   for (const Session& client : clients_) client->send(batch);
 }

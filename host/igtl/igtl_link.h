@@ -72,14 +72,14 @@ class IgtlLink {
   SessionEvents events_of(std::function<void(const std::string& reason)> ended);
   void take(const MessageHead& head, const pose::Pose& pose);
   void refuse(const std::string& sentence);
-  void tell(const Status& status, const std::string& before);
+  void report(const Status& status, const std::string& before);
   double now_s() const;
 
   boost::asio::io_context& io_;
   net::Acceptor acceptor_;
   boost::asio::steady_timer retry_;
   Say say_;
-  std::chrono::steady_clock::time_point began_, sent_, told_;
+  std::chrono::steady_clock::time_point began_, sent_, reported_;
   std::optional<boost::asio::ip::tcp::endpoint> server_;
   std::string server_name_;
   std::unique_ptr<boost::asio::ip::tcp::socket> calling_;
@@ -89,7 +89,7 @@ class IgtlLink {
   Status last_ = lost_status();
   std::uint64_t refused_ = 0;
   std::set<std::string> troubles_;  // told
-  bool told_strange_ = false, told_away_ = false;
+  bool reported_strange_ = false, reported_away_ = false;
 };
 
 }  // namespace tact::host::igtl

@@ -134,7 +134,7 @@ std::optional<figure::FigurePose> figure_of(const OperatorRecord& record,
   out.shoulder_too_far = (figure.flags & kShoulderTooFar) != 0;
   out.left_hand_reached = (figure.flags & kLeftHandMissed) == 0;
   // Trouble and words are not in the file: they follow from the rest.
-  tell(bodies, out);
+  report(bodies, out);
   return out;
 }
 

@@ -60,7 +60,7 @@ std::optional<Error> check_part(std::span<const std::byte> part, std::uint32_t v
 
 std::optional<Error> check_patch(const firmware::telemetry::FramePatch& patch, const Hello& hello) {
   if (patch.vertex_count > firmware::telemetry::kMaxPatchVertices ||
-      patch.cut_count > firmware::telemetry::kMaxCutsTold) {
+      patch.cut_count > firmware::telemetry::kMaxCutsReported) {
     return Error{"a frame tells more displaced vertices or cuts than fit"};
   }
   // The page indexes its mesh by these numbers.

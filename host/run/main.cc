@@ -285,7 +285,7 @@ int serve_or_export(const Options& options) {
 
 int main(int argc, char** argv) {
   tact::model::io::watch_standard_output("tact-view");
-  tact::model::io::tell_uncaught("tact-view");
+  tact::model::io::report_uncaught("tact-view");
   try {
     tact::host::run::Options options;
     if (const auto status = tact::host::run::parse_options(argc, argv, options)) return *status;

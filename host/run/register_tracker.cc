@@ -45,7 +45,7 @@ class Collecting {
     std::optional<Eigen::Vector3d> tip_m;
     // The raw pose: the filtered one lags behind.
     if (tool.state == tracking::BodyState::kTracked) tip_m = to_world(tool.raw, tip_m_);
-    tell_when_lost(tip_m.has_value());
+    report_when_lost(tip_m.has_value());
     const Eigen::Vector3d device_m = Eigen::Vector3f(frame.tool_position_m).cast<double>();
     const Eigen::Vector3d velocity_mps = Eigen::Vector3f(frame.tool_velocity_mps).cast<double>();
     if (collector_.add(clock_s(), device_m, velocity_mps.norm(), tip_m)) {
@@ -59,7 +59,7 @@ class Collecting {
   const std::vector<tracking::PosePair>& poses() const { return collector_.poses(); }
 
  private:
-  void tell_when_lost(bool is_seen) {
+  void report_when_lost(bool is_seen) {
     if (is_seen != was_seen_ && !is_seen) say("the tracker does not see the tool now");
     if (is_seen != was_seen_ && is_seen) say("the tracker sees the tool; hold it still");
     was_seen_ = is_seen;
@@ -84,8 +84,8 @@ std::vector<std::size_t> worst_of(const tracking::Registration& fit) {
   return order;
 }
 
-void tell(const Options& options, const std::string& path,
-          const std::vector<tracking::PosePair>& poses, const tracking::Registration& fit) {
+void report(const Options& options, const std::string& path,
+            const std::vector<tracking::PosePair>& poses, const tracking::Registration& fit) {
   if (options.json) {
     const nlohmann::json all{{"file", path},
                              {"poses", poses.size()},
@@ -117,7 +117,7 @@ int finish(const Options& options, const std::vector<tracking::PosePair>& poses)
     say(error->sentence);
     return kBadInput;
   }
-  tell(options, path, poses, *fit);
+  report(options, path, poses, *fit);
   // Written all the same: a doubtful place is better than none, and the old file is kept as .bak.
   return fit->largest_m <= tracking::kDoubtful_m ? kGood : kCheckFailed;
 }

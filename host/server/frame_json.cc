@@ -69,7 +69,7 @@ void put_patch(std::string& out, const firmware::telemetry::FramePatch& patch) {
   const std::size_t n =
       std::min<std::size_t>(patch.vertex_count, firmware::telemetry::kMaxPatchVertices);
   const std::size_t cuts =
-      std::min<std::size_t>(patch.cut_count, firmware::telemetry::kMaxCutsTold);
+      std::min<std::size_t>(patch.cut_count, firmware::telemetry::kMaxCutsReported);
   std::vector<std::uint8_t> bytes(n * (sizeof patch.vertex[0] + sizeof patch.displacement_um[0]));
   const std::size_t vertex_bytes = n * sizeof patch.vertex[0];
   if (n > 0) {  // an empty vector has no address to copy to

@@ -28,7 +28,7 @@ const char* name_of(Link link) {
 
 }  // namespace
 
-LiveView::LiveView() { tell(); }
+LiveView::LiveView() { report(); }
 
 void LiveView::begin(const record::Hello& hello, record::MeshBytes mesh, Link link,
                      const std::string& detail) {
@@ -42,7 +42,7 @@ void LiveView::begin(const record::Hello& hello, record::MeshBytes mesh, Link li
   recent_.restart(static_cast<double>(hello.frame_rate_Hz));
   link_ = link;
   detail_ = detail;
-  tell();
+  report();
 }
 
 void LiveView::add(const record::Frame& frame, const tracking::TrackedOperator* tracked,
@@ -65,7 +65,7 @@ void LiveView::rewind() { recent_.restart(static_cast<double>(hello_.frame_rate_
 void LiveView::lose(const std::string& reason) {
   link_ = has_scene() ? Link::kLost : Link::kWaiting;
   detail_ = reason;
-  tell();
+  report();
 }
 
 void LiveView::subscribe(LiveListener& listener) {
@@ -85,18 +85,18 @@ void LiveView::when_watched(std::function<void()> then) {
   watched_ = std::move(then);
 }
 
-void LiveView::tell_replay(const nlohmann::json& replay) {
+void LiveView::report_replay(const nlohmann::json& replay) {
   replay_ = std::make_shared<const std::string>(model::io::text_of(replay));
-  tell();
+  report();
 }
 
-void LiveView::tell_picker(const nlohmann::json& picker) {
+void LiveView::report_picker(const nlohmann::json& picker) {
   picker_.reset();
   if (!picker.is_null()) picker_ = std::make_shared<const std::string>(model::io::text_of(picker));
-  tell();
+  report();
 }
 
-void LiveView::tell() {
+void LiveView::report() {
   nlohmann::json status{{"kind", "status"},
                         {"link", name_of(link_)},
                         {"detail", detail_},

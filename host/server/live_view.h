@@ -56,9 +56,9 @@ class LiveView {
            const figure::FigurePose* shown = nullptr);
   void rewind();  // a replay starts elsewhere: forget the frames
   /// Of a replay: the status's "replay".
-  void tell_replay(const nlohmann::json& replay);
+  void report_replay(const nlohmann::json& replay);
   /// Of a session whose scene may be chosen: the status's "picker"; null: none.
-  void tell_picker(const nlohmann::json& picker);
+  void report_picker(const nlohmann::json& picker);
   /// Once, as soon as somebody looks.
   void when_watched(std::function<void()> then);
   void lose(const std::string& reason);
@@ -77,7 +77,7 @@ class LiveView {
   record::Snapshot recent(std::uint64_t first_tick, std::uint64_t last_tick) const;
 
  private:
-  void tell();
+  void report();
 
   record::Hello hello_;
   std::shared_ptr<const record::MeshBytes> mesh_;

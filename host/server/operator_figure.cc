@@ -58,10 +58,10 @@ std::string OperatorFigure::with(const record::Frame& frame,
   static const tracking::TrackedOperator kNobody{};
   const double time_s = static_cast<double>(frame.time_ns) * 1e-9;
   // A recording's figure is told as it was shown, not posed anew.
-  told_ = shown ? *shown : figure_.update(time_s, pose_of(frame), tracked ? *tracked : kNobody);
+  reported_ = shown ? *shown : figure_.update(time_s, pose_of(frame), tracked ? *tracked : kNobody);
   const bool head_tracked =
       tracked && (*tracked)[tracking::BodyRole::kHead].state == tracking::BodyState::kTracked;
-  return figure_json(told_, frame.tick, head_tracked);
+  return figure_json(reported_, frame.tick, head_tracked);
 }
 
 }  // namespace tact::host::server

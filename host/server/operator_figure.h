@@ -25,12 +25,12 @@ class OperatorFigure final : public Companion {
   /// Without `tracked` the tool alone moves the figure.
   std::string with(const record::Frame& frame, const tracking::TrackedOperator* tracked,
                    const figure::FigurePose* shown = nullptr) override;
-  const figure::FigurePose& figure() const override { return told_; }
+  const figure::FigurePose& figure() const override { return reported_; }
 
  private:
   figure::FigureSettings settings_;
   figure::Figure figure_;
-  figure::FigurePose told_;
+  figure::FigurePose reported_;
 };
 
 }  // namespace tact::host::server

@@ -38,7 +38,7 @@ Playback::Playback(boost::asio::io_context& io, LiveView& view, record::Recordin
 
 void Playback::start() {
   view_.begin(recording_.hello, recording_.mesh, Link::kReplay, name_);
-  tell();
+  report();
   show(0);
   view_.when_watched([this] {
     due_ = Clock::now();
@@ -51,7 +51,7 @@ void Playback::stop() {
   timer_.cancel();
 }
 
-void Playback::tell() {
+void Playback::report() {
   using firmware::loop::State;
   nlohmann::json stops = nlohmann::json::array();
   for (std::size_t i = 0; i < at_ns_.size() && stops.size() < kMaxStops; ++i) {
@@ -60,13 +60,13 @@ void Playback::tell() {
     if (frame.state == State::kStopped && !was_stopped)
       stops.push_back({{"at_s", seconds(at_ns_[i])}, {"fault", frame.fault}});
   }
-  view_.tell_replay({{"start_s", seconds(recording_.frames.front().time_ns)},
-                     {"length_s", seconds(at_ns_.back())},
-                     {"frames", at_ns_.size()},
-                     {"playing", playing_},
-                     {"speed_ratio", speed_ratio_},
-                     {"repeats", repeats_},
-                     {"stops", std::move(stops)}});
+  view_.report_replay({{"start_s", seconds(recording_.frames.front().time_ns)},
+                       {"length_s", seconds(at_ns_.back())},
+                       {"frames", at_ns_.size()},
+                       {"playing", playing_},
+                       {"speed_ratio", speed_ratio_},
+                       {"repeats", repeats_},
+                       {"stops", std::move(stops)}});
 }
 
 void Playback::show(std::size_t frame) {
@@ -89,7 +89,7 @@ std::size_t Playback::frame_at(double at_s) const {
 void Playback::schedule() {
   if (is_last() && !repeats_) {
     playing_ = false;
-    return tell();
+    return report();
   }
   const std::int64_t gap_ns =
       is_last() ? kPause_ns : std::min(at_ns_[shown_ + 1] - at_ns_[shown_], kLongestGap_ns);
@@ -128,7 +128,7 @@ void Playback::steer(const ReplayWish& wish) {
   }
   due_ = Clock::now();
   if (playing_) schedule();
-  tell();
+  report();
 }
 
 }  // namespace tact::host::server

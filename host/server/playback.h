@@ -29,7 +29,7 @@ class Playback {
   void steer(const ReplayWish& wish);
 
  private:
-  void tell();
+  void report();
   void show(std::size_t frame);
   void jump_to(std::size_t frame);
   void schedule();

@@ -19,11 +19,12 @@ using nlohmann::json;
 
 constexpr std::string_view kRemedy = "write it again: tactd SCENE --parameters --json FILE";
 
-bool is_offer(const json& told) {
+bool is_offer(const json& reported) {
   const auto has_key = [](const json& row) { return row.is_object() && row.contains("key"); };
-  return told.is_object() && told.value("format", json()) == "tactd-parameters" &&
-         told.value("simulated", json()) == true && told.value("scene", json()).is_string() &&
-         told.contains("parameters") && std::ranges::all_of(told["parameters"], has_key);
+  return reported.is_object() && reported.value("format", json()) == "tactd-parameters" &&
+         reported.value("simulated", json()) == true &&
+         reported.value("scene", json()).is_string() && reported.contains("parameters") &&
+         std::ranges::all_of(reported["parameters"], has_key);
 }
 
 }  // namespace
@@ -33,11 +34,11 @@ std::optional<Error> ScenePicker::load(const std::string& folder) {
   for (const auto& entry : std::filesystem::directory_iterator(folder, wrong)) {
     const std::string path = entry.path().string();
     if (entry.path().extension() != ".json") continue;
-    const auto told = model::io::read_json(path, kRemedy);
-    if (!told) return told.error();
-    if (!is_offer(*told))
+    const auto reported = model::io::read_json(path, kRemedy);
+    if (!reported) return reported.error();
+    if (!is_offer(*reported))
       return Error{fmt::format("{}: not the parameters of a simulated scene; {}", path, kRemedy)};
-    offers_[(*told)["scene"].get<std::string>()] = *told;
+    offers_[(*reported)["scene"].get<std::string>()] = *reported;
   }
   if (!offers_.empty()) return std::nullopt;
   return Error{
@@ -46,7 +47,7 @@ std::optional<Error> ScenePicker::load(const std::string& folder) {
 
 std::string ScenePicker::list() const {
   json list = json::array();
-  for (const auto& [name, told] : offers_) list.push_back(told);
+  for (const auto& [name, reported] : offers_) list.push_back(reported);
   return text_of(list);
 }
 
@@ -106,11 +107,11 @@ void ScenePicker::refuse(const std::string& reason) {
 }
 
 void ScenePicker::publish() {
-  if (offers_.empty() || !is_simulated()) return view_.tell_picker(nullptr);
-  view_.tell_picker({{"scene", shown_.scene},
-                     {"set", shown_.set},
-                     {"asked", asked_ ? asked_->scene : ""},
-                     {"answer", answer_}});
+  if (offers_.empty() || !is_simulated()) return view_.report_picker(nullptr);
+  view_.report_picker({{"scene", shown_.scene},
+                       {"set", shown_.set},
+                       {"asked", asked_ ? asked_->scene : ""},
+                       {"answer", answer_}});
 }
 
 }  // namespace tact::host::server

@@ -15,7 +15,7 @@ using boost::system::error_code;
 using model::Error;
 using model::Result;
 
-constexpr std::chrono::seconds kTellAgain{10};
+constexpr std::chrono::seconds kReportAgain{10};
 
 /// An address as a URL writes it. "All addresses" is not one: the machine's name is.
 std::string url_name(const boost::asio::ip::address& address) {
@@ -105,8 +105,8 @@ void ViewerServer::turn_away(tcp::socket socket) {
   socket.shutdown(tcp::socket::shutdown_send, ignored);
   ++turned_away_;
   const auto now = std::chrono::steady_clock::now();
-  if (!warn_ || (turned_away_ > 1 && now - told_ < kTellAgain)) return;
-  told_ = now;
+  if (!warn_ || (turned_away_ > 1 && now - reported_ < kReportAgain)) return;
+  reported_ = now;
   warn_(
       fmt::format("{} pages and downloads are open, no more are let in ({} turned away so far); "
                   "close some",

@@ -58,7 +58,7 @@ class ViewerServer {
   Warn warn_;
   Seat seat_;  // its copies are the connections
   std::uint64_t turned_away_ = 0;
-  std::chrono::steady_clock::time_point told_;
+  std::chrono::steady_clock::time_point reported_;
 };
 
 }  // namespace tact::host::server

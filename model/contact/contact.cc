@@ -133,29 +133,29 @@ ContactResponse Contact::respond(const Tool& tool) RT_SAFE {
   double way_m = 0.0;
   for (const Sphere& sphere : spheres()) way_m = std::max(way_m, norm(sphere.moved_m));
   for (Sphere& sphere : spheres())
-    if (sphere.is_known) tell(sphere, tool, way_m, rendered);
+    if (sphere.is_known) report(sphere, tool, way_m, rendered);
   organ().advance();
   scene_.law->advance();
   rendered.is_broken = scene_.law->is_broken();
   return rendered;
 }
 
-void Contact::tell(Sphere& sphere, const Tool& tool, double way_m,
-                   ContactResponse& rendered) RT_SAFE {
+void Contact::report(Sphere& sphere, const Tool& tool, double way_m,
+                     ContactResponse& rendered) RT_SAFE {
   SphereContact& sphere_contact = contact_[sphere.index];
   const Vec3 last_normal = sphere_contact.normal;
   sphere_contact = {};
   sphere_contact.state = sphere.state;
   if (sphere.state == ContactState::kInside) rendered.is_inside = true;
-  if (!sphere.contacts() && sphere.told_N == Vec3{}) {
+  if (!sphere.contacts() && sphere.reported_N == Vec3{}) {
     sphere.largest_N = sphere.lag_N = 0.0;
     sphere.was_held = false;
     return;
   }
   const OrganForce answer = ask(sphere);
   follow_force(sphere, answer.elastic_N, way_m);
-  if (!sphere.contacts() && sphere.told_N != Vec3{}) sphere_contact.normal = last_normal;
-  sphere_contact.force_N = sphere.told_N + resistance_N(sphere, answer.resistance_N);
+  if (!sphere.contacts() && sphere.reported_N != Vec3{}) sphere_contact.normal = last_normal;
+  sphere_contact.force_N = sphere.reported_N + resistance_N(sphere, answer.resistance_N);
   rendered.wrench.force_N += sphere_contact.force_N;
   rendered.wrench.torque_Nm += cross(sphere.centre_m - tool.position_m, sphere_contact.force_N);
   if (sphere_contact.law_status == law::LawStatus::kSaturated || sphere.lets_go)
@@ -206,7 +206,7 @@ OrganForce Contact::ask(Sphere& sphere) RT_SAFE {
     sphere.unsolved_ratio = 0.0;
   else
     sphere.unsolved_ratio += scene_.period_s / kLetGo_s + norm(sphere.moved_m) / sphere.radius_m;
-  const OrganForce answer = organ().tell(sphere, sphere_contact);
+  const OrganForce answer = organ().report(sphere, sphere_contact);
   // 0: the law does not tell it.
   sphere.stiffest_N_per_m =
       scene_.law->stiffest_N_per_m(sphere_contact.place, sphere.state == ContactState::kHeld);
@@ -219,7 +219,7 @@ Vec3 Contact::resistance_N(const Sphere& sphere, const Vec3& answer_N) const RT_
   const double size_N = norm(answer_N);
   if (!(sphere.lag_N > 0.0) || sphere.state == ContactState::kHeld || !(size_N > 0.0))
     return answer_N;
-  const double along_N = dot(sphere.told_N, answer_N) / size_N;
+  const double along_N = dot(sphere.reported_N, answer_N) / size_N;
   return along_N > 0.0 ? answer_N : std::min(-along_N / size_N, 1.0) * answer_N;
 }
 
@@ -231,7 +231,7 @@ Vec3 Contact::resistance_N(const Sphere& sphere, const Vec3& answer_N) const RT_
 void Contact::follow_force(Sphere& sphere, const Vec3& wanted_N, double way_m) RT_SAFE {
   constexpr double kSteepest_ratio = 10.0, kFade_ratio = 2.0, kLetGo_ratio = 2.0;
   constexpr double kNoise_N = 1e-3;  // of a solution
-  const Vec3 change_N = wanted_N - sphere.told_N;
+  const Vec3 change_N = wanted_N - sphere.reported_N;
   const double length_N = norm(change_N);
   sphere.largest_N = sphere.contacts() ? std::max(sphere.largest_N, norm(wanted_N)) : 0.0;
   // A contact that lets go loses its force in 0.1 s, faster where its law is steep.
@@ -240,13 +240,13 @@ void Contact::follow_force(Sphere& sphere, const Vec3& wanted_N, double way_m) R
                           (kFade_ratio * fade_ratio_ + let_go_ratio) * sphere.largest_N;
   const bool is_held = sphere.state == ContactState::kHeld;
   // Held tissue that is let go or tears is gone at once.
-  const bool is_let_go =
-      sphere.was_held && !is_held && organ().is_solved() && norm(wanted_N) <= norm(sphere.told_N);
+  const bool is_let_go = sphere.was_held && !is_held && organ().is_solved() &&
+                         norm(wanted_N) <= norm(sphere.reported_N);
   const bool is_lag = length_N > smooth_N && sphere.stiffest_N_per_m > 0.0 && !is_let_go;
   sphere.lag_N = is_lag ? std::max(sphere.lag_N, length_N) : 0.0;
   const double most_N = smooth_N + sphere.lag_N * scene_.period_s / kLetGo_s;
-  sphere.told_N =
-      is_lag && length_N > most_N ? sphere.told_N + (most_N / length_N) * change_N : wanted_N;
+  sphere.reported_N =
+      is_lag && length_N > most_N ? sphere.reported_N + (most_N / length_N) * change_N : wanted_N;
   sphere.was_held = is_held;
 }
 

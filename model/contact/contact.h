@@ -85,7 +85,7 @@ class Contact {
   void watch_grip(double grip_ratio) RT_SAFE;
   void let_go(Sphere& sphere) RT_SAFE;
   bool release_first() RT_SAFE;
-  void tell(Sphere& sphere, const Tool& tool, double way_m, ContactResponse& rendered) RT_SAFE;
+  void report(Sphere& sphere, const Tool& tool, double way_m, ContactResponse& rendered) RT_SAFE;
   OrganForce ask(Sphere& sphere) RT_SAFE;
   Vec3 resistance_N(const Sphere& sphere, const Vec3& answer_N) const RT_SAFE;
   void follow_force(Sphere& sphere, const Vec3& wanted_N, double way_m) RT_SAFE;

@@ -201,17 +201,17 @@ void MovedContact::respond() RT_SAFE {
   brake();
 }
 
-OrganForce MovedContact::tell(const Sphere& sphere, SphereContact& told) const RT_SAFE {
+OrganForce MovedContact::report(const Sphere& sphere, SphereContact& reported) const RT_SAFE {
   const OrganSphere& b = *find(sphere.index);
-  told.place = b.at.place;
-  told.surface_point_m = b.at.point_m;
-  told.normal = b.at.normal;
-  told.dent_m = b.indentation_m;
-  told.slack_m = b.slack_m;
-  told.depth_m = b.indentation_m - dot(b.shift_m, b.at.normal);
-  told.shift_m = tangential(b.shift_m, b.at.normal);
-  told.law_status = is_beyond(b) ? law::LawStatus::kSaturated : b.tip.status;
-  told.energy_J = stored_energy_J(organ_, static_cast<std::size_t>(&b - organ_.sphere.data()));
+  reported.place = b.at.place;
+  reported.surface_point_m = b.at.point_m;
+  reported.normal = b.at.normal;
+  reported.dent_m = b.indentation_m;
+  reported.slack_m = b.slack_m;
+  reported.depth_m = b.indentation_m - dot(b.shift_m, b.at.normal);
+  reported.shift_m = tangential(b.shift_m, b.at.normal);
+  reported.law_status = is_beyond(b) ? law::LawStatus::kSaturated : b.tip.status;
+  reported.energy_J = stored_energy_J(organ_, static_cast<std::size_t>(&b - organ_.sphere.data()));
   const double resistance_N = scene_.law->resistance_N(indentation_of(b), b.tip.force_N);
   return {b.force_N,
           b.brake_N + resistance_N * rotated(b.rotation.whole, b.rotation.axis, b.at.normal)};

@@ -65,7 +65,7 @@ class MovedContact final : public OrganContact {
   bool hold(std::size_t sphere) RT_SAFE override;
   void finish() RT_SAFE override {}
   bool is_solved() const RT_SAFE override { return status_.is_solved; }
-  OrganForce tell(const Sphere& sphere, SphereContact& told) const RT_SAFE override;
+  OrganForce report(const Sphere& sphere, SphereContact& reported) const RT_SAFE override;
   void advance() RT_SAFE override;
 
   /// nullptr: it does not touch.

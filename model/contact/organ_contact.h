@@ -58,7 +58,7 @@ class OrganContact {
   /// False: the organ has no answer, forces are those of the last tick.
   virtual bool is_solved() const RT_SAFE = 0;
   /// All but the state and the force into `told`; returns the force that the organ answers.
-  virtual OrganForce tell(const Sphere& sphere, SphereContact& told) const RT_SAFE = 0;
+  virtual OrganForce report(const Sphere& sphere, SphereContact& reported) const RT_SAFE = 0;
   /// The end of a tick.
   virtual void advance() RT_SAFE = 0;
 };

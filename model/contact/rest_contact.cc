@@ -234,21 +234,22 @@ void RestContact::finish() RT_SAFE {
 }
 
 // F = (F(e) + b d') n - f - dU/ds
-OrganForce RestContact::tell(const Sphere& sphere, SphereContact& told) const RT_SAFE {
+OrganForce RestContact::report(const Sphere& sphere, SphereContact& reported) const RT_SAFE {
   const std::size_t i = sphere.index;
   const RestSphere& s = sphere_[i];
   const SiteResponse& site = pressing_[i].response;
   const Vec2 &f_N = shear_N_[i], &t_m = shift_m_[i];
-  told.law_status = site.law.status;
-  told.place = s.place;
-  told.surface_point_m = s.point_m;
-  told.normal = s.normal;
-  told.shift_m = s.axes.vector(t_m);
-  told.depth_m = pressing_[i].depth_m;
-  told.dent_m = pressing_[i].in.dent_m;
-  told.slack_m = s.slack_m;
-  told.energy_J = site.law.energy_J + 0.5 * site.law.force_N * sunk_m(coupling_, pressing(), i) +
-                  0.5 * dot(f_N, t_m);
+  reported.law_status = site.law.status;
+  reported.place = s.place;
+  reported.surface_point_m = s.point_m;
+  reported.normal = s.normal;
+  reported.shift_m = s.axes.vector(t_m);
+  reported.depth_m = pressing_[i].depth_m;
+  reported.dent_m = pressing_[i].in.dent_m;
+  reported.slack_m = s.slack_m;
+  reported.energy_J = site.law.energy_J +
+                      0.5 * site.law.force_N * sunk_m(coupling_, pressing(), i) +
+                      0.5 * dot(f_N, t_m);
   Vec3 force_N = site.law.force_N * s.normal - s.axes.vector(f_N);
   // dU/ds belongs to a place that follows the tool; held tissue and a proxy that lags do not.
   if (!s.is_held && !s.proxy.lags()) force_N -= movable(scene_.surface, s.place, site.slope_N);

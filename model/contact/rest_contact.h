@@ -68,7 +68,7 @@ class RestContact final : public OrganContact {
   bool hold(std::size_t i) RT_SAFE override;
   void finish() RT_SAFE override;
   bool is_solved() const RT_SAFE override { return true; }
-  OrganForce tell(const Sphere& sphere, SphereContact& told) const RT_SAFE override;
+  OrganForce report(const Sphere& sphere, SphereContact& reported) const RT_SAFE override;
   void advance() RT_SAFE override {}
 
  private:

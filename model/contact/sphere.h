@@ -56,7 +56,7 @@ struct Sphere {
   double shrinks_m = 0.0;       // in 0.1 s
   double unsolved_ratio = 0.0;  // of its last force that it has lost
   // The force that is told, without what its speed adds
-  Vec3 told_N{};
+  Vec3 reported_N{};
   double largest_N = 0.0;         // that the organ answered in this contact
   double lag_N = 0.0;             // what told_N lacked most of what the organ answers; 0: nothing
   double stiffest_N_per_m = 0.0;  // of its law, when it touched last

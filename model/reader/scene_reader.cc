@@ -72,7 +72,7 @@ void Keys::number(std::string_view key, Range range, std::string_view meaning, d
   const std::string fallback = need == Need::kOptional ? fmt::format("{}", out) : "";
   const toml::node* node = take(key, range_text(range, key), meaning, fallback);
   if (node) store(*node, key, as_number(*node, range), out);
-  tell(key, out, range, false, meaning);
+  report(key, out, range, false, meaning);
 }
 
 void Keys::count(std::string_view key, CountRange range, std::string_view meaning, std::size_t& out,
@@ -80,8 +80,8 @@ void Keys::count(std::string_view key, CountRange range, std::string_view meanin
   const std::string fallback = need == Need::kOptional ? fmt::format("{}", out) : "";
   const toml::node* node = take(key, range_text(range), meaning, fallback);
   if (node) store(*node, key, as_count(*node, range), out);
-  tell(key, static_cast<double>(out),
-       {static_cast<double>(range.low), static_cast<double>(range.high)}, true, meaning);
+  report(key, static_cast<double>(out),
+         {static_cast<double>(range.low), static_cast<double>(range.high)}, true, meaning);
 }
 
 void Keys::vector(std::string_view key, Range each, std::string_view meaning, Vec3& out,
@@ -209,12 +209,12 @@ TextPlace Keys::place_of(std::string_view key) const {
 
 void Keys::refuse(std::initializer_list<std::string_view> keys, const std::string& sentence) {
   if (!table_) return;
-  TextPlace told = place_of(*keys.begin());
+  TextPlace reported = place_of(*keys.begin());
   for (const std::string_view key : keys) {
     const TextPlace place = place_of(key);
-    if (place.line == 0) told = place;  // an override: what was just typed
+    if (place.line == 0) reported = place;  // an override: what was just typed
   }
-  visit_.note(ProblemKind::kConflict, told, sentence);
+  visit_.note(ProblemKind::kConflict, reported, sentence);
 }
 
 /// The node of a key, or null where there is nothing to read.
@@ -246,8 +246,8 @@ std::optional<std::size_t> Keys::match(std::string_view key, std::span<const Cho
   return std::nullopt;
 }
 
-void Keys::tell(std::string_view key, double value, Range range, bool is_whole,
-                std::string_view meaning) {
+void Keys::report(std::string_view key, double value, Range range, bool is_whole,
+                  std::string_view meaning) {
   if (!visit_.document()) return;
   visit_.add({.key = path_to(key),
               .unit = std::string(unit_of_key(key)),

@@ -129,8 +129,8 @@ class Keys {
   template <typename T>
   void store(const toml::node& node, std::string_view key, Result<T> value, T& out);
   void check(const toml::node& node, std::string_view key, std::string_view problem);
-  void tell(std::string_view key, double value, Range range, bool is_whole,
-            std::string_view meaning);
+  void report(std::string_view key, double value, Range range, bool is_whole,
+              std::string_view meaning);
   void finish();
   std::string unknown_sentence(std::string_view key) const;
   std::string path_to(std::string_view key) const;

@@ -204,7 +204,7 @@ std::size_t ElasticField::profile(const contact::Indentation& in,
   parts_.curves[blend.low + 1]->profile(in.dent_m, stiff_m);
   for (std::size_t j = 0; j < std::min({count, ring_m.size(), kMaxProfile}); ++j)
     ring_m[j] += blend.fraction * (stiff_m[j] - ring_m[j]);
-  tell_own_rings(in, ring_m.first(count));
+  report_own_rings(in, ring_m.first(count));
   return count;
 }
 
@@ -232,8 +232,8 @@ void ElasticField::add_organ(const contact::Indentation& in,
 
 // CL-4 with the rings of this place: those of a curve are the mean of all places that give as much
 // as it, rims and middles of lobes alike.
-void ElasticField::tell_own_rings(const contact::Indentation& in,
-                                  std::span<double> ring_m) const RT_SAFE {
+void ElasticField::report_own_rings(const contact::Indentation& in,
+                                    std::span<double> ring_m) const RT_SAFE {
   const ElasticNeighbours& near = parts_.neighbours;
   if (parts_.curve_ring_times_E_per_m.empty() || near.rings == 0 || ring_m.empty()) return;
   const Blend blend = blend_at(in.place, in.dent_m);

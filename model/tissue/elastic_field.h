@@ -104,7 +104,7 @@ class ElasticField final : public contact::SiteLaw {
   Part part_at(const contact::Place& place, double depth_m) const RT_SAFE;
   double regular_m_per_N(const contact::Place& place, double distance_m) const RT_SAFE;
   void add_organ(const contact::Indentation& in, std::span<double> ring_m) const RT_SAFE;
-  void tell_own_rings(const contact::Indentation& in, std::span<double> ring_m) const RT_SAFE;
+  void report_own_rings(const contact::Indentation& in, std::span<double> ring_m) const RT_SAFE;
   Vec3 coordinate_slope(std::uint32_t triangle, double depth_m) const RT_SAFE;
 
   ElasticFieldParts parts_;

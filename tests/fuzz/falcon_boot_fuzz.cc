@@ -42,8 +42,8 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const hal::falcon::FalconBootAction action = boot.next(heard);
     if (action.what == What::kReady || action.what == What::kGiveUp) return 0;
     if (action.what == What::kWrite) check_written(action.bytes);
-    const fuzz::Bytes told = fuzz::take(input, 1);
-    const std::uint8_t what = told.empty() ? 0 : told[0];
+    const fuzz::Bytes reported = fuzz::take(input, 1);
+    const std::uint8_t what = reported.empty() ? 0 : reported[0];
     heard.now_ms += action.what == What::kRead ? action.wait_ms : 1;
     heard.failed = what == 0xFF;
     heard.clear_to_send = (what & 0x40) != 0;

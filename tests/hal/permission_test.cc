@@ -57,8 +57,8 @@ TEST_F(PermissionOfNode, AUsbDeviceThatALibraryLooksForIsRefusedByItsNodeAlone) 
     chmod(node.c_str(), 0);
     tests::become_nobody();
     const auto refusal = ask("1451", "0402");
-    const bool told = refusal && refusal->lacking.starts_with(node + " may not be opened");
-    _exit(told && !ask("1451", "0403") ? 7 : 8);
+    const bool reported = refusal && refusal->lacking.starts_with(node + " may not be opened");
+    _exit(reported && !ask("1451", "0403") ? 7 : 8);
   };
   EXPECT_EXIT(see_refusal(), testing::ExitedWithCode(7), "");
 }

@@ -94,7 +94,7 @@ class DeviceLoop : public testing::Test {
     for (int i = 0; i < 50; ++i) tick({.force_N = {0, 0, 1}, .torque_Nm = {}});
     EXPECT_EQ(guard.calls(), 0u);
   }
-  bool told(const std::string& part) const {
+  bool reported(const std::string& part) const {
     return device->trouble().find(part) != std::string::npos;
   }
 

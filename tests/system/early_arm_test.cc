@@ -18,20 +18,21 @@ class Arming : public Tactd {
     return out;
   }
   bool stopped_itself() const {
-    const nlohmann::json told = report();
-    return told.is_discarded() || told.at("fault").at("number") != 0;
+    const nlohmann::json reported = report();
+    return reported.is_discarded() || reported.at("fault").at("number") != 0;
   }
   Outcome run_once(const std::string& acts) const {
-    std::filesystem::remove(told());
+    std::filesystem::remove(reported());
     const std::string script = in_folder("run.sh");
     std::ofstream(script)
         << "export XDG_RUNTIME_DIR=" << in_folder("") << "\ncd " << in_folder("") << "\n"
         << program_path("tactd") << " " << kLiver << " --no-black-box --seconds 1 --socket "
         << in_folder("t.sock") << kStubDevice << " --json " << in_folder("report.json") << " 2>"
-        << told() << " & tactd=$!\nready() { for i in {1..100}; do grep -qs 'ready, force is off' "
-        << told() << " && break; sleep .05; done; }\n"
+        << reported()
+        << " & tactd=$!\nready() { for i in {1..100}; do grep -qs 'ready, force is off' "
+        << reported() << " && break; sleep .05; done; }\n"
         << "ctl() { " << program_path("tactctl") << " " << kLiver << " --pid $tactd $1; }\n"
-        << acts << "\nwait $tactd; cat " << told() << "\n";
+        << acts << "\nwait $tactd; cat " << reported() << "\n";
     return run_command("bash " + script);
   }
   /// tactd on its simulated device, which pushes by itself, until this signal.
@@ -49,10 +50,10 @@ class Arming : public Tactd {
     run_command("bash " + script);
   }
   int fault() const {
-    const nlohmann::json told = report();
-    return told.is_discarded() ? -1 : told.at("fault").at("number").get<int>();
+    const nlohmann::json reported = report();
+    return reported.is_discarded() ? -1 : reported.at("fault").at("number").get<int>();
   }
-  std::string told() const { return in_folder("told"); }
+  std::string reported() const { return in_folder("told"); }
   nlohmann::json report() const {
     std::ifstream file(in_folder("report.json"));
     return nlohmann::json::parse(file, nullptr, false);
@@ -64,7 +65,7 @@ TEST_F(Arming, AnImpatientPersonGetsNoForceBeforeTheWords) {
   const Outcome out =
       run("until ctl arm; do kill -0 $tactd || break; done\n"
           "grep -q 'ready, force is off' " +
-          told() +
+          reported() +
           " || echo no words\n"
           "ctl arm");
   ASSERT_FALSE(report().is_discarded()) << out.output;

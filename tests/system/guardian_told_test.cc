@@ -5,7 +5,7 @@
 
 #include "tests/system/tactd_fixture.h"
 
-namespace tact::tests::guardian_told_test {
+namespace tact::tests::guardian_reported_test {
 
 class GuardianTold : public Tactd {};
 
@@ -23,4 +23,4 @@ TEST_F(GuardianTold, TheSimulatedDeviceHasNoneAndNeedsNone) {
   EXPECT_FALSE(has(out, "guardian")) << out.output;
 }
 
-}  // namespace tact::tests::guardian_told_test
+}  // namespace tact::tests::guardian_reported_test

@@ -57,7 +57,7 @@ class OperatorProgram : public ::testing::Test {
     program.join();
   }
   /// The shoulder that the page of a running tact-view is told; none yet: nothing.
-  std::optional<Vector3d> told_shoulder_m() const {
+  std::optional<Vector3d> reported_shoulder_m() const {
     std::ifstream ready(in("ready"));
     const auto json = nlohmann::json::parse(ready, nullptr, false);
     if (!json.contains("port")) return std::nullopt;
@@ -76,10 +76,10 @@ class OperatorProgram : public ::testing::Test {
       boost::beast::flat_buffer buffer;
       page.read(buffer, wrong);
       const auto text = boost::beast::buffers_to_string(buffer.data());
-      const auto told = nlohmann::json::parse(text, nullptr, false);
-      if (told.value("kind", "") != "figure") continue;
+      const auto reported = nlohmann::json::parse(text, nullptr, false);
+      if (reported.value("kind", "") != "figure") continue;
       const std::size_t k = 3 * static_cast<std::size_t>(figure::FigureJoint::kRightShoulder);
-      const auto& at_m = told["joint_m"];
+      const auto& at_m = reported["joint_m"];
       return Vector3d(at_m[k], at_m[k + 1], at_m[k + 2]);
     }
     return std::nullopt;
@@ -112,7 +112,7 @@ TEST_F(OperatorProgram, ShowsTheShoulderOfTheSceneLiveAndFromItsRecording) {
       ((*read.recording.figure_at(0))[figure::FigureJoint::kRightShoulder] - shoulder_m).norm(),
       1e-6);
   view("--open " + in("a.tact"), [&] {
-    again_m = told_shoulder_m();
+    again_m = reported_shoulder_m();
     return again_m.has_value();
   });
   ASSERT_TRUE(again_m.has_value());

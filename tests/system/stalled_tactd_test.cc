@@ -44,15 +44,16 @@ class StalledTactd : public testing::Test {
 };
 
 TEST_F(StalledTactd, StopsNamesTheFaultAndLeavesAFileThatTactViewShows) {
-  const std::string told = run("400000");
-  EXPECT_NE(told.find("ended 1"), std::string::npos) << told;
-  EXPECT_NE(told.find("fault 120, loop stalled"), std::string::npos) << told;
+  const std::string reported = run("400000");
+  EXPECT_NE(reported.find("ended 1"), std::string::npos) << reported;
+  EXPECT_NE(reported.find("fault 120, loop stalled"), std::string::npos) << reported;
   std::ifstream file(folder + "/report.json");
   const auto report = nlohmann::json::parse(file, nullptr, false);
-  ASSERT_FALSE(report.is_discarded()) << told;
+  ASSERT_FALSE(report.is_discarded()) << reported;
   EXPECT_EQ(report.at("fault").at("number"), 120);
-  EXPECT_EQ(told.find("Seccomp:\t2") != std::string::npos, report.at("call_filter").get<bool>());
-  ASSERT_EQ(report.at("black_boxes").size(), 1u) << told;
+  EXPECT_EQ(reported.find("Seccomp:\t2") != std::string::npos,
+            report.at("call_filter").get<bool>());
+  ASSERT_EQ(report.at("black_boxes").size(), 1u) << reported;
   const std::string kept = report.at("black_boxes")[0];
   const tests::Outcome shown = tests::run_program(
       "tact-view", "--open " + kept + " --export " + folder + "/table.csv --json");
@@ -68,11 +69,11 @@ TEST_F(StalledTactd, StopsNamesTheFaultAndLeavesAFileThatTactViewShows) {
 }
 
 TEST_F(StalledTactd, EndsEvenIfItsLoopNeverComesBack) {
-  const std::string told = run("60000000");
-  EXPECT_NE(told.find("ended 1"), std::string::npos) << told;
-  EXPECT_NE(told.find("fault 120, loop stalled"), std::string::npos) << told;
-  EXPECT_NE(told.find("the loop does not come back"), std::string::npos) << told;
-  EXPECT_NE(told.find("black box of fault 120"), std::string::npos) << told;
+  const std::string reported = run("60000000");
+  EXPECT_NE(reported.find("ended 1"), std::string::npos) << reported;
+  EXPECT_NE(reported.find("fault 120, loop stalled"), std::string::npos) << reported;
+  EXPECT_NE(reported.find("the loop does not come back"), std::string::npos) << reported;
+  EXPECT_NE(reported.find("black box of fault 120"), std::string::npos) << reported;
 }
 
 }  // namespace tact::tests::stalled_tactd_test

@@ -104,12 +104,12 @@ std::string ask_as_viewer(const std::string& path) {
     _exit(write(wire[1], answer.data(), answer.size()) < 0 ? 1 : 0);
   }
   close(wire[1]);
-  std::string told(256, '\0');
-  const ssize_t n = read(wire[0], told.data(), told.size());
-  told.resize(static_cast<std::size_t>(std::max<ssize_t>(0, n)));
+  std::string reported(256, '\0');
+  const ssize_t n = read(wire[0], reported.data(), reported.size());
+  reported.resize(static_cast<std::size_t>(std::max<ssize_t>(0, n)));
   close(wire[0]);
   waitpid(child, nullptr, 0);
-  return told;
+  return reported;
 }
 
 TEST_F(ViewerUser, CannotArmEvenIfTheFileLetsItIn) {

@@ -66,7 +66,7 @@ void add_options(CLI::App& app, Options& o) {
   app.add_flag("--force", o.force, "replace the files of an earlier run");
 }
 
-void tell(const char* step, const std::string& text) {
+void report(const char* step, const std::string& text) {
   fmt::print("{:<15}  {}\n", step, text);
   std::fflush(stdout);
 }
@@ -103,12 +103,12 @@ Result<Organ> read(const Options& o, const std::string& folder) {
       },
       mesh::show_percent);
   if (!organ) return organ;
-  tell("unit", to_text(organ->unit, organ->mesh));
+  report("unit", to_text(organ->unit, organ->mesh));
   const auto sum = summarize(organ->mesh);
   const auto size_m = sum.high_m - sum.low_m;
-  tell("organ", fmt::format("{} vertices, {} faces, closed, {:.3g} x {:.3g} x {:.3g} mm{}",
-                            sum.vertices, sum.triangles, 1e3 * size_m.x, 1e3 * size_m.y,
-                            1e3 * size_m.z, organ->obj_text.empty() ? ", taken as it is" : ""));
+  report("organ", fmt::format("{} vertices, {} faces, closed, {:.3g} x {:.3g} x {:.3g} mm{}",
+                              sum.vertices, sum.triangles, 1e3 * size_m.x, 1e3 * size_m.y,
+                              1e3 * size_m.z, organ->obj_text.empty() ? ", taken as it is" : ""));
   return organ;
 }
 
@@ -141,8 +141,8 @@ std::optional<Error> condense(const std::string& scene_path, const std::string& 
   if (!scene) return scene.error();
   auto input = condense::condense_input(*scene);
   if (!input) return input.error();
-  tell("condense", fmt::format("{} vertices, by finite elements: minutes for thousands",
-                               input->surface.vertex_m.size()));
+  report("condense", fmt::format("{} vertices, by finite elements: minutes for thousands",
+                                 input->surface.vertex_m.size()));
   input->settings.organ.progress = show_progress;
   condense::CondenseFacts facts;
   const auto map = condense::condense_organ(*input, facts);
@@ -185,8 +185,9 @@ Result<bool> make_scene(const Options& o, const OutputNames& names, const std::s
   const auto organ = read(o, folder);
   if (!organ) return organ.error();
   const auto place = new_scene::place_of(organ->mesh);
-  tell("place", fmt::format("the top comes to the tool; held below z = {:.4g} mm, the lowest tenth",
-                            1e3 * place.held.max_m.z));
+  report("place",
+         fmt::format("the top comes to the tool; held below z = {:.4g} mm, the lowest tenth",
+                     1e3 * place.held.max_m.z));
   const auto write_scene = [&](const char* law) {
     return model::io::write_file(made->scene, text_of(o, names, *organ, place, law));
   };
@@ -202,22 +203,22 @@ Result<bool> make_scene(const Options& o, const OutputNames& names, const std::s
   bool is_planned = o.plan;
   if (o.plan) {
     if (auto error = write_scene("auto")) return *error;
-    const auto tell_here = [&](const char* step, const std::string& text) {
-      tell(step, about(text, folder, names));
+    const auto report_here = [&](const char* step, const std::string& text) {
+      report(step, about(text, folder, names));
     };
-    if (const auto none = new_scene::choose_law(*made, log, tell_here)) {
+    if (const auto none = new_scene::choose_law(*made, log, report_here)) {
       if (program::was_interrupted(*none)) return *none;
       is_planned = false;
-      tell_here("plan", "none: " + none->sentence);
+      report_here("plan", "none: " + none->sentence);
       if (auto error = write_scene("compliance")) return *error;
     }
   }
-  tell("check", "tactd takes the scene");
+  report("check", "tactd takes the scene");
   const auto files = collect(*made, names);
   if (!files) return files.error();
   if (program::is_interrupted()) return program::interruption();
   if (auto error = new_scene::write_all(*files, o.force)) return *error;
-  for (const auto& file : *files) tell("wrote", file.path);
+  for (const auto& file : *files) report("wrote", file.path);
   return is_planned;
 }
 
@@ -230,9 +231,10 @@ std::string as_word(const std::string& path) {
   return "'" + word + "'";
 }
 
-void tell_what_next(const OutputNames& names, bool was_asked, bool is_planned) {
+void report_what_next(const OutputNames& names, bool was_asked, bool is_planned) {
   const std::string scene = as_word(names.scene);
-  tell("law", is_planned ? "as tact-lab plan has chosen for this PC" : "compliance, from the map");
+  report("law",
+         is_planned ? "as tact-lab plan has chosen for this PC" : "compliance, from the map");
   fmt::print("\nFeel it:\n  tactd {} --free-run --seconds 5\n", scene);
   if (is_planned)
     fmt::print(
@@ -252,7 +254,7 @@ Result<int> run(const program::Program&, Options& o) {
   if (!folder) return folder.error();
   const auto is_planned = make_scene(o, *names, folder->path());
   if (!is_planned) return Error{about(is_planned.error().sentence, folder->path(), *names)};
-  tell_what_next(*names, o.plan, *is_planned);
+  report_what_next(*names, o.plan, *is_planned);
   return 0;
 }
 

@@ -215,8 +215,8 @@ void print_table(const ground_truth::ToolReference& data) {
 
 /// Writes and prints what was solved; the exit status.
 template <typename Data>
-Result<int> tell(const program::Program& program, const Options& o, const Result<Data>& data,
-                 std::string (*text_of)(const Data&)) {
+Result<int> report(const program::Program& program, const Options& o, const Result<Data>& data,
+                   std::string (*text_of)(const Data&)) {
   if (!data)
     return program.fail(data.error(),
                         "what was solved is kept, the same command goes on from there");
@@ -239,11 +239,11 @@ Result<int> run(const program::Program& program, Options& o) {
   }
   // Before hours of work.
   if (auto error = program::check_output(o.out, "{", {o.scene.path})) return *error;
-  if (o.tool) return tell(program, o, solve_tool(o), ground_truth::tool_reference_text);
-  if (o.sideways) return tell(program, o, solve_sideways(o), sideways_text);
+  if (o.tool) return report(program, o, solve_tool(o), ground_truth::tool_reference_text);
+  if (o.sideways) return report(program, o, solve_sideways(o), sideways_text);
   const auto plan = make_plan(o);
   if (!plan) return plan.error();
-  return tell(program, o, solve_plan(*plan, o), ground_truth::reference_text);
+  return report(program, o, solve_plan(*plan, o), ground_truth::reference_text);
 }
 
 }  // namespace

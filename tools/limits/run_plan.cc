@@ -58,7 +58,7 @@ LimitsReport begin_report(const model::scene::Scene& scene, const hal::DeviceInf
 }
 
 /// What the guards found: no case of its own stands for it.
-void tell_fault(Fault found, const hal::Device& device, const hal::SafetyLines& lines) {
+void report_fault(Fault found, const hal::Device& device, const hal::SafetyLines& lines) {
   const model::FaultEntry& fault = model::describe(found);
   const std::string trouble = firmware::console::trouble_behind(found, device, lines);
   fmt::print(stderr, "tact-limits: the plan ended with {}: {}{}{}; {}\n", fault.name, fault.cause,
@@ -148,7 +148,7 @@ Result<LimitsReport> run_real(const model::scene::Scene& scene, hal::Device& dev
   report.call_filter =
       play_guarded(runs, bench, filter ? filter->get() : nullptr, options.progress).call_filter;
   if (const Fault found = requests.fault.load(); found != Fault::kNone)
-    tell_fault(found, device, **lines);
+    report_fault(found, device, **lines);
   (*lines)->stop();
   return finished(std::move(report), runs, bench, info, false);
 }

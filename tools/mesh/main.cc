@@ -161,9 +161,9 @@ int main(int argc, char** argv) {
   }
   // A path may hold bytes that are no UTF-8; JSON then shows them as replacement characters.
   if (options.json) {
-    auto told = mesh::to_json(options.file, unit, read->obj, read->steps, options.out);
-    if (placement) told["placement"] = mesh::to_json(*placement);
-    fmt::print("{}\n", tact::model::io::text_of(told, 2));
+    auto reported = mesh::to_json(options.file, unit, read->obj, read->steps, options.out);
+    if (placement) reported["placement"] = mesh::to_json(*placement);
+    fmt::print("{}\n", tact::model::io::text_of(reported, 2));
     return 0;
   }
   fmt::print("{}", mesh::to_text(read->obj, unit));

@@ -64,29 +64,29 @@ json to_json(const std::string& file, const Unit& unit, const ObjMesh& obj,
              const std::vector<RepairStep>& steps, const std::string& out) {
   const MeshSummary sum = model::mesh::summarize(obj.mesh);
   const bool closed = sum.boundary_edges == 0;
-  json told{{"format", "tact-mesh"},
-            {"version", 1},
-            {"file", file},
-            {"unit_m", unit.unit_m},
-            {"unit_from", to_text(unit.from)},
-            {"vertices", sum.vertices},
-            {"triangles", sum.triangles},
-            {"parts", model::mesh::count_parts(obj.mesh)},
-            {"closed", closed},
-            {"boundary_edges", sum.boundary_edges},
-            {"area_m2", sum.area_m2},
-            {"volume_m3", closed ? json(sum.volume_m3) : json(nullptr)},
-            {"low_m", to_json(sum.low_m)},
-            {"high_m", to_json(sum.high_m)},
-            {"file_vertices", obj.file_vertices},
-            {"welded_vertices", obj.welded_vertices},
-            {"unused_vertices", obj.unused_vertices},
-            {"flipped", obj.flipped}};
+  json reported{{"format", "tact-mesh"},
+                {"version", 1},
+                {"file", file},
+                {"unit_m", unit.unit_m},
+                {"unit_from", to_text(unit.from)},
+                {"vertices", sum.vertices},
+                {"triangles", sum.triangles},
+                {"parts", model::mesh::count_parts(obj.mesh)},
+                {"closed", closed},
+                {"boundary_edges", sum.boundary_edges},
+                {"area_m2", sum.area_m2},
+                {"volume_m3", closed ? json(sum.volume_m3) : json(nullptr)},
+                {"low_m", to_json(sum.low_m)},
+                {"high_m", to_json(sum.high_m)},
+                {"file_vertices", obj.file_vertices},
+                {"welded_vertices", obj.welded_vertices},
+                {"unused_vertices", obj.unused_vertices},
+                {"flipped", obj.flipped}};
   for (const RepairStep& step : steps)
-    told["steps"].push_back(
+    reported["steps"].push_back(
         {{"step", step.name}, {"count", step.count}, {"faces", step.faces}, {"text", step.text}});
-  if (!out.empty()) told["out"] = out;
-  return told;
+  if (!out.empty()) reported["out"] = out;
+  return reported;
 }
 
 std::string to_text(const Misfit& misfit) {

@@ -180,9 +180,9 @@ Result<Repaired> repair_file(const RepairOrder& order,
   auto obj = model::mesh::load_obj(target, 1.0);
   if (!obj) {
     // "PATH:LINE: the face ...; cure in a mesh editor"
-    const std::string& told = obj.error().sentence;
-    const std::size_t what = told.find(": ", target.size());
-    std::string sentence = what == std::string::npos ? told : told.substr(what + 2);
+    const std::string& reported = obj.error().sentence;
+    const std::size_t what = reported.find(": ", target.size());
+    std::string sentence = what == std::string::npos ? reported : reported.substr(what + 2);
     // The reader's cure is this repair.
     sentence.resize(std::min(sentence.find("; "), sentence.size()));
     return Error{fmt::format("{}: after these steps {}; {}", order.source, sentence,

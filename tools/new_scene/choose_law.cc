@@ -8,10 +8,10 @@ namespace tact::tools::new_scene {
 std::optional<model::Error> choose_law(
     const OutputNames& files, const std::string& log_path,
     const std::function<void(const char* step, const std::string& text)>& tell) {
-  tell("reference", "one sphere, by CalculiX: minutes for thousands of vertices");
+  report("reference", "one sphere, by CalculiX: minutes for thousands of vertices");
   auto answer = ask("tact-lab", {"reference", files.scene, "--out", files.reference}, log_path);
   if (!answer) return answer.error();
-  tell("reference", "the whole tool, by finite elements: as long again");
+  report("reference", "the whole tool, by finite elements: as long again");
   // Level 1: the places are nine, and a finer mesh changes their force by 2 %.
   answer = ask("tact-lab",
                {"reference", files.scene, "--tool", "--level", "1", "--out", files.tool_reference},
@@ -22,7 +22,7 @@ std::optional<model::Error> choose_law(
                 files.tool_reference},
                log_path);
   if (!answer) return answer.error();
-  for (const std::string& line : *answer) tell("plan", line);
+  for (const std::string& line : *answer) report("plan", line);
   answer = ask("tactd", {files.scene, "--check"}, log_path);
   return answer ? std::nullopt : std::optional(answer.error());
 }

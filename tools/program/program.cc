@@ -30,7 +30,7 @@ Program::~Program() = default;
 
 std::optional<int> Program::parse(int argc, char** argv) {
   model::io::watch_standard_output(name_.c_str());
-  model::io::tell_uncaught(name_.c_str());
+  model::io::report_uncaught(name_.c_str());
   for (int i = 0; i < argc; ++i) command_ += fmt::format("{}{}", i > 0 ? " " : "", argv[i]);
   if (const auto status = model::io::parse_command_line(*options_, name_.c_str(), argc, argv))
     return status;

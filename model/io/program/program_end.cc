@@ -28,7 +28,7 @@ void check_standard_output() {
 }
 
 /// std::terminate by itself would leave a core dump, and words of the library's.
-[[noreturn]] void tell_and_end() {
+[[noreturn]] void report_and_end() {
   try {
     if (const auto thrown = std::current_exception()) std::rethrow_exception(thrown);
   } catch (const std::exception& error) {
@@ -48,9 +48,9 @@ void watch_standard_output(const char* program) {
   std::atexit(check_standard_output);
 }
 
-void tell_uncaught(const char* program) {
+void report_uncaught(const char* program) {
   program_name = program;
-  std::set_terminate(tell_and_end);
+  std::set_terminate(report_and_end);
 }
 
 }  // namespace tact::model::io

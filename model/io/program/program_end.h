@@ -10,6 +10,6 @@ void watch_standard_output(const char* program);
 
 /// For programs that move nothing: an exception of a library that nobody catches (no memory, no
 /// room for the output) is told in one line, with exit status 2 and no core dump.
-void tell_uncaught(const char* program);
+void report_uncaught(const char* program);
 
 }  // namespace tact::model::io

@@ -15,21 +15,21 @@ TEST(InertiaNote, TellsOfAStrokeThatIsTooFastForALawWithoutInertia) {
   scene.hand_inward = {0, 0, -1};
   const auto tissue = std::move(*model::scene::make_tissue(scene));
   // 10 mm deep, from the surface: 15/8 of 10 mm in the time, at 5 mm, where IN-2 says 109 mm/s
-  const auto told = [&](double duration_s) {
+  const auto reported = [&](double duration_s) {
     scene.hand.path = {{.time_s = 0.0, .position_m = {0, 0, 0.004}},
                        {.time_s = duration_s, .position_m = {0, 0, -0.006}},
                        {.time_s = duration_s + 0.05, .position_m = {0, 0, 0.05}}};
     return inertia_note(scene, tissue->law());
   };
-  EXPECT_EQ(told(0.5), "") << "a release is not a press";
-  const std::string fast = told(0.05);
+  EXPECT_EQ(reported(0.5), "") << "a release is not a press";
+  const std::string fast = reported(0.05);
   for (const char* part :
        {"plate.toml: a stroke of the hand presses with",
         "mm/s on the inertia of "
         "tissue, which this law leaves out, is more than 7 % of the force there"})
     EXPECT_NE(fast.find(part), std::string::npos) << fast;
   scene.elastic.reset();
-  EXPECT_NE(told(0.02), "") << "the law's own half-space";
+  EXPECT_NE(reported(0.02), "") << "the law's own half-space";
 }
 
 TEST(InertiaNote, OfTheShippedScenesTheHeartIsPressedTooFastForItsLaw) {

@@ -181,12 +181,12 @@ TEST_F(BlackBoxTest, EveryDamageIsToldByItsTicksAndByItsPictures) {
   ticks(*box, 100);
   ticks(*box, 300, model::Fault::kDeviceLost);
   box->finish();
-  tests::expect_all_damage_is_told(box->files().at(0), [](const std::string& path) {
+  tests::expect_all_damage_is_reported(box->files().at(0), [](const std::string& path) {
     auto log = telemetry::TickLogReader::open(path);
     for (telemetry::LoggedTick one; log && log->next(one);) continue;
-    const bool told = !log || log->damage().find("good ticks were read") != std::string::npos;
+    const bool reported = !log || log->damage().find("good ticks were read") != std::string::npos;
     const host::record::ReadResult read = host::record::read_recording(path);
-    return told && !read.damage.empty();
+    return reported && !read.damage.empty();
   });
 }
 

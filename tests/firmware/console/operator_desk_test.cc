@@ -72,9 +72,9 @@ class Desk : public testing::Test {
     testing::internal::CaptureStderr();
     frame.state = state;
     desk->obey(0);
-    const std::string told = testing::internal::GetCapturedStderr();
+    const std::string reported = testing::internal::GetCapturedStderr();
     testing::internal::CaptureStderr();
-    return told;
+    return reported;
   }
 
   loop::SimulatedClock clock;

@@ -28,7 +28,7 @@ class WordyLines final : public hal::SafetyLines {
 
 class View : public testing::Test {
  protected:
-  std::string told(const telemetry::Frame& frame) {
+  std::string reported(const telemetry::Frame& frame) {
     testing::internal::CaptureStderr();
     view.show(frame);
     return testing::internal::GetCapturedStderr();
@@ -47,24 +47,24 @@ class View : public testing::Test {
 
 TEST_F(View, AFaultIsToldOnceWithWhatLiesBehindIt) {
   device.words = "axis 2 (node 2): over-current";
-  const std::string first = told(frame(loop::State::kStopped, model::Fault::kDriveFault));
+  const std::string first = reported(frame(loop::State::kStopped, model::Fault::kDriveFault));
   EXPECT_NE(first.find("fault 113, drive fault"), std::string::npos) << first;
   EXPECT_NE(first.find("axis 2 (node 2): over-current"), std::string::npos) << first;
-  EXPECT_EQ(told(frame(loop::State::kStopped, model::Fault::kDriveFault)), "");
+  EXPECT_EQ(reported(frame(loop::State::kStopped, model::Fault::kDriveFault)), "");
 }
 
 TEST_F(View, ALineThatTakesTheForceWithoutAFaultIsToldOnceEachTime) {
   const telemetry::Frame armed = frame(loop::State::kArmed, model::Fault::kNone);
-  EXPECT_EQ(told(armed), "");
+  EXPECT_EQ(reported(armed), "");
   lines.words = "the clutch line flaps";
-  EXPECT_EQ(told(armed), "tactd: the clutch line flaps\n");
-  EXPECT_EQ(told(armed), "");
+  EXPECT_EQ(reported(armed), "tactd: the clutch line flaps\n");
+  EXPECT_EQ(reported(armed), "");
   EXPECT_NE(view.status().find("the clutch line flaps"), std::string::npos) << view.status();
   lines.words.clear();
-  EXPECT_EQ(told(armed), "");
+  EXPECT_EQ(reported(armed), "");
   EXPECT_EQ(view.status().find("flaps"), std::string::npos);
   lines.words = "the clutch line flaps";
-  EXPECT_NE(told(armed), "");
+  EXPECT_NE(reported(armed), "");
 }
 
 TEST_F(View, FaultsOfTheLinesAreWordedByTheLines) {
@@ -72,7 +72,7 @@ TEST_F(View, FaultsOfTheLinesAreWordedByTheLines) {
   for (const model::Fault fault :
        {model::Fault::kEmergencyStop, model::Fault::kLinesDiffer, model::Fault::kLinesLost,
         model::Fault::kDeadManReleased, model::Fault::kGripFlaps}) {
-    const std::string first = told(frame(loop::State::kStopped, fault));
+    const std::string first = reported(frame(loop::State::kStopped, fault));
     EXPECT_NE(first.find("channel B sticks"), std::string::npos) << first;
     EXPECT_EQ(first.find("all is well here"), std::string::npos) << first;
   }
@@ -81,58 +81,58 @@ TEST_F(View, FaultsOfTheLinesAreWordedByTheLines) {
 TEST_F(View, ADeviceWithoutPowerIsNotReadyAndSaysWhatItWaitsFor) {
   device.words = "waiting for power of arm 2";
   const telemetry::Frame ready = frame(loop::State::kReady, model::Fault::kNone);
-  EXPECT_NE(told(ready).find("tactd: waiting for power of arm 2"), std::string::npos);
-  EXPECT_EQ(told(ready), "") << "once";
+  EXPECT_NE(reported(ready).find("tactd: waiting for power of arm 2"), std::string::npos);
+  EXPECT_EQ(reported(ready), "") << "once";
   EXPECT_EQ(view.why_not_arm(), "waiting for power of arm 2");
   EXPECT_NE(view.status().find(": waiting for power of arm 2"), std::string::npos);
   device.words.clear();
-  EXPECT_NE(told(ready).find("ready, force is off"), std::string::npos);
+  EXPECT_NE(reported(ready).find("ready, force is off"), std::string::npos);
   EXPECT_EQ(view.why_not_arm(), "");
   device.words = "waiting for power of arm 1";  // it goes again before it is armed
-  EXPECT_NE(told(ready).find("waiting for power of arm 1"), std::string::npos);
+  EXPECT_NE(reported(ready).find("waiting for power of arm 1"), std::string::npos);
   EXPECT_EQ(view.why_not_arm(), "waiting for power of arm 1");
   device.words.clear();
-  EXPECT_NE(told(ready).find("ready, force is off"), std::string::npos) << "told again";
+  EXPECT_NE(reported(ready).find("ready, force is off"), std::string::npos) << "told again";
 }
 
 TEST_F(View, AToolInsideTheOrganIsToldOnceEachTime) {
   telemetry::Frame inside = frame(loop::State::kArmed, model::Fault::kNone);
   inside.site[1].state = telemetry::SiteState::kInside;
-  EXPECT_NE(told(inside).find("inside the organ"), std::string::npos);
-  EXPECT_EQ(told(inside), "");
+  EXPECT_NE(reported(inside).find("inside the organ"), std::string::npos);
+  EXPECT_EQ(reported(inside), "");
   EXPECT_NE(view.status().find("inside the organ: take the tool out"), std::string::npos);
-  EXPECT_EQ(told(frame(loop::State::kArmed, model::Fault::kNone)), "");
+  EXPECT_EQ(reported(frame(loop::State::kArmed, model::Fault::kNone)), "");
   EXPECT_EQ(view.status().find("inside"), std::string::npos);
-  EXPECT_NE(told(inside), "");
+  EXPECT_NE(reported(inside), "");
 }
 
 TEST_F(View, TheStatusCountsLossesOfContact) {
   telemetry::Frame lost = frame(loop::State::kArmed, model::Fault::kNone);
-  EXPECT_EQ(told(lost), "");
+  EXPECT_EQ(reported(lost), "");
   EXPECT_EQ(view.status().find("contact lost"), std::string::npos);
   lost.contact_losses = 3;
-  EXPECT_EQ(told(lost), "");
+  EXPECT_EQ(reported(lost), "");
   EXPECT_NE(view.status().find("contact lost 3 times"), std::string::npos) << view.status();
 }
 
 TEST_F(View, WhoMustArmIsToldWhenTheDeviceIsReady) {
-  EXPECT_NE(told(frame(loop::State::kReady, model::Fault::kNone)).find("tactctl SCENE arm"),
+  EXPECT_NE(reported(frame(loop::State::kReady, model::Fault::kNone)).find("tactctl SCENE arm"),
             std::string::npos);
-  EXPECT_EQ(told(frame(loop::State::kReady, model::Fault::kNone)), "");
+  EXPECT_EQ(reported(frame(loop::State::kReady, model::Fault::kNone)), "");
 }
 
 TEST_F(View, AFaultThatComesAgainAfterAResetIsToldAgain) {
-  EXPECT_NE(told(frame(loop::State::kStopped, model::Fault::kEmergencyStop)), "");
-  told(frame(loop::State::kReady, model::Fault::kNone));
-  EXPECT_NE(told(frame(loop::State::kStopped, model::Fault::kEmergencyStop)), "");
+  EXPECT_NE(reported(frame(loop::State::kStopped, model::Fault::kEmergencyStop)), "");
+  reported(frame(loop::State::kReady, model::Fault::kNone));
+  EXPECT_NE(reported(frame(loop::State::kStopped, model::Fault::kEmergencyStop)), "");
 }
 
 TEST_F(View, WhatADeviceWaitsForIsToldOnceUntilItIsReady) {
   device.words = "not homed: pull the grip out, then push it in";
-  EXPECT_NE(told(frame(loop::State::kOff, model::Fault::kNone)).find("pull the grip out"),
+  EXPECT_NE(reported(frame(loop::State::kOff, model::Fault::kNone)).find("pull the grip out"),
             std::string::npos);
-  EXPECT_EQ(told(frame(loop::State::kOff, model::Fault::kNone)), "");
-  EXPECT_EQ(told(frame(loop::State::kArmed, model::Fault::kNone)), "")
+  EXPECT_EQ(reported(frame(loop::State::kOff, model::Fault::kNone)), "");
+  EXPECT_EQ(reported(frame(loop::State::kArmed, model::Fault::kNone)), "")
       << "ready: nothing to wait for";
 }
 

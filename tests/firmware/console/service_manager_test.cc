@@ -44,12 +44,12 @@ class Service : public testing::Test {
 
 TEST_F(Service, IsReadyOnceItMayBeArmedAndSaysSoOnce) {
   ServiceManager manager;
-  manager.tell({.now_ns = 0, .may_be_armed = false, .ticks = 0, .status = "off"});
+  manager.report({.now_ns = 0, .may_be_armed = false, .ticks = 0, .status = "off"});
   EXPECT_EQ(heard(), "STATUS=off\n");
-  manager.tell({.now_ns = 1, .may_be_armed = true, .ticks = 0, .status = "ready"});
+  manager.report({.now_ns = 1, .may_be_armed = true, .ticks = 0, .status = "ready"});
   EXPECT_EQ(heard(), "READY=1\nSTATUS=ready\n");
-  manager.tell({.now_ns = 2 * kSecond_ns, .may_be_armed = false, .ticks = 0, .status = "armed"});
-  manager.tell({.now_ns = 4 * kSecond_ns, .may_be_armed = true, .ticks = 0, .status = "ready"});
+  manager.report({.now_ns = 2 * kSecond_ns, .may_be_armed = false, .ticks = 0, .status = "armed"});
+  manager.report({.now_ns = 4 * kSecond_ns, .may_be_armed = true, .ticks = 0, .status = "ready"});
   EXPECT_EQ(heard(), "STATUS=armed\n");
   EXPECT_EQ(heard(), "STATUS=ready\n");
 }
@@ -58,7 +58,7 @@ TEST_F(Service, FeedsTheWatchdogOnlyWhileTheLoopTicks) {
   ServiceManager manager;
   std::int64_t now_ns = 0;
   for (const std::uint64_t ticks : {1000u, 2000u, 2000u, 2000u, 2001u})
-    manager.tell({.now_ns = now_ns += kSecond_ns, .ticks = ticks});
+    manager.report({.now_ns = now_ns += kSecond_ns, .ticks = ticks});
   for (const char* words : {"WATCHDOG=1\nSTATUS=\n", "WATCHDOG=1\nSTATUS=\n", "STATUS=\n",
                             "STATUS=\n", "WATCHDOG=1\nSTATUS=\n"})
     EXPECT_EQ(heard(), words);
@@ -66,7 +66,7 @@ TEST_F(Service, FeedsTheWatchdogOnlyWhileTheLoopTicks) {
 
 TEST_F(Service, IsHeardOnceASecondHoweverOftenItIsTold) {
   ServiceManager manager;
-  for (int i = 0; i < 10; ++i) manager.tell({.now_ns = i * kSecond_ns / 5, .status = "off"});
+  for (int i = 0; i < 10; ++i) manager.report({.now_ns = i * kSecond_ns / 5, .status = "off"});
   for (int i = 0; i < 2; ++i) EXPECT_EQ(heard(), "STATUS=off\n");
   EXPECT_EQ(heard(), "");
 }
@@ -83,7 +83,7 @@ TEST_F(Service, AManagerThatIsGoneOrWasNeverThereIsNoTrouble) {
   for (const char* path : {path_.c_str(), "", "/none/such", "@tact-nobody"}) {
     setenv("NOTIFY_SOCKET", path, 1);
     ServiceManager manager;
-    manager.tell({.may_be_armed = true});
+    manager.report({.may_be_armed = true});
   }
   EXPECT_EQ(heard(), "");
   unsetenv("NOTIFY_SOCKET");

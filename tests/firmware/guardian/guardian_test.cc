@@ -115,17 +115,17 @@ TEST(Guardian, TellsThatTheDeviceTookNothing) {
   Wire wire;
   close(wire.end[1]);  // nobody at the other end
   wire.end[1] = open("/dev/null", O_RDONLY | O_CLOEXEC);
-  const int own = dup(STDERR_FILENO), told = memfd_create("told", MFD_CLOEXEC);
-  dup2(told, STDERR_FILENO);
+  const int own = dup(STDERR_FILENO), reported = memfd_create("told", MFD_CLOEXEC);
+  dup2(reported, STDERR_FILENO);
   Guarded guarded(wire, [](Guardian&) {});
   dup2(own, STDERR_FILENO);
   close(own);
   guarded.end();
   std::array<char, 300> text{};
-  EXPECT_TRUE(soon([&] { return pread(told, text.data(), text.size() - 1, 0) > 0; }));
+  EXPECT_TRUE(soon([&] { return pread(reported, text.data(), text.size() - 1, 0) > 0; }));
   EXPECT_NE(std::string_view(text.data()).find("did not take zero force"), std::string_view::npos)
       << text.data();
-  close(told);
+  close(reported);
 }
 
 TEST(Guardian, SaysNothingWhenItIsLetGoAndIsGoneThen) {

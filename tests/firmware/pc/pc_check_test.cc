@@ -225,7 +225,7 @@ TEST_F(PcCheck, JsonHasEveryRow) {
 
 TEST(ShortForm, IsToldByTactdWhenItStartsInRealTime) {
   const auto red = name_red_rows(check_pc({.files = PcFiles{}, .core = choose_core(RtSettings{})}));
-  const auto tells = [](const std::string& how) {
+  const auto reports = [](const std::string& how) {
     const std::string said =
         tests::run_program("tactd", std::string(TACT_SOURCE_DIR) +
                                         "/model/scenes/liver.toml --no-telemetry --ticks 10" + how)
@@ -233,8 +233,8 @@ TEST(ShortForm, IsToldByTactdWhenItStartsInRealTime) {
     return said.find(" checks of this PC are red (") != std::string::npos &&
            said.find("); tact-doctor tells why and the cure\n") != std::string::npos;
   };
-  EXPECT_EQ(tells(""), !red.empty()) << red;
-  EXPECT_FALSE(tells(" --free-run")) << "simulated time is never late";
+  EXPECT_EQ(reports(""), !red.empty()) << red;
+  EXPECT_FALSE(reports(" --free-run")) << "simulated time is never late";
 }
 
 TEST(CpuList, IsReadAndWrittenAsTheKernelDoes) {

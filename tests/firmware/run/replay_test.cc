@@ -108,7 +108,7 @@ TEST_F(ReplayTest, AnotherSampleGivesAnotherForceAndIsNamed) {
 TEST_F(ReplayTest, EveryDamageIsToldWithHowMuchIsGood) {
   std::remove(path.c_str());
   record(200);
-  tests::expect_all_damage_is_told(path, [&](const std::string& damaged) {
+  tests::expect_all_damage_is_reported(path, [&](const std::string& damaged) {
     const auto outcome = replay(damaged, scene, *tissue);
     if (!outcome) return !outcome.error().sentence.empty();
     return outcome->damage.find(" good ticks were read") != std::string::npos;

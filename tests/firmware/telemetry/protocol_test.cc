@@ -180,7 +180,7 @@ std::size_t bytes_of(const std::string& type) {
   return bytes;
 }
 
-std::map<std::string, Layout> told_structs() {
+std::map<std::string, Layout> reported_structs() {
   static const std::regex kHead(R"(### (\w+), (\d+) bytes)");
   static const std::regex kRow(R"(\| `([\w.]+)` \| (\d+) \| `([\w\[\]]+)` \|.*)");
   std::ifstream file(TACT_SOURCE_DIR "/host/PROTOCOL.md");
@@ -199,11 +199,11 @@ std::map<std::string, Layout> told_structs() {
 }
 
 TEST(Protocol, TheDocumentHasTheFieldsOfEachStructWhereTheyAre) {
-  const auto told = told_structs();
-  EXPECT_EQ(told.size(), kStructs.size());
+  const auto reported = reported_structs();
+  EXPECT_EQ(reported.size(), kStructs.size());
   for (const auto& [name, layout] : kStructs) {
-    ASSERT_TRUE(told.contains(name)) << name;
-    EXPECT_EQ(told.at(name), layout) << name;
+    ASSERT_TRUE(reported.contains(name)) << name;
+    EXPECT_EQ(reported.at(name), layout) << name;
   }
 }
 
@@ -211,12 +211,12 @@ TEST(Protocol, TheDocumentHasTheVersions) {
   std::ifstream file(TACT_SOURCE_DIR "/host/PROTOCOL.md");
   const std::string text(std::istreambuf_iterator<char>(file), {});
   const std::string log(kLogMagic, sizeof kLogMagic);
-  for (const std::string& told :
+  for (const std::string& reported :
        {"| `version` | 4 | `u16` | " + std::to_string(kTelemetryVersion) + " |",
         "| " + std::to_string(kRecordingVersion) + ", or " +
             std::to_string(kTrackedRecordingVersion) + " with the tracked operator |",
         "`" + log + "`"})
-    EXPECT_NE(text.find(told), std::string::npos) << told;
+    EXPECT_NE(text.find(reported), std::string::npos) << reported;
 }
 
 }  // namespace tact::firmware::telemetry::protocol_test

@@ -30,10 +30,10 @@ class FilteredLoop : public WatchedLoop {
   // What the tick of that sample told; they are taken out of the ring in one go.
   model::Fault fault_of(std::uint64_t sequence) {
     loop::TickRecord record;
-    while (ring->pop(record)) told[record.input.sample.sequence] = record.output.fault;
-    return told.at(sequence);
+    while (ring->pop(record)) reported[record.input.sample.sequence] = record.output.fault;
+    return reported.at(sequence);
   }
-  std::map<std::uint64_t, model::Fault> told;
+  std::map<std::uint64_t, model::Fault> reported;
   std::unique_ptr<CallFilter> filter;
   int entered = -1;
 };

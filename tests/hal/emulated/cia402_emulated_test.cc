@@ -165,15 +165,15 @@ TEST(Cia402Emulated, AfterTheFaultOfOneDriveTheOthersNoteNone) {
 }
 
 TEST(Cia402Emulated, ARatedTorqueThatNoDriveTellsStandsInTheScene) {
-  Bench silent({.absent = {0x6076}}), told({.absent = {0x6076}});
+  Bench silent({.absent = {0x6076}}), reported({.absent = {0x6076}});
   const std::string sentence = silent.open();
   EXPECT_NE(sentence.find("does not tell its rated torque (object 6076): set "
                           "device.can.rated_torque_Nm"),
             std::string::npos)
       << sentence;
-  told.settings.can.rated_torque_Nm = kRated_Nm;
-  ASSERT_TRUE(told.run());
-  told.expect_torques_of({1.0, -2.0, 3.0});
+  reported.settings.can.rated_torque_Nm = kRated_Nm;
+  ASSERT_TRUE(reported.run());
+  reported.expect_torques_of({1.0, -2.0, 3.0});
 }
 
 TEST(Cia402Emulated, ARatedTorqueOfTheSceneOverridesTheDrives) {

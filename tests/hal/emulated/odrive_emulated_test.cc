@@ -191,7 +191,7 @@ TEST(OdriveEmulated, WhatTheMakersVelocityLimitCutsIsToldWithTheDrivesOwnNumbers
   Bench bench(kAsDelivered);
   ASSERT_EQ(bench.open(), "");
   const std::string caution = bench.device->info().caution;
-  const auto told = odrive::odrive_velocity_limit(bench.settings.delta, 2.0);
+  const auto reported = odrive::odrive_velocity_limit(bench.settings.delta, 2.0);
   EXPECT_NE(caution.find("may cut torque above 0.33 N m at rest, of the 0.74 N m"),
             std::string::npos)
       << caution;
@@ -204,7 +204,7 @@ TEST(OdriveEmulated, WhatTheMakersVelocityLimitCutsIsToldWithTheDrivesOwnNumbers
   double largest_Nm = 0.0;
   for (const double one_Nm : wanted) largest_Nm = std::max(largest_Nm, std::abs(one_Nm));
   EXPECT_GT(largest_Nm, 0.4);
-  EXPECT_LE(largest_Nm, told.motor_torque_Nm);
+  EXPECT_LE(largest_Nm, reported.motor_torque_Nm);
 }
 
 TEST(OdriveEmulated, AVelocityLimitOfTheSceneLetsAllTorquePassAndIsNotWarnedOf) {

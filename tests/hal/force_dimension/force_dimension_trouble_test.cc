@@ -50,19 +50,19 @@ TEST_F(ForceDimensionTrouble, APoseThatFailsEndsTheForceAtOnce) {
   EXPECT_EQ(stub.last_force(force), 0);
   EXPECT_EQ(force[2], 0.0);
   EXPECT_EQ(lasting_fault(), Fault::kDeviceFailed);
-  EXPECT_TRUE(told("does not tell its pose: the pose cannot be computed")) << device->trouble();
+  EXPECT_TRUE(reported("does not tell its pose: the pose cannot be computed")) << device->trouble();
 }
 
 TEST_F(ForceDimensionTrouble, ADeviceThatIsGoneIsUnplugged) {
   stub.fail("dhdSetForceAndTorqueAndGripperForce", 5);
   EXPECT_EQ(lasting_fault(), Fault::kDeviceUnplugged);
-  EXPECT_TRUE(told("does not take a force: the device is gone")) << device->trouble();
+  EXPECT_TRUE(reported("does not take a force: the device is gone")) << device->trouble();
 }
 
 TEST_F(ForceDimensionTrouble, AStatusThatFailsIsTold) {
   stub.fail("dhdGetStatus", 7);
   EXPECT_EQ(lasting_fault(), Fault::kDeviceFailed);
-  EXPECT_TRUE(told("does not tell its status: the device did not answer")) << device->trouble();
+  EXPECT_TRUE(reported("does not tell its status: the device did not answer")) << device->trouble();
 }
 
 TEST_F(ForceDimensionTrouble, ForcesThatTheDeviceSwitchedOffAreToldByCause) {
@@ -76,7 +76,7 @@ TEST_F(ForceDimensionTrouble, ForcesThatTheDeviceSwitchedOffAreToldByCause) {
     stub.set_status(kSdkForceOffCause, cause);
     stub.set_status(kSdkForce, 0);
     EXPECT_EQ(lasting_fault(), Fault::kForceOff);
-    EXPECT_TRUE(told(words[cause])) << device->trouble();
+    EXPECT_TRUE(reported(words[cause])) << device->trouble();
   }
 }
 
@@ -95,7 +95,7 @@ TEST_F(ForceDimensionTrouble, TheDevicesOwnWatchdogEndsWhatALibraryThatHangsLeft
     for (int i = 0; i < 1000 && fault == Fault::kNone; ++i) tick(kUp);
   }
   EXPECT_EQ(fault, Fault::kForceOff);
-  EXPECT_TRUE(told("watchdog_s")) << device->trouble();
+  EXPECT_TRUE(reported("watchdog_s")) << device->trouble();
   stub.set_delay_us(0);
 }
 
@@ -113,7 +113,7 @@ TEST_F(ForceDimensionTrouble, LostSupplyCableAndCalibrationAreToldApart) {
     SetUp();
     stub.set_status(c.word, c.value);
     EXPECT_EQ(lasting_fault(), c.fault) << c.words;
-    EXPECT_TRUE(told(c.words)) << device->trouble();
+    EXPECT_TRUE(reported(c.words)) << device->trouble();
   }
 }
 

@@ -130,8 +130,8 @@ TEST_F(Sysfs, ARefusedChipIsAskedAgainFor200Ms) {
     const auto begun = std::chrono::steady_clock::now();
     const auto lines = open_safety_lines(wired(), roots());
     const bool waited = std::chrono::steady_clock::now() - begun >= std::chrono::milliseconds(200);
-    const bool told = !lines && lines.error().sentence.find(kGpioRule) != std::string::npos;
-    _exit(waited && told ? 7 : 8);
+    const bool reported = !lines && lines.error().sentence.find(kGpioRule) != std::string::npos;
+    _exit(waited && reported ? 7 : 8);
   };
   EXPECT_EXIT(see_refusal(), testing::ExitedWithCode(7), "");
 }

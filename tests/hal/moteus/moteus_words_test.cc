@@ -14,9 +14,9 @@ TEST(MoteusWords, EveryFaultIsOneSentenceWithItsNumberAndNoneIsALimit) {
     EXPECT_FALSE(is_moteus_limit(one.code));
     const char last = std::string(one.sentence).back();
     EXPECT_TRUE(last == '.' || last == '?') << one.sentence;
-    const std::string told = moteus_fault_sentence(one.code);
-    EXPECT_TRUE(told.starts_with(one.sentence));
-    EXPECT_TRUE(told.ends_with("(fault " + std::to_string(one.code) + ")"));
+    const std::string reported = moteus_fault_sentence(one.code);
+    EXPECT_TRUE(reported.starts_with(one.sentence));
+    EXPECT_TRUE(reported.ends_with("(fault " + std::to_string(one.code) + ")"));
   }
   EXPECT_EQ(codes.size(), 18u);  // 32 to 50 but for 45, which needs a command that is never sent
 }

@@ -245,8 +245,8 @@ TEST_F(Phantom, ADampingOfTheSceneIsNotCalledAssumed) {
 }
 
 TEST_F(Phantom, WhatItsMotorsBearForLongMayNotBeTold) {
-  for (const double told_N : {0.0, -1.0, std::nan("")}) {
-    stub.set_number(kHdContinuousForce, told_N);
+  for (const double reported_N : {0.0, -1.0, std::nan("")}) {
+    stub.set_number(kHdContinuousForce, reported_N);
     open();
     EXPECT_EQ(device->info().max_continuous_force_N, 0.0);
     EXPECT_NE(device->info().caution.find("for long: not told"), std::string::npos);

@@ -65,20 +65,21 @@ TEST_F(PhantomTrouble, EveryErrorOfTheLibraryEndsTheForceAndIsToldInWords) {
     SetUp();
     stub.fail(c.function, c.code);
     EXPECT_EQ(lasting_fault(), c.fault) << c.words;
-    EXPECT_TRUE(told("the PHANTOM failed: ") && told(c.words)) << device->trouble();
+    EXPECT_TRUE(reported("the PHANTOM failed: ") && reported(c.words)) << device->trouble();
   }
 }
 
 TEST_F(PhantomTrouble, AForceOutputThatAnotherProgramSwitchedOffIsAFault) {
   stub.lose_force_output();
   EXPECT_EQ(lasting_fault(), Fault::kForceOff);
-  EXPECT_TRUE(told("force output is off; end other programs")) << device->trouble();
+  EXPECT_TRUE(reported("force output is off; end other programs")) << device->trouble();
 }
 
 TEST_F(PhantomTrouble, ALostCalibrationIsAFaultAndSaysWhatToDo) {
   stub.set_calibration(kHdNeedsHand);
   EXPECT_EQ(lasting_fault(), Fault::kHomingLost);
-  EXPECT_TRUE(told("put its stylus into the inkwell, then start tactd again")) << device->trouble();
+  EXPECT_TRUE(reported("put its stylus into the inkwell, then start tactd again"))
+      << device->trouble();
 }
 
 TEST_F(PhantomTrouble, AnAnswerThatIsNoCalibrationIsAFault) {
@@ -92,7 +93,7 @@ TEST_F(PhantomTrouble, AnAnswerThatIsNoCalibrationIsAFault) {
 TEST_F(PhantomTrouble, APoseThatIsNoNumberIsAFault) {
   stub.hold(std::nan(""), 0, 0);
   EXPECT_EQ(lasting_fault(), Fault::kSampleNotFinite);
-  EXPECT_TRUE(told("a pose that is no number; check its cable")) << device->trouble();
+  EXPECT_TRUE(reported("a pose that is no number; check its cable")) << device->trouble();
 }
 
 TEST_F(PhantomTrouble, AnUpdateOfTheCalibrationWaitsForTheNextStart) {
@@ -112,7 +113,8 @@ TEST_F(PhantomTrouble, ASchedulerThatFallsSilentLeavesNoFreshSampleAndIsToldWith
     tick(kUp);
     ASSERT_FALSE(sample.fresh);
   }
-  EXPECT_TRUE(told("no call for more than 20 ms: the device may still push; switch its supply off"))
+  EXPECT_TRUE(
+      reported("no call for more than 20 ms: the device may still push; switch its supply off"))
       << device->trouble();
   stub.silence(0);
   EXPECT_TRUE(comes([&] { return device->trouble().empty(); }));
@@ -122,10 +124,10 @@ TEST_F(PhantomTrouble, AStopThatTheLibraryDoesNotAnswerIsTold) {
   stub.silence(1);
   device->stop();
   EXPECT_EQ(device->why_not_off(), "the library does not return: switch the device's supply off");
-  EXPECT_TRUE(told("the library does not return")) << device->trouble();
+  EXPECT_TRUE(reported("the library does not return")) << device->trouble();
   EXPECT_TRUE(stub.is_open()) << "what it still runs is not closed";
   stub.silence(0);  // it lets go after all, before the next test
-  EXPECT_TRUE(comes([&] { return !told("no call for more than"); }));
+  EXPECT_TRUE(comes([&] { return !reported("no call for more than"); }));
 }
 
 TEST(HdWords, NoCodeIsBlankOrWithoutACure) {

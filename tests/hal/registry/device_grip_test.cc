@@ -87,12 +87,12 @@ TEST(DeviceGrip, EveryBackEndOfTheRegistrySaysHowItGrips) {
       {"can-cia402", GripKind::kNone}, {"can-moteus", GripKind::kNone},
       {"falcon", GripKind::kButton},   {"force-dimension", GripKind::kButton},
       {"phantom", GripKind::kButton}};
-  const auto told = grip_of_each_kind();
+  const auto reported = grip_of_each_kind();
   const auto kinds = kinds_of_registry();
   EXPECT_EQ(kinds.size(), expected.size()) << "a new back end has a row in this test";
   for (const std::string& kind : kinds) {
-    ASSERT_TRUE(told.contains(kind)) << kind << " has no row in this test";
-    EXPECT_EQ(told.at(kind), expected.at(kind)) << kind;
+    ASSERT_TRUE(reported.contains(kind)) << kind << " has no row in this test";
+    EXPECT_EQ(reported.at(kind), expected.at(kind)) << kind;
   }
 }
 

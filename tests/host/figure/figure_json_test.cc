@@ -32,8 +32,8 @@ TEST(FigureJson, SaysTheJointsToATenthOfAMillimetre) {
   ASSERT_EQ(json.at("joint_m").size(), 3 * kFigureJoints);
   for (std::size_t i = 0; i < kFigureJoints; ++i) {
     for (int k = 0; k < 3; ++k) {
-      const double told_m = json["joint_m"][3 * i + static_cast<std::size_t>(k)];
-      EXPECT_NEAR(told_m, pose.joint_m[i][k], 0.51e-4);
+      const double reported_m = json["joint_m"][3 * i + static_cast<std::size_t>(k)];
+      EXPECT_NEAR(reported_m, pose.joint_m[i][k], 0.51e-4);
     }
   }
   EXPECT_EQ(json.at("reached"), true);

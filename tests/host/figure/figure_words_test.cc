@@ -69,16 +69,16 @@ TEST(FigureWords, TheWorstIsSaid) {
   bodies[BodyRole::kHead] = {.state = BodyState::kLost, .trouble = TrackingTrouble::kSilent};
   FigurePose pose;
   pose.arm.reached = true;
-  tell(bodies, pose);
+  report(bodies, pose);
   EXPECT_EQ(pose.words, "head lost (silent)");
   pose.leg_reached[1] = false;
-  tell(bodies, pose);
+  report(bodies, pose);
   EXPECT_EQ(pose.words, "the leg cannot reach the right ankle");
   pose.arm.reached = false;
-  tell(bodies, pose);
+  report(bodies, pose);
   EXPECT_EQ(pose.words, "the arm cannot reach the tool");
   pose.arm.reached = pose.leg_reached[1] = true;
-  tell({}, pose);
+  report({}, pose);
   EXPECT_EQ(pose.words, "");
   EXPECT_EQ(pose.trouble, FigureTrouble::kNone);
 }

@@ -137,7 +137,7 @@ TEST(ToolArm, TurnsTheElbowToWhereItIsToldUnlessALimitIsInTheWay) {
   for (const ArmGoal& same : {goal(-0.40, 0.09, 0.22), goal(-0.22, 0.12, 0.45)}) {
     ToolArm settled(kPlan);
     for (int i = 0; i < 100; ++i) settled.relax(0.05), settled.hold(same);
-    for (double told_rad = -3.0; told_rad <= 3.0; told_rad += 0.1) {
+    for (double reported_rad = -3.0; reported_rad <= 3.0; reported_rad += 0.1) {
       ToolArm arm = settled;
       const auto before = arm.points_m();
       const Vector3d shoulder_m = before[kShoulderBone],
@@ -145,16 +145,16 @@ TEST(ToolArm, TurnsTheElbowToWhereItIsToldUnlessALimitIsInTheWay) {
       const auto beside = [&](const Vector3d& p_m) -> Vector3d {
         return (p_m - shoulder_m) - (p_m - shoulder_m).dot(along) * along;
       };
-      ArmGoal told = same;
-      told.elbow_m =
-          shoulder_m + Eigen::AngleAxisd(told_rad, along) * (1.3 * beside(before[kElbowBone]));
-      EXPECT_TRUE(arm.hold(told).reached);
+      ArmGoal reported = same;
+      reported.elbow_m =
+          shoulder_m + Eigen::AngleAxisd(reported_rad, along) * (1.3 * beside(before[kElbowBone]));
+      EXPECT_TRUE(arm.hold(reported).reached);
       const auto left_rad = [&](std::size_t i) {
         const Bone& bone = arm.chain().bones[i];
         return bone.cone_rad - swing_rad(bone, arm.joints()[i]);
       };
       EXPECT_GE(left_rad(kShoulderBone), -1e-9);
-      const Vector3d now = beside(arm.points_m()[kElbowBone]), wanted = beside(*told.elbow_m);
+      const Vector3d now = beside(arm.points_m()[kElbowBone]), wanted = beside(*reported.elbow_m);
       const double off_rad = std::atan2(now.cross(wanted).norm(), now.dot(wanted));
       free += off_rad < 1e-6;
       by_cone += off_rad > 0.3 && left_rad(kShoulderBone) < 1e-3;

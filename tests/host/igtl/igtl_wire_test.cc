@@ -154,12 +154,12 @@ TEST(IgtlWire, TheLibraryReadsForceInNewtonsAndStatus) {
   auto newton = ::igtl::Unit::New();
   newton->Append(::igtl::Unit::SI_DERIVED_NEWTON, 1);
   EXPECT_EQ(force->GetUnit(), newton->Pack());
-  const auto told = unpacked<::igtl::StatusMessage>(
+  const auto reported = unpacked<::igtl::StatusMessage>(
       status("Tact", 1.0, {.code = 15, .subcode = 117, .name = "fault 117", .words = "stopped"}));
-  EXPECT_EQ(told->GetCode(), ::igtl::StatusMessage::STATUS_DISABLED);
-  EXPECT_EQ(told->GetSubCode(), 117);
-  EXPECT_STREQ(told->GetErrorName(), "fault 117");
-  EXPECT_STREQ(told->GetStatusString(), "stopped");
+  EXPECT_EQ(reported->GetCode(), ::igtl::StatusMessage::STATUS_DISABLED);
+  EXPECT_EQ(reported->GetSubCode(), 117);
+  EXPECT_STREQ(reported->GetErrorName(), "fault 117");
+  EXPECT_STREQ(reported->GetStatusString(), "stopped");
 }
 
 TEST(IgtlWire, TheArrowOfTheForcePointsAlongItAndIsAsLong) {

@@ -126,7 +126,7 @@ TEST_F(RecordingFile, OfOtherSizesButTheSameVersionSaysSo) {
 }
 
 TEST_F(RecordingFile, EveryDamageIsTold) {
-  tests::expect_all_damage_is_told(
+  tests::expect_all_damage_is_reported(
       path_, [](const std::string& path) { return !read_recording(path).damage.empty(); });
 }
 

@@ -163,7 +163,7 @@ TEST(FrameJson, StaysInItsLengthWithAFullPatchAndEverySiteHeld) {
   record::Frame frame = longest_frame();
   frame.patch.vertex_count = firmware::telemetry::kMaxPatchVertices;
   frame.patch.cut_total = 4'000'000;  // of the largest mesh that check_hello lets pass
-  frame.patch.cut_count = firmware::telemetry::kMaxCutsTold;
+  frame.patch.cut_count = firmware::telemetry::kMaxCutsReported;
   for (auto& triangle : frame.patch.cut_triangle) triangle = 3'999'999;
   record::Hello hello = busiest_hello();
   hello.ring_count = 0;
@@ -193,8 +193,8 @@ TEST(CheckFrame, RefusesPatchesThatNameWhatIsNotThere) {
   EXPECT_TRUE(refuses([](record::Frame& f) { f.patch.cut_triangle[1] = 2; }));
   EXPECT_TRUE(refuses(
       [](record::Frame& f) { f.patch.vertex_count = firmware::telemetry::kMaxPatchVertices + 1; }));
-  EXPECT_TRUE(
-      refuses([](record::Frame& f) { f.patch.cut_count = firmware::telemetry::kMaxCutsTold + 1; }));
+  EXPECT_TRUE(refuses(
+      [](record::Frame& f) { f.patch.cut_count = firmware::telemetry::kMaxCutsReported + 1; }));
   EXPECT_TRUE(refuses([](record::Frame& f) { f.patch.cut_total = 1; }));
   EXPECT_TRUE(refuses([](record::Frame& f) { f.patch.cut_total = 3; }));
   EXPECT_TRUE(refuses([](record::Frame& f) { f.state = firmware::loop::State{4}; }));

@@ -26,8 +26,8 @@ record::Frame frame_at(float x_m, std::int64_t time_ns) {
   return frame;
 }
 
-nlohmann::json told(OperatorFigure& figure, const record::Frame& frame,
-                    const tracking::TrackedOperator* tracked = nullptr) {
+nlohmann::json reported(OperatorFigure& figure, const record::Frame& frame,
+                        const tracking::TrackedOperator* tracked = nullptr) {
   return nlohmann::json::parse(figure.with(frame, tracked));
 }
 
@@ -45,7 +45,7 @@ TEST(OperatorFigure, HoldsTheToolThatTelemetryTells) {
   record::Frame frame = frame_at(0.02f, 0);
   frame.tool_orientation[0] = 0.0f;  // half a turn about z: the grip stays above the tip
   frame.tool_orientation[3] = 1.0f;
-  const auto json = told(figure, frame);
+  const auto json = reported(figure, frame);
   EXPECT_NEAR(json["grip_m"][0].get<double>(), 0.02, 1e-4);
   EXPECT_NEAR(json["grip_m"][2].get<double>(), 0.08, 1e-4);
 }
@@ -53,13 +53,13 @@ TEST(OperatorFigure, HoldsTheToolThatTelemetryTells) {
 TEST(OperatorFigure, AToolThatIsNotFiniteStaysWhereItWas) {
   OperatorFigure figure(1.75);
   figure.begin(test::make_hello(3, 1, 3, 1), mesh_with_tool());
-  const auto before = told(figure, frame_at(0.02f, 0));
+  const auto before = reported(figure, frame_at(0.02f, 0));
   record::Frame none = frame_at(std::numeric_limits<float>::quiet_NaN(), 10'000'000);
   none.tool_orientation[0] = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(told(figure, none)["grip_m"], before["grip_m"]);
+  EXPECT_EQ(reported(figure, none)["grip_m"], before["grip_m"]);
   none = frame_at(0.5f, 20'000'000);
   none.tool_orientation[0] = 0.0f;  // no rotation at all
-  EXPECT_EQ(told(figure, none)["grip_m"], before["grip_m"]);
+  EXPECT_EQ(reported(figure, none)["grip_m"], before["grip_m"]);
 }
 
 TEST(OperatorFigure, StandsWhereTheSceneHasItsShoulder) {
@@ -68,7 +68,7 @@ TEST(OperatorFigure, StandsWhereTheSceneHasItsShoulder) {
   figure.put_shoulder_at(shoulder_m);
   for (int scene = 0; scene < 2; ++scene) {
     figure.begin(test::make_hello(3, 1, 3, 1), mesh_with_tool());
-    told(figure, frame_at(0.0f, 0));
+    reported(figure, frame_at(0.0f, 0));
     const Eigen::Vector3d got_m = figure.figure()[figure::FigureJoint::kRightShoulder];
     EXPECT_LT((got_m - shoulder_m).norm(), 1e-9) << "scene " << scene;
   }
@@ -77,12 +77,12 @@ TEST(OperatorFigure, StandsWhereTheSceneHasItsShoulder) {
 TEST(OperatorFigure, SaysWhetherAViewMayGoWithTheHead) {
   OperatorFigure figure(1.75);
   tracking::TrackedOperator tracked;
-  EXPECT_EQ(told(figure, frame_at(0.0f, 0))["head_tracked"], false);
-  EXPECT_EQ(told(figure, frame_at(0.0f, 0), &tracked)["head_tracked"], false);
+  EXPECT_EQ(reported(figure, frame_at(0.0f, 0))["head_tracked"], false);
+  EXPECT_EQ(reported(figure, frame_at(0.0f, 0), &tracked)["head_tracked"], false);
   tracked[tracking::BodyRole::kHead] = {.state = tracking::BodyState::kTracked};
-  EXPECT_EQ(told(figure, frame_at(0.0f, 0), &tracked)["head_tracked"], true);
+  EXPECT_EQ(reported(figure, frame_at(0.0f, 0), &tracked)["head_tracked"], true);
   tracked[tracking::BodyRole::kHead].state = tracking::BodyState::kHeld;
-  EXPECT_EQ(told(figure, frame_at(0.0f, 0), &tracked)["head_tracked"], false);
+  EXPECT_EQ(reported(figure, frame_at(0.0f, 0), &tracked)["head_tracked"], false);
 }
 
 TEST(OperatorFigure, TellsWhatTheTrackerLost) {
@@ -90,8 +90,8 @@ TEST(OperatorFigure, TellsWhatTheTrackerLost) {
   tracking::TrackedOperator tracked;
   tracked[tracking::BodyRole::kHead] = {.state = tracking::BodyState::kLost,
                                         .trouble = tracking::TrackingTrouble::kSilent};
-  EXPECT_EQ(told(figure, frame_at(0.0f, 0), &tracked)["words"], "head lost (silent)");
-  EXPECT_EQ(told(figure, frame_at(0.0f, 0))["words"], "");
+  EXPECT_EQ(reported(figure, frame_at(0.0f, 0), &tracked)["words"], "head lost (silent)");
+  EXPECT_EQ(reported(figure, frame_at(0.0f, 0))["words"], "");
 }
 
 TEST_F(Viewer, TellsTheFigureAfterEachFrameAndItsSkeletonWithTheStatus) {

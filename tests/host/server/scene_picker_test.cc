@@ -43,8 +43,8 @@ class Picker : public ::testing::Test {
     picker_.begin();
   }
   void ask(const char* wish) { picker_.ask(json::parse(wish)); }
-  json told() const { return json::parse(*view_.status()).value("picker", json()); }
-  std::string answer() const { return told().value("answer", "nothing is offered"); }
+  json reported() const { return json::parse(*view_.status()).value("picker", json()); }
+  std::string answer() const { return reported().value("answer", "nothing is offered"); }
 
   const std::string folder_;
   host::server::LiveView view_;
@@ -55,16 +55,16 @@ class Picker : public ::testing::Test {
 
 TEST_F(Picker, SendsAGoodWishAndTellsWhenItRuns) {
   show("liver", true);
-  EXPECT_EQ(told()["scene"], "liver");
+  EXPECT_EQ(reported()["scene"], "liver");
   ask(R"({"scene":"heart","set":{"disc_stack.layers":12,"disc_stack.poisson_ratio":1e-5}})");
   EXPECT_EQ(lines_, std::vector<std::string>{
                         "wish heart disc_stack.layers=12 disc_stack.poisson_ratio=1e-05"});
-  EXPECT_EQ(told()["asked"], "heart");
-  EXPECT_EQ(told()["scene"], "liver") << "it has not come yet";
+  EXPECT_EQ(reported()["asked"], "heart");
+  EXPECT_EQ(reported()["scene"], "liver") << "it has not come yet";
   show("heart", true);
-  EXPECT_EQ(told()["asked"], "");
-  EXPECT_EQ(told()["scene"], "heart");
-  EXPECT_EQ(told()["set"]["disc_stack.layers"], 12);
+  EXPECT_EQ(reported()["asked"], "");
+  EXPECT_EQ(reported()["scene"], "heart");
+  EXPECT_EQ(reported()["set"]["disc_stack.layers"], 12);
 }
 
 TEST_F(Picker, RefusesWhatIsNotOfferedByName) {
@@ -87,7 +87,7 @@ TEST_F(Picker, RefusesWhatIsNotOfferedByName) {
 
 TEST_F(Picker, OffersAndSendsNothingWhereTheDeviceIsNotSimulated) {
   show("liver", false);
-  EXPECT_TRUE(told().is_null());
+  EXPECT_TRUE(reported().is_null());
   ask(R"({"scene":"heart"})");
   EXPECT_TRUE(lines_.empty());
 }
@@ -110,8 +110,8 @@ TEST_F(Picker, TellsWhyAWishWasRefusedAndTakesTheNext) {
   ask(R"({"scene":"heart"})");
   picker_.refuse("tactd: too stiff \xff");
   EXPECT_EQ(answer(), "tactd: too stiff \xef\xbf\xbd") << "what is no UTF-8 is replaced";
-  EXPECT_EQ(told()["scene"], "liver");
-  EXPECT_EQ(told()["asked"], "");
+  EXPECT_EQ(reported()["scene"], "liver");
+  EXPECT_EQ(reported()["asked"], "");
   ask(R"({"scene":"heart"})");
   EXPECT_EQ(lines_.size(), 2u);
   EXPECT_EQ(answer(), "");

@@ -131,14 +131,14 @@ TEST_F(FileWriterTest, WhatIsAddedReplacesNothingThatAppearsMeanwhile) {
   EXPECT_EQ(sentence_of(writer->flush()), "");
   EXPECT_FALSE(fs::exists(path("a.json")));
   put("a.json", "{\"theirs\": 1}");
-  const std::string told =
+  const std::string reported =
       path("a.json") + ": exists already and is never overwritten; choose another name";
-  EXPECT_EQ(sentence_of(writer->finish()), told);
+  EXPECT_EQ(sentence_of(writer->finish()), reported);
   EXPECT_EQ(text("a.json"), "{\"theirs\": 1}");
   EXPECT_EQ(files(), 1u) << "no part stays";
   const auto there = FileWriter::add(path("a.json"));
   ASSERT_FALSE(there);
-  EXPECT_EQ(there.error().sentence, told);
+  EXPECT_EQ(there.error().sentence, reported);
   auto alone = FileWriter::add(path("b.json"));
   ASSERT_TRUE(alone);
   EXPECT_EQ(sentence_of(alone->put("{}")), "");

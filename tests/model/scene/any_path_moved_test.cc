@@ -171,14 +171,14 @@ TEST(AnyPathMoved, TheShippedLiverKeepsTheRulesOfContact) {
             " jaws, friction " + std::to_string(scene[i].contact.friction_ratio),
         counts);
   }
-  std::string told;
+  std::string reported;
   for (const auto& [rule, n] : counts.broken)
-    told += std::string(1, rule) + " " + std::to_string(n) + " ";
+    reported += std::string(1, rule) + " " + std::to_string(n) + " ";
   RecordProperty("counts", std::to_string(counts.ticks) + " ticks, " +
                                std::to_string(counts.unsolved) + " unsolved, " +
                                std::to_string(counts.unsettled) + " unsettled, " +
-                               std::to_string(counts.strokes) + " strokes, broken: " + told);
-  EXPECT_TRUE(counts.broken.empty()) << told << "\n" << counts.first;
+                               std::to_string(counts.strokes) + " strokes, broken: " + reported);
+  EXPECT_TRUE(counts.broken.empty()) << reported << "\n" << counts.first;
   EXPECT_LT(static_cast<double>(counts.unsolved), 0.01 * static_cast<double>(counts.ticks));
   // Those whose force would have jumped and was slowed down, and told so.
   EXPECT_LT(static_cast<double>(counts.unsettled), 0.03 * static_cast<double>(counts.ticks));

@@ -136,7 +136,7 @@ TEST_F(ComplianceFile, TellsThatThereIsNone) {
 }
 
 TEST_F(ComplianceFile, EveryDamageIsTold) {
-  tests::expect_all_damage_is_told(
+  tests::expect_all_damage_is_reported(
       path_, [](const std::string& path) { return !read_compliance_map(path); });
 }
 

@@ -29,7 +29,7 @@ std::string why_refused(const std::string& text, const Overrides& overrides = {}
   return scene ? "" : scene.error().sentence;
 }
 
-bool is_told(const std::string& sentence, const std::string& words) {
+bool is_reported(const std::string& sentence, const std::string& words) {
   return sentence.find(words) != std::string::npos;
 }
 
@@ -38,12 +38,12 @@ TEST(SceneDevice, RefusesALimitThatItsDrivesWouldNotKeep) {
   const std::string current = "device.can.max_current_A=10",
                     velocity = "device.can.max_velocity_turns_per_s=20";
   EXPECT_TRUE(
-      is_told(why_refused(can, {moteus, current, velocity}), "max_current_A is for an ODrive"));
+      is_reported(why_refused(can, {moteus, current, velocity}), "max_current_A is for an ODrive"));
   EXPECT_EQ(why_refused(can, {"device.kind=can-odrive", current, velocity}), "");
   EXPECT_EQ(why_refused(can, {"device.kind=falcon", current, velocity}), "") << "has no drives";
   for (const std::string key : {"rated_torque_Nm=0.3", "command_at_sync=true"}) {
     const std::string set = "device.can." + key;
-    EXPECT_TRUE(is_told(why_refused(can, {moteus, set}), "is for a CiA 402 drive"));
+    EXPECT_TRUE(is_reported(why_refused(can, {moteus, set}), "is for a CiA 402 drive"));
     EXPECT_EQ(why_refused(can, {"device.kind=can-cia402", set}), "");
   }
 }
@@ -73,21 +73,22 @@ TEST(SceneDevice, ADeltaOfOnesOwnHasNoLengthOrMassThatNobodyNamed) {
                                 "joint_friction_Nm",
                                 "joint_damping_Nms_per_rad",
                                 "counts_per_turn"})
-    EXPECT_TRUE(
-        is_told(why_refused(without_line(can, key + " =")), "device.delta." + key + " is missing"))
+    EXPECT_TRUE(is_reported(why_refused(without_line(can, key + " =")),
+                            "device.delta." + key + " is missing"))
         << key;
+  EXPECT_TRUE(is_reported(why_refused(without_line(can, "direction =")),
+                          "device.can.direction is missing"));
   EXPECT_TRUE(
-      is_told(why_refused(without_line(can, "direction =")), "device.can.direction is missing"));
-  EXPECT_TRUE(is_told(why_refused(without_line(can, "homing =")), "device.can.homing is missing"));
+      is_reported(why_refused(without_line(can, "homing =")), "device.can.homing is missing"));
 }
 
 TEST(SceneDevice, EachHomingNeedsWhatSaysWhereTheArmsAre) {
   const std::string can = scene_on_real_devices(), absolute = "device.can.homing=absolute";
   EXPECT_TRUE(
-      is_told(why_refused(without_line(can, "home_rad =")), "device.can.home_rad is missing"));
+      is_reported(why_refused(without_line(can, "home_rad =")), "device.can.home_rad is missing"));
   EXPECT_EQ(why_refused(without_line(can, "zero_turns =")), "");
-  EXPECT_TRUE(is_told(why_refused(without_line(can, "zero_turns ="), {absolute}),
-                      "device.can.zero_turns is missing"));
+  EXPECT_TRUE(is_reported(why_refused(without_line(can, "zero_turns ="), {absolute}),
+                          "device.can.zero_turns is missing"));
   EXPECT_EQ(why_refused(without_line(can, "home_rad ="), {absolute}), "");
 }
 
@@ -95,19 +96,20 @@ TEST(SceneDevice, ASceneOfTheSimulationSetToDrivesNeedsTheirSections) {
   const std::string liver = TACT_SOURCE_DIR "/model/scenes/liver.toml";
   const Result<Scene> scene = load_scene(liver, {"device.kind=can-odrive"});
   ASSERT_FALSE(scene);
-  EXPECT_TRUE(is_told(scene.error().sentence, "device.delta is missing")) << scene.error().sentence;
+  EXPECT_TRUE(is_reported(scene.error().sentence, "device.delta is missing"))
+      << scene.error().sentence;
 }
 
 TEST(SceneDevice, OneValueAnArmIsThreeNumbersAndSaysWhichIsWrong) {
   const std::string can = scene_on_real_devices();
-  EXPECT_TRUE(is_told(why_refused(can, {"device.can.home_rad=[0.0, 9.0, 0.0]"}),
-                      "device.can.home_rad 2 = 9 is out of range"));
-  EXPECT_TRUE(
-      is_told(why_refused(can, {"device.can.home_rad=[0.0, 0.0]"}), "has 2 elements, not three"));
-  EXPECT_TRUE(
-      is_told(why_refused(can, {"device.can.node=[1, 2, 2.5]"}), "three different whole numbers"));
-  EXPECT_TRUE(is_told(why_refused(can, {"device.can.direction=[1, 1, 0.5]"}),
-                      "takes 1 or -1 for each arm"));
+  EXPECT_TRUE(is_reported(why_refused(can, {"device.can.home_rad=[0.0, 9.0, 0.0]"}),
+                          "device.can.home_rad 2 = 9 is out of range"));
+  EXPECT_TRUE(is_reported(why_refused(can, {"device.can.home_rad=[0.0, 0.0]"}),
+                          "has 2 elements, not three"));
+  EXPECT_TRUE(is_reported(why_refused(can, {"device.can.node=[1, 2, 2.5]"}),
+                          "three different whole numbers"));
+  EXPECT_TRUE(is_reported(why_refused(can, {"device.can.direction=[1, 1, 0.5]"}),
+                          "takes 1 or -1 for each arm"));
 }
 
 }  // namespace tact::model::scene::scene_device_test

@@ -148,15 +148,15 @@ TEST(SpringPatchCut, TellsEveryCutInAMovingWindow) {
     pressed.patch().cut(stroke(-0.02, 0.02, y));
   const auto cut = pressed.patch().region().cut_triangles();
   ASSERT_GT(cut.size(), contact::kCutWindow);
-  std::vector<std::uint32_t> told(cut.size(), 0xFFFFFFFFu);
+  std::vector<std::uint32_t> reported(cut.size(), 0xFFFFFFFFu);
   contact::PatchShape shape;
   for (int i = 0; i < 20; ++i) {
     EXPECT_TRUE(pressed.patch().shape(shape));
     EXPECT_EQ(shape.cut_total, cut.size());
     for (std::uint32_t c = 0; c < shape.cut_count; ++c)
-      told[shape.cut_first + c] = shape.cut_triangle[c];
+      reported[shape.cut_first + c] = shape.cut_triangle[c];
   }
-  EXPECT_TRUE(std::equal(told.begin(), told.end(), cut.begin()));
+  EXPECT_TRUE(std::equal(reported.begin(), reported.end(), cut.begin()));
 }
 
 TEST(SpringPatchCut, AFullListCutsNoMore) {

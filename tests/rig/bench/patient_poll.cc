@@ -56,7 +56,7 @@ bool is_cpu_thread() {
   return answer;
 }
 
-void tell(std::uint32_t state) {
+void report(std::uint32_t state) {
   cpu.store(state);
   futex(FUTEX_WAKE, INT_MAX, nullptr);
 }
@@ -68,7 +68,7 @@ extern "C" int pthread_cond_wait(pthread_cond_t* condition, pthread_mutex_t* mut
   static const auto real =
       reinterpret_cast<Function>(dlvsym(RTLD_NEXT, "pthread_cond_wait", "GLIBC_2.3.2"));
   if (!is_cpu_thread()) return real(condition, mutex);
-  tell(kIdle);
+  report(kIdle);
   const int result = real(condition, mutex);
   cpu.store(kComputes);
   return result;
@@ -88,7 +88,7 @@ extern "C" ssize_t write(int file, const void* data, std::size_t size) {
   static std::int64_t before_ns = -1;
   static int first = -1;  // eventfd of that time
   const std::int64_t at_ns = now_ns(kVirtualClock);
-  if (at_ns == before_ns && file == first) tell(kStuck);
+  if (at_ns == before_ns && file == first) report(kStuck);
   if (at_ns != before_ns) first = file;
   before_ns = at_ns;
   return written;

@@ -62,12 +62,12 @@ struct OdriveBench {
       : faults(ordered(fault)),
         cable(faults, 32),
         drive(0, 1, {.generation = generation}, cable.bus, motor, faults) {}
-  void tell(std::uint8_t command, std::vector<std::uint8_t> data) {
+  void report(std::uint8_t command, std::vector<std::uint8_t> data) {
     drive.receive(frame_of(1u << 5u | command, std::move(data)), now);
   }
   void enable() {
-    tell(0x0B, {1, 0, 0, 0, 1, 0, 0, 0});
-    tell(0x07, {8, 0, 0, 0, 0, 0, 0, 0});
+    report(0x0B, {1, 0, 0, 0, 1, 0, 0, 0});
+    report(0x07, {8, 0, 0, 0, 0, 0, 0, 0});
   }
   void wait(int ms) {
     for (int i = 0; i < ms; ++i) {
@@ -87,16 +87,16 @@ TEST(RigDrives, AnOdriveThatHearsNothingStopsByItsOwnWatchdog) {
   for (const auto generation : {OdriveGeneration::k05, OdriveGeneration::k06}) {
     OdriveBench bench(generation);
     bench.enable();
-    bench.tell(0x0E, float_bytes(0.5F));
+    bench.report(0x0E, float_bytes(0.5F));
     bench.wait(10);
     EXPECT_DOUBLE_EQ(bench.drive.torque_Nm(), 0.5);
     bench.wait(1);
     EXPECT_EQ(bench.drive.torque_Nm(), 0.0);
     EXPECT_TRUE(bench.drive.tripped());
-    bench.tell(0x0E, float_bytes(0.5F));
+    bench.report(0x0E, float_bytes(0.5F));
     bench.enable();
     EXPECT_FALSE(bench.drive.is_enabled());  // latched
-    bench.tell(0x18, {0});
+    bench.report(0x18, {0});
     bench.enable();
     EXPECT_TRUE(bench.drive.is_enabled());
     EXPECT_DOUBLE_EQ(bench.drive.torque_Nm(), 0.5);  // as it was last told
@@ -109,7 +109,7 @@ TEST(RigDrives, OnlyAnIdleOdriveOf05IsWatched) {
     bench.wait(30);
     bench.enable();
     EXPECT_EQ(bench.drive.is_enabled(), !is_05);
-    bench.tell(0x18, {0});
+    bench.report(0x18, {0});
     bench.enable();
     EXPECT_TRUE(bench.drive.is_enabled());
     EXPECT_FALSE(bench.drive.tripped()) << "no torque was taken";
@@ -122,7 +122,7 @@ TEST(RigDrives, OnlyAnOdriveOf05IsFedByAnyFrame) {
     bench.enable();
     for (int i = 0; i < 4; ++i) {
       bench.wait(5);
-      bench.tell(0x17, {});
+      bench.report(0x17, {});
     }
     EXPECT_EQ(bench.drive.is_enabled(), is_05);
   }
@@ -146,20 +146,20 @@ TEST(RigDrives, ACia402DriveStopsWhenTheHostsHeartbeatIsLost) {
   EXPECT_EQ(frames[0].can_id, 0x705u);  // boot-up
   const auto vectors = SelfCheck(TACT_SOURCE_DIR "/tests/data/vectors").load("can_cia402.json");
   for (const auto& item : vectors["config_sequence_node5"])
-    tell(0x605, bytes_of_hex(item["frame"]));
-  tell(0x000, {1, 5});
+    report(0x605, bytes_of_hex(item["frame"]));
+  report(0x000, {1, 5});
   for (const std::uint8_t word : std::initializer_list<std::uint8_t>{0x06, 0x07, 0x0F}) {
-    tell(0x77F, {5});
+    report(0x77F, {5});
     for (int time = 0; time < 2; ++time) {  // type 1: they act at the next SYNC
-      EXPECT_TRUE(tell(0x205, {word, 0, 100, 0}));
-      EXPECT_FALSE(tell(0x080, {}));
+      EXPECT_TRUE(report(0x205, {word, 0, 100, 0}));
+      EXPECT_FALSE(report(0x080, {}));
       wait(7);
     }
   }
   ASSERT_TRUE(drive.is_enabled());
   EXPECT_NEAR(drive.torque_Nm(), 0.032, 1e-12);  // 100 of 1000 of 0.32 N m
   cable.heard();
-  tell(0x080, {});
+  report(0x080, {});
   frames = cable.heard();
   ASSERT_EQ(frames.size(), 1u);
   EXPECT_EQ(frames[0].can_id, 0x185u);
@@ -222,20 +222,20 @@ TEST(RigDrives, AMoteusHoldsPositionUnlessBothGainsAreScaledAwayAndEndsWithItsWa
   const auto tell = [&](std::vector<std::uint8_t> data) {
     return drive.receive(frame_of(0x8001 | CAN_EFF_FLAG, std::move(data)), now);
   };
-  EXPECT_TRUE(tell({0x01, 0x00, 0x0A}));
+  EXPECT_TRUE(report({0x01, 0x00, 0x0A}));
   wait(2);
   ASSERT_TRUE(drive.is_enabled());
   EXPECT_DOUBLE_EQ(drive.torque_Nm(), -1.0);  // 4 N m/turn towards position 0
   // Both scales as int8 0, then 0.5 N m as int16, then 10 ms as int8.
-  EXPECT_TRUE(tell({0x01, 0x00, 0x0A, 0x02, 0x23, 0, 0, 0x05, 0x22, 50, 0, 0x01, 0x27, 1}));
+  EXPECT_TRUE(report({0x01, 0x00, 0x0A, 0x02, 0x23, 0, 0, 0x05, 0x22, 50, 0, 0x01, 0x27, 1}));
   EXPECT_DOUBLE_EQ(drive.torque_Nm(), 0.5);
   wait(11);
   EXPECT_FALSE(drive.is_enabled());
   EXPECT_TRUE(drive.tripped());
-  tell({0x01, 0x00, 0x0A});
+  report({0x01, 0x00, 0x0A});
   wait(5);
   EXPECT_EQ(drive.mode(), 11) << "a stop alone leads out";
-  EXPECT_FALSE(tell({0x01, 0x00, 0x00}));
+  EXPECT_FALSE(report({0x01, 0x00, 0x00}));
   EXPECT_EQ(drive.mode(), 0);
 }
 

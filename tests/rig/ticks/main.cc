@@ -87,10 +87,10 @@ class FaultStory {
              {"gripped_ticks", gripped_},
              {"most_pull_N", most_pull_N_}};
     out["pauses"] = pauses_;
-    tell(out, "first_tick_after", first_after_);
-    tell(out, "missed", missed_);
-    tell(out, "detected", detected_);
-    tell(out, "zero", zero_);
+    report(out, "first_tick_after", first_after_);
+    report(out, "missed", missed_);
+    report(out, "detected", detected_);
+    report(out, "zero", zero_);
     if (last_) out["end_state"] = firmware::loop::name_of(last_->output.state);
     if (last_) out["end_fault"] = model::describe(last_->output.fault).name;
     return out;
@@ -105,11 +105,11 @@ class FaultStory {
 
   // The late tick tells the next one what was skipped: the force before it, its own, later ones.
   void add_pause(const LoggedTick& tick) {
-    if (tick.input.skipped_periods > 0 && last_ && pauses_.size() < kPausesTold)
+    if (tick.input.skipped_periods > 0 && last_ && pauses_.size() < kPausesReported)
       pauses_.push_back({{"skipped", tick.input.skipped_periods},
                          {"before_N", before_last_N_},
                          {"after_N", {force_json(*last_)}}});
-    if (!pauses_.empty() && pauses_.back()["after_N"].size() < kTicksTold)
+    if (!pauses_.empty() && pauses_.back()["after_N"].size() < kTicksReported)
       pauses_.back()["after_N"].push_back(force_json(tick));
     if (last_) before_last_N_ = force_json(*last_);
   }
@@ -118,7 +118,7 @@ class FaultStory {
     return {force_N.x, force_N.y, force_N.z};
   }
 
-  void tell(json& out, const char* what, const std::optional<LoggedTick>& tick) const {
+  void report(json& out, const char* what, const std::optional<LoggedTick>& tick) const {
     if (!tick) {
       out[what] = nullptr;
       return;
@@ -131,7 +131,7 @@ class FaultStory {
                  {"limit", model::describe(tick->output.limit).name}};
   }
 
-  static constexpr std::size_t kPausesTold = 8, kTicksTold = 12;
+  static constexpr std::size_t kPausesReported = 8, kTicksReported = 12;
 
   std::int64_t injected_ns_;
   json pauses_ = json::array();  // the first ones
@@ -144,7 +144,7 @@ class FaultStory {
   std::optional<LoggedTick> first_after_, missed_, detected_, zero_, first_zero_, last_push_, last_;
 };
 
-int tell_story(const std::string& path, std::int64_t injected_ns) {
+int report_story(const std::string& path, std::int64_t injected_ns) {
   auto log = firmware::telemetry::TickLogReader::open(path);
   if (!log) {
     fmt::print(stderr, "tact-rig-ticks: {}\n", log.error().sentence);
@@ -157,7 +157,7 @@ int tell_story(const std::string& path, std::int64_t injected_ns) {
 }
 
 /// A deadline of a loop that still runs: all others lie whole periods from it.
-int tell_grid(const std::string& path) {
+int report_grid(const std::string& path) {
   auto log = firmware::telemetry::TickLogReader::open(path);
   if (LoggedTick tick; log && log->next(tick)) return fmt::print("{}\n", tick.due_ns), 0;
   fmt::print(stderr, "tact-rig-ticks: {}\n",
@@ -186,6 +186,6 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "tact-rig-ticks: name a tick log; see --help\n");
     return 2;
   }
-  if (grid) return tact::rig::tell_grid(path);
-  return tact::rig::tell_story(path, injected_ns);
+  if (grid) return tact::rig::report_grid(path);
+  return tact::rig::report_story(path, injected_ns);
 }

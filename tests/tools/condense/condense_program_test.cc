@@ -18,9 +18,9 @@ void expect_refusal(const std::string& arguments, const std::string& sentence) {
 
 TEST(CondenseProgram, RefusesLengthsThatAreNone) {
   for (const char* option : {"--mesh-size-m", "--patch-radius-m", "--ring-pitch-m"})
-    for (const char* told : {"-1 is not", "0 is not", "\"nan\" is no finite number",
-                             "\"inf\" is no finite number", "\"3mm\" is no finite number"}) {
-      const std::string sentence = told;
+    for (const char* reported : {"-1 is not", "0 is not", "\"nan\" is no finite number",
+                                 "\"inf\" is no finite number", "\"3mm\" is no finite number"}) {
+      const std::string sentence = reported;
       std::string length = sentence.substr(0, sentence.find(' '));
       std::erase(length, '"');
       expect_refusal(

@@ -156,8 +156,8 @@ TEST(LimitRows, ARealDeviceSaysThatNoContactWasOpened) {
   LimitsReport report = plan("e-stop,dead-man,step");
   const auto times = [](const std::string& text) {
     std::size_t count = 0;
-    for (std::size_t at = text.find(kToldInSoftware); at != std::string::npos;
-         at = text.find(kToldInSoftware, at + 1))
+    for (std::size_t at = text.find(kReportedInSoftware); at != std::string::npos;
+         at = text.find(kReportedInSoftware, at + 1))
       ++count;
     return count;
   };
@@ -168,8 +168,8 @@ TEST(LimitRows, ARealDeviceSaysThatNoContactWasOpened) {
   EXPECT_NE(page_html(report, {}).find("Nor that a contact of the emergency stop"),
             std::string::npos);
   const nlohmann::json cases = to_json(report).at("cases");
-  EXPECT_EQ(cases.at(0).at("cause"), kToldInSoftware);
-  EXPECT_EQ(cases.at(1).at("cause"), kToldInSoftware);
+  EXPECT_EQ(cases.at(0).at("cause"), kReportedInSoftware);
+  EXPECT_EQ(cases.at(1).at("cause"), kReportedInSoftware);
   EXPECT_EQ(cases.at(2).at("cause"), "played");
 }
 

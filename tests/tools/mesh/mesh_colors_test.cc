@@ -64,11 +64,11 @@ class MeshColors : public testing::Test {
       EXPECT_EQ(made->vertex_color[v], color_at(made->mesh.vertex_m[v] - Vec3{low, low, low}));
     std::filesystem::remove(out_);
   }
-  void expect_none(const std::string& name, const std::string& text, bool told = true) const {
+  void expect_none(const std::string& name, const std::string& text, bool reported = true) const {
     SCOPED_TRACE(name);
     const Ran ran = run(name, text);
     ASSERT_EQ(ran.status, 0) << ran.err;
-    EXPECT_EQ(ran.out.find("color            none: ") != std::string::npos, told) << ran.out;
+    EXPECT_EQ(ran.out.find("color            none: ") != std::string::npos, reported) << ran.out;
     EXPECT_TRUE(model::mesh::load_obj(out_, 1.0)->vertex_color.empty());
     std::filesystem::remove(out_);
   }

@@ -30,12 +30,12 @@ class MeshFormats : public testing::Test {
     SCOPED_TRACE(name);
     const Ran ran = run("--json " + temp_.write(name, text));
     ASSERT_EQ(ran.status, 0) << ran.err;
-    const json told = json::parse(ran.out);
-    EXPECT_EQ(told["vertices"], 8);
-    EXPECT_EQ(told["triangles"], 12);
-    EXPECT_EQ(told["closed"], true);
-    EXPECT_NEAR(told["volume_m3"].get<double>() / std::pow(10.0 * unit_m, 3), 1.0, 1e-9);
-    EXPECT_EQ(told["steps"][0]["step"], "read");
+    const json reported = json::parse(ran.out);
+    EXPECT_EQ(reported["vertices"], 8);
+    EXPECT_EQ(reported["triangles"], 12);
+    EXPECT_EQ(reported["closed"], true);
+    EXPECT_NEAR(reported["volume_m3"].get<double>() / std::pow(10.0 * unit_m, 3), 1.0, 1e-9);
+    EXPECT_EQ(reported["steps"][0]["step"], "read");
   }
   void expect_refused(const std::string& name, const std::string& text, const std::string& words) {
     SCOPED_TRACE(name);

@@ -21,15 +21,15 @@ const std::string kAll = " --weld --drop-degenerate --largest --close-holes --sm
 class MeshRepair : public testing::Test {
  protected:
   Ran run(const std::string& arguments) const { return run_apart(temp_, "tact-mesh", arguments); }
-  json told(const std::string& arguments) const {
+  json reported(const std::string& arguments) const {
     const Ran ran = run("--json --unit mm " + arguments);
     EXPECT_EQ(ran.status, 0) << ran.err;
     return ran.status == 0 ? json::parse(ran.out) : json();
   }
-  static std::int64_t count(const json& told, const std::string& step) {
-    for (const json& s : told["steps"])
+  static std::int64_t count(const json& reported, const std::string& step) {
+    for (const json& s : reported["steps"])
       if (s["step"] == step) return s["count"];
-    ADD_FAILURE() << "no step " << step << " in " << told.dump();
+    ADD_FAILURE() << "no step " << step << " in " << reported.dump();
     return -1;
   }
 
@@ -113,7 +113,7 @@ TEST_F(MeshRepair, AScannedOrganBecomesSoundInOneCommand) {
   const std::string scan = temp_.write("scan.stl", as_stl(soup)), out = temp_.path() + "/organ.obj";
   EXPECT_EQ(run(temp_.write("scan.obj", as_obj(soup))).status, 2) << "as it is it is no surface";
 
-  const json report = told(scan + " --out " + out + kAll + " --decimate 6000");
+  const json report = reported(scan + " --out " + out + kAll + " --decimate 6000");
   EXPECT_EQ(count(report, "read"), static_cast<std::int64_t>(soup.triangle.size()) - 40)
       << "VTK reads no triangle with a corner twice";
   EXPECT_GE(count(report, "part"), 40);
@@ -165,7 +165,7 @@ TEST_F(MeshRepair, WeldJoinsWhatIsNearAndNotOnlyWhatIsEqual) {
     soup.triangle.push_back({n - 3, n - 2, n - 1});
   }
   const std::string path = temp_.write("near.stl", as_stl(soup));
-  const json apart = told(path), welded = told(path + " --weld");
+  const json apart = reported(path), welded = reported(path + " --weld");
   EXPECT_EQ(apart["closed"], false);
   EXPECT_EQ(welded["closed"], true);
   EXPECT_EQ(welded["vertices"], 8);
@@ -177,7 +177,7 @@ TEST_F(MeshRepair, DropDegenerateDropsFacesWithoutAreaAndDoubledOnes) {
   const std::string path = temp_.write(
       "bad.obj", kCubeVertices + "v 5 0 0\n" + kCubeFaces + "f 1 9 2\nf 1 4 3\nf 1 2 7\nf 7 2 1\n");
   EXPECT_EQ(run(path).status, 2);
-  const json report = told(path + " --drop-degenerate");
+  const json report = reported(path + " --drop-degenerate");
   EXPECT_EQ(count(report, "drop-degenerate"), 4);
   EXPECT_EQ(report["triangles"], 12);
   EXPECT_EQ(report["closed"], true);
@@ -198,7 +198,7 @@ TEST_F(MeshRepair, WhatIsLeftWithoutAreaOrVolumeIsAnErrorWithItsCure) {
   refused(line + " --drop-degenerate", "no face is left after drop-degenerate");
   const std::string flat =
       temp_.write("flat.obj", "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 9 9 0\nf 1 2 3\nf 2 4 3\n");
-  EXPECT_EQ(told(flat + " --weld")["closed"], false) << "one sheet is a skin";
+  EXPECT_EQ(reported(flat + " --weld")["closed"], false) << "one sheet is a skin";
   refused(flat + " --close-holes", "closed, of 4 faces, and without a volume");
 }
 
@@ -207,7 +207,7 @@ TEST_F(MeshRepair, FacesAreTurnedAsTheirNeighboursAndOutwards) {
   faces.replace(faces.find("f 2 3 7"), 7, "f 7 3 2");
   const std::string path = temp_.write("turned.obj", kCubeVertices + faces);
   EXPECT_EQ(run(path).status, 2);
-  const json report = told(path + " --close-holes");
+  const json report = reported(path + " --close-holes");
   EXPECT_EQ(count(report, "turn"), 1);
   EXPECT_EQ(report["closed"], true);
   EXPECT_NEAR(report["volume_m3"].get<double>(), 1e-6, 1e-12);
@@ -222,11 +222,11 @@ TEST_F(MeshRepair, SolidsThatTouchAlongAnEdgeArePartedAndStayWhereTheyAre) {
                       "f 3 11 10\nf 3 10 9\nf 7 12 13\nf 7 13 14\nf 3 9 12\nf 3 12 7\n"
                       "f 9 10 13\nf 9 13 12\nf 10 11 14\nf 10 14 13\nf 11 3 7\nf 11 7 14\n");
   EXPECT_EQ(run(path).status, 2) << "one edge with four triangles";
-  const json report = told(path + " --largest --close-holes");
+  const json report = reported(path + " --largest --close-holes");
   EXPECT_EQ(count(report, "part"), 1);
   EXPECT_EQ(count(report, "largest"), 1);
   EXPECT_EQ(report["triangles"], 12);
-  const json both = told(path + " --close-holes");
+  const json both = reported(path + " --close-holes");
   EXPECT_EQ(both["steps"][3]["text"], "1 edges with more than two faces, 0 faces dropped there");
   EXPECT_EQ(both["triangles"], 24);
   EXPECT_EQ(both["closed"], true);
@@ -235,7 +235,8 @@ TEST_F(MeshRepair, SolidsThatTouchAlongAnEdgeArePartedAndStayWhereTheyAre) {
 
 TEST_F(MeshRepair, CloseHolesClosesWhatIsOpenAndNothingElse) {
   const std::string open = temp_.write("open.obj", kCubeVertices + kCubeFaces.substr(16));
-  const json left = told(open + " --drop-degenerate"), closed = told(open + " --close-holes");
+  const json left = reported(open + " --drop-degenerate"),
+             closed = reported(open + " --close-holes");
   EXPECT_EQ(left["closed"], false);
   EXPECT_EQ(count(closed, "close-holes"), 1);
   EXPECT_EQ(closed["triangles"], 12);
@@ -244,12 +245,12 @@ TEST_F(MeshRepair, CloseHolesClosesWhatIsOpenAndNothingElse) {
 
 TEST_F(MeshRepair, SmoothAndDecimateKeepTheSizeAndAnOpening) {
   const std::string path = temp_.write("small.stl", as_stl(ScannedOrgan(40).surface()));
-  const json before = told(path), smooth = told(path + " --smooth");
+  const json before = reported(path), smooth = reported(path + " --smooth");
   EXPECT_EQ(smooth["triangles"], before["triangles"]);
   EXPECT_LT(smooth["area_m2"].get<double>(), before["area_m2"].get<double>());
   EXPECT_NEAR(smooth["low_m"][2].get<double>(), before["low_m"][2].get<double>(), 1e-4);
   for (const int faces : {300, 1000, 3000, 6000}) {
-    const json fewer = told(fmt::format("{} --decimate {}", path, faces));
+    const json fewer = reported(fmt::format("{} --decimate {}", path, faces));
     EXPECT_LE(fewer["triangles"].get<int>(), faces);
     EXPECT_GT(fewer["triangles"].get<int>(), 0.95 * faces);
     EXPECT_EQ(fewer["closed"], false) << "an opening that nobody asked to close";

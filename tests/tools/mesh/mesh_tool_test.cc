@@ -58,8 +58,8 @@ TEST_F(MeshTool, PrintsJsonInSiUnits) {
 }
 
 TEST_F(MeshTool, SaysWhichUnitItTookAndWhyAndHowToSetIt) {
-  const auto told = [this](const std::string& arguments, const std::string& line,
-                           const std::string& from, double unit_m) {
+  const auto reported = [this](const std::string& arguments, const std::string& line,
+                               const std::string& from, double unit_m) {
     SCOPED_TRACE(arguments);
     EXPECT_EQ(run(arguments).out.substr(0, line.size() + 1), line + "\n");
     const auto json = nlohmann::json::parse(run("--json " + arguments).out);
@@ -69,19 +69,19 @@ TEST_F(MeshTool, SaysWhichUnitItTookAndWhyAndHowToSetIt) {
                 1e-12)
         << "all lengths in the same unit";
   };
-  told(cube_, "unit       taken as cm: 100 mm across; --unit sets another", "size", 0.01);
+  reported(cube_, "unit       taken as cm: 100 mm across; --unit sets another", "size", 0.01);
   const auto cube = [this](const std::string& name, const std::string& ten) {
     std::string text = kCubeVertices;
     for (std::size_t at = 0; (at = text.find("10", at)) != text.npos; at += ten.size())
       text.replace(at, 2, ten);
     return temp_.write(name, text + kCubeFaces);
   };
-  told(cube("scan.obj", "210"), "unit       taken as mm: 210 mm across; --unit sets another",
-       "size", 0.001);
-  told(cube("metres.obj", "0.21"), "unit       taken as m: 210 mm across; --unit sets another",
-       "size", 1.0);
-  told(cube_ + " --unit in", "unit       in, as named", "named", 0.0254);
-  told(cube_ + " --unit-m 0.02", "unit       0.02 m, as named", "named", 0.02);
+  reported(cube("scan.obj", "210"), "unit       taken as mm: 210 mm across; --unit sets another",
+           "size", 0.001);
+  reported(cube("metres.obj", "0.21"), "unit       taken as m: 210 mm across; --unit sets another",
+           "size", 1.0);
+  reported(cube_ + " --unit in", "unit       in, as named", "named", 0.0254);
+  reported(cube_ + " --unit-m 0.02", "unit       0.02 m, as named", "named", 0.02);
 }
 
 TEST_F(MeshTool, SaysThatThereIsMoreThanOnePart) {

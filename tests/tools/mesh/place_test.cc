@@ -235,9 +235,9 @@ TEST_F(Place, TellsMachinesToo) {
   const tests::Ran ran = run(organ_ + " --json --unit cm --place " + scene_);
   ASSERT_EQ(ran.status, 0) << ran.err;
   EXPECT_EQ(json::parse(ran.out)["unit_from"], "named");
-  const json told = json::parse(ran.out)["placement"];
-  EXPECT_EQ(told["mesh_unit_m"], 0.01) << "a unit that is named is not guessed";
-  EXPECT_EQ(told["orientation_deg"], json::array({0.0, 0.0, 0.0}));
+  const json reported = json::parse(ran.out)["placement"];
+  EXPECT_EQ(reported["mesh_unit_m"], 0.01) << "a unit that is named is not guessed";
+  EXPECT_EQ(reported["orientation_deg"], json::array({0.0, 0.0, 0.0}));
   const json guessed = json::parse(run(organ_ + " --json --place " + scene_).out);
   EXPECT_EQ(guessed["unit_from"], "size");
   EXPECT_EQ(guessed["unit_m"], guessed["placement"]["mesh_unit_m"]) << "one unit, told once";

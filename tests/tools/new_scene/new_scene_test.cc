@@ -83,9 +83,9 @@ TEST_F(NewScene, AScanBecomesASceneThatIsFelt) {
   ASSERT_EQ(ran.status, 0) << ran.err << ran.out;
   EXPECT_EQ(made(), (std::vector<std::string>{"mine.compliance", "mine.obj", "mine.toml",
                                               "mine_tool.obj"}));
-  for (const char* told : {"unit             taken as mm: 100 mm across; --unit sets another\n",
-                           "organ  ", "place  ", "condense  ", "check  ", "wrote  ", "law  "})
-    EXPECT_NE(ran.out.find(told), ran.out.npos) << told << ran.out;
+  for (const char* reported : {"unit             taken as mm: 100 mm across; --unit sets another\n",
+                               "organ  ", "place  ", "condense  ", "check  ", "wrote  ", "law  "})
+    EXPECT_NE(ran.out.find(reported), ran.out.npos) << reported << ran.out;
 
   const auto scene = model::scene::load_scene(out_, {});
   ASSERT_TRUE(scene) << scene.error().sentence;

@@ -259,7 +259,7 @@ TEST_F(PlanFile, RefusesWhatIsMissingDamagedOrStale) {
 }
 
 TEST_F(PlanFile, EveryDamageIsTold) {
-  tests::expect_all_damage_is_told(write(plan_text(plan_)), [&](const std::string& path) {
+  tests::expect_all_damage_is_reported(write(plan_text(plan_)), [&](const std::string& path) {
     const auto read = model::scene::read_plan(path, scene_, kSet);
     return !read && has(read.error().sentence, "damaged, its sha256");
   });

@@ -51,9 +51,9 @@ TEST_F(Sweep, TheShippedLiverIsHeldAgainstSolvedPresses) {
   const std::string truth = TACT_SOURCE_DIR "/tests/data/reference/finite_strain_liver.json";
   const Outcome out = tests::run_program("tact-lab sweep", kLiver + " --json --reference " + truth);
   ASSERT_EQ(out.status, 0) << out.output;
-  const auto told = nlohmann::json::parse(out.output);
-  ASSERT_EQ(told.size(), 3U);
-  for (const auto& [place, press] : told.items()) {
+  const auto reported = nlohmann::json::parse(out.output);
+  ASSERT_EQ(reported.size(), 3U);
+  for (const auto& [place, press] : reported.items()) {
     EXPECT_LT(std::abs(press.at("worst_ratio").get<double>()), 0.07) << place;
     EXPECT_GT(std::abs(press.at("worst_ratio").get<double>()), 1e-4) << place;
     EXPECT_LT(press.at("worst_sphere_ratio").get<double>(), 0.10) << place;
@@ -74,17 +74,17 @@ TEST_F(Sweep, AFileOfNoPressesIsRefused) {
 TEST_F(Sweep, CoarseSceneIsPressedWithTableAndPicture) {
   const Outcome out = run(kPlain + " --vertices all --depth-m 0.002 --square --json");
   ASSERT_EQ(out.status, 0) << out.output;
-  const auto told = nlohmann::json::parse(out.output);
-  EXPECT_EQ(told.at("format"), "tact-sweep");
-  EXPECT_GT(told.at("pressed").get<int>(), 0);
-  EXPECT_GT(told.at("stiffest").at("slope_N_per_m").get<double>(), 0.0);
-  EXPECT_TRUE(told.at("flawed").empty());
+  const auto reported = nlohmann::json::parse(out.output);
+  EXPECT_EQ(reported.at("format"), "tact-sweep");
+  EXPECT_GT(reported.at("pressed").get<int>(), 0);
+  EXPECT_GT(reported.at("stiffest").at("slope_N_per_m").get<double>(), 0.0);
+  EXPECT_TRUE(reported.at("flawed").empty());
   for (const char* end : {".csv", ".json", ".svg", ".png", ".gp"})
     EXPECT_TRUE(fs::exists(folder_ + "/presses" + end)) << end;
   const std::string table = lines_of("presses.csv");
-  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 1 + told.at("pressed").get<int>() +
-                                                              told.at("missed").get<int>() +
-                                                              told.at("blocked").get<int>());
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 1 + reported.at("pressed").get<int>() +
+                                                              reported.at("missed").get<int>() +
+                                                              reported.at("blocked").get<int>());
 }
 
 // Of one press the whole way is written; a limit that no tissue keeps makes it fail.

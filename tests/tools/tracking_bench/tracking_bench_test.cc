@@ -21,9 +21,9 @@ std::map<std::string, nlohmann::json> counted(const std::string& filter) {
       temp, "tact-tracking-bench",
       kScenes + "maintenance.toml --benchmark_format=json --benchmark_filter='" + filter + "'");
   EXPECT_EQ(ran.status, 0) << ran.err;
-  const auto told = nlohmann::json::parse(ran.out);
+  const auto reported = nlohmann::json::parse(ran.out);
   std::map<std::string, nlohmann::json> out;
-  for (const auto& row : told["benchmarks"]) {
+  for (const auto& row : reported["benchmarks"]) {
     const std::string name = row["name"];
     out[name.substr(0, name.find('/'))] = row;
   }

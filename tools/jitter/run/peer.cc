@@ -65,17 +65,17 @@ std::optional<Error> add_cyclictest(const std::string& text, std::uint64_t asked
         fmt::format("cyclictest told more samples than the {} cycles it was asked for; "
                     "this reads rt-tests 2.4",
                     asked_cycles)};
-  std::uint64_t told = 0;
+  std::uint64_t reported = 0;
   const auto add = [&](std::int64_t us, std::uint64_t samples) {
     for (std::uint64_t i = 0; i < samples; ++i)
       series.record(upper_edge_ns(us), series.histogram.count(), 0);
-    told += samples;
+    reported += samples;
   };
   for (const auto& [us, samples] : thread["histogram"].items())
     if (samples.is_number_unsigned())
       add(std::strtoll(us.c_str(), nullptr, 10), samples.get<std::uint64_t>());
   // What lies beyond its histogram has no bucket: all of it counts as the largest.
-  if (told < cycles) add(thread["max"].get<std::int64_t>(), cycles - told);
+  if (reported < cycles) add(thread["max"].get<std::int64_t>(), cycles - reported);
   return std::nullopt;
 }
 

@@ -141,14 +141,14 @@ void add_to(Costs& sum, const Costs& more) {
 std::string describe(const Costs& delta) {
   std::string out;
   const auto tell = [&](const std::string& part) { out += (out.empty() ? "" : "; ") + part; };
-  if (delta.steal_ms.value_or(0) > 0) tell(fmt::format("hypervisor {} ms", *delta.steal_ms));
-  if (delta.smi.value_or(0) > 0) tell(fmt::format("{} SMI", *delta.smi));
+  if (delta.steal_ms.value_or(0) > 0) report(fmt::format("hypervisor {} ms", *delta.steal_ms));
+  if (delta.smi.value_or(0) > 0) report(fmt::format("{} SMI", *delta.smi));
   if (delta.waited_ns.value_or(0) > 0)
-    tell(fmt::format("ready without the CPU {:.0f} us",
-                     static_cast<double>(*delta.waited_ns) * 1e-3));
+    report(fmt::format("ready without the CPU {:.0f} us",
+                       static_cast<double>(*delta.waited_ns) * 1e-3));
   // Faults, forced switches, migrations. Its own switches are the loop's sleep: no trouble.
   for (const Counter& c : {kCounters[0], kCounters[1], kCounters[3], kCounters[4]})
-    if ((delta.*c.value).value_or(0) > 0) tell(fmt::format("{} {}", c.name, *(delta.*c.value)));
+    if ((delta.*c.value).value_or(0) > 0) report(fmt::format("{} {}", c.name, *(delta.*c.value)));
   std::vector<std::pair<std::uint64_t, std::string>> sources;
   for (const auto& [source, count] : delta.interrupts) sources.emplace_back(count, source);
   std::sort(sources.rbegin(), sources.rend());
@@ -156,7 +156,7 @@ std::string describe(const Costs& delta) {
   for (std::size_t i = 0; i < std::min(sources.size(), kMaxSources); ++i)
     named +=
         fmt::format("{}{} {}", i == 0 ? "interrupts " : ", ", sources[i].second, sources[i].first);
-  if (!named.empty()) tell(named);
+  if (!named.empty()) report(named);
   return out.empty() ? "nothing that the kernel counts" : out;
 }
 

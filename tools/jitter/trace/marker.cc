@@ -23,9 +23,9 @@ TraceMarker::~TraceMarker() {
 // A marker that the kernel does not take is missed by nobody but its reader.
 void TraceMarker::write(const std::string& line) {
   if (fd_ < 0) return;
-  [[maybe_unused]] ssize_t told = ::write(fd_, line.data(), line.size());
+  [[maybe_unused]] ssize_t reported = ::write(fd_, line.data(), line.size());
   if (stop_fd_ < 0) return;
-  told = ::write(stop_fd_, "0", 1);
+  reported = ::write(stop_fd_, "0", 1);
   close(stop_fd_);
   stop_fd_ = -1;
 }

@@ -110,7 +110,7 @@ inline bool opens_line(const Case& c) {
   return c.trouble == Trouble::kEmergencyStop || c.trouble == Trouble::kDeadMan;
 }
 /// Said of such a case on a real device with the line.
-inline constexpr const char* kToldInSoftware = "told in software: the contact was not opened";
+inline constexpr const char* kReportedInSoftware = "told in software: the contact was not opened";
 /// The limits of this case: those of the scene, or one tighter.
 model::Limits limits_of(const Case& c, const model::Limits& limits);
 

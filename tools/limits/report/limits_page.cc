@@ -78,7 +78,7 @@ json limit_data(const LimitRow& row) {
           {"tighter", tighter}};
 }
 
-bool is_told(const LimitsReport& report, const CaseVerdict& v) {
+bool is_reported(const LimitsReport& report, const CaseVerdict& v) {
   return !report.simulated && opens_line(v.subject);
 }
 
@@ -106,7 +106,7 @@ json case_data(const CaseVerdict& v, const LimitsReport& report) {
   return {{"name", v.subject.name},
           {"what", v.subject.what},
           {"tightened", tightened(v.limits, report.limits)},
-          {"told", is_told(report, v) ? kToldInSoftware : ""},
+          {"told", is_reported(report, v) ? kReportedInSoftware : ""},
           {"has_broken", !broken.empty()},
           {"broken", broken},
           {"commanded", plain(v.worst.commanded_N) + " N"},
@@ -162,7 +162,7 @@ json words_data(const LimitsReport& report) {
           {"has_cases", !report.cases.empty()},
           {"simulated", report.simulated},
           {"any_told", std::ranges::any_of(report.cases, [&](const auto& r) {
-             return is_told(report, r.verdict);
+             return is_reported(report, r.verdict);
            })}};
 }
 

@@ -23,7 +23,7 @@ json case_json(const CaseVerdict& v, bool simulated) {
   return {{"case", v.subject.name},
           {"what", v.subject.what},
           // On a real device no program opens a line: this was no test of the wire.
-          {"cause", simulated || !opens_line(v.subject) ? "played" : kToldInSoftware},
+          {"cause", simulated || !opens_line(v.subject) ? "played" : kReportedInSoftware},
           {"passed", v.passed()},
           {"force_limit_N", v.limits.force_N},
           {"largest_commanded_N", v.worst.commanded_N},

@@ -92,18 +92,18 @@ report::Row run(std::size_t job, Grid grid) {
 }
 
 std::vector<Finding> check(const report::Table& t) {
-  std::size_t in_bounds = 0, told = 0, beyond = 0, finite = 0;
+  std::size_t in_bounds = 0, reported = 0, beyond = 0, finite = 0;
   for (const report::Row& row : t.rows()) {
     in_bounds += t.word(row, "gate") == "in bounds";
     finite += std::isfinite(t.number(row, "force_N"));
     // Only beyond the range a law has to say that it is.
     if (t.number(row, "depth_ratio") <= 1.0) continue;
     ++beyond;
-    told += t.word(row, "status") == "saturated";
+    reported += t.word(row, "status") == "saturated";
   }
   return {{finite == t.rows().size(), "no law gives a force that is not a number"},
-          {told == beyond,
-           fmt::format("beyond its range every law says so: {} of {} cells", told, beyond)},
+          {reported == beyond,
+           fmt::format("beyond its range every law says so: {} of {} cells", reported, beyond)},
           {in_bounds == t.rows().size(),
            fmt::format("through the gate |F| and |dF| stay in bounds in {} of {} cells", in_bounds,
                        t.rows().size())}};
