@@ -125,7 +125,7 @@ class Device {
 
   // Any thread, at any time.
 
-  /// What lies behind the latched fault, for a person: which part, why, the cure. Empty when there
+  /// What lies behind the latched fault, for a person: which part, why, the remedy. Empty when there
   /// is no more to say than the fault's own words.
   virtual std::string trouble() const { return {}; }
 
@@ -137,7 +137,7 @@ class Device {
   /// Zero force and power off; may block. Safe to call twice, and at any time after opening.
   virtual void stop() = 0;
 
-  /// What stop() could not switch off, with the cure; empty: all is off.
+  /// What stop() could not switch off, with the remedy; empty: all is off.
   virtual std::string why_not_off() const { return {}; }
 };
 

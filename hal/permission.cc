@@ -43,7 +43,7 @@ Refusal why_refused(const std::string& node, const char* rule, std::optional<gid
                      (facts.st_mode & kOfGroup) == kOfGroup;
   if (!given)
     return {fmt::format("{} may not be opened; its udev rule is missing: {}", node, rule),
-            kRuleCure};
+            kRuleRemedy};
   return {fmt::format("{} may not be opened: it is of the group haptics, and whoever runs this is "
                       "not in it",
                       node),

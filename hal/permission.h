@@ -32,10 +32,10 @@ int open_when_permitted(Open open) {
   return error;
 }
 
-/// Why a node may not be opened, and the cure.
+/// Why a node may not be opened, and the remedy.
 struct Refusal {
-  std::string lacking, cure;
-  model::Error error() const { return {lacking + "; " + cure}; }
+  std::string lacking, remedy;
+  model::Error error() const { return {lacking + "; " + remedy}; }
 };
 
 /// The group of the udev rules; none where it does not exist.

@@ -50,7 +50,7 @@ class SafetyLines {
   virtual void drop() RT_SAFE {}
   /// System calls that the others make once per tick, by number.
   virtual std::span<const int> loop_calls() const { return {}; }
-  /// What lies behind the fault of the lines, for a person: which channel, why, the cure. Empty
+  /// What lies behind the fault of the lines, for a person: which channel, why, the remedy. Empty
   /// when there is no more to say than the fault's own words. Any thread, at any time.
   virtual std::string trouble() const { return {}; }
   /// What is wrong with a line without being a fault, and takes the force all the same; empty when

@@ -18,8 +18,8 @@ inline constexpr const char* kPhantomRule =
 inline constexpr const char* kGpioRule =
     R"(SUBSYSTEM=="gpio", KERNEL=="gpiochip[0-9]*", GROUP="haptics", MODE="0660")";
 
-/// The cure of every missing permission, to follow the rule that is missing.
-inline constexpr const char* kRuleCure =
+/// The remedy of every missing permission, to follow the rule that is missing.
+inline constexpr const char* kRuleRemedy =
     "sudo apt install ./tact_*.deb installs it; then sudo adduser $USER haptics, and log in again";
 
 }  // namespace tact::hal

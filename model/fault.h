@@ -2,7 +2,7 @@
 // fault.h - everything that can limit or stop the force, by number.
 //
 // 0 is none; 1 to 99 is a limit that is acting while the loop goes on; 100 and above latch: force
-// goes to zero until an operator resets (supervisor.h) or, where its cure says so, starts tactd
+// goes to zero until an operator resets (supervisor.h) or, where its remedy says so, starts tactd
 // anew. Numbers are never reused.
 #pragma once
 
@@ -65,9 +65,9 @@ constexpr bool latches(Fault fault) RT_SAFE { return static_cast<std::uint16_t>(
 
 struct FaultEntry {
   Fault fault;
-  const char* name;   // short, for a status line
-  const char* cause;  // what happened
-  const char* cure;   // what to do
+  const char* name;    // short, for a status line
+  const char* cause;   // what happened
+  const char* remedy;  // what to do
 };
 
 /// All entries, ascending by number. None of the texts is blank.

@@ -12,7 +12,7 @@
 
 namespace tact::model {
 
-/// One line: what, where (file:line where there is one), and the cure.
+/// One line: what, where (file:line where there is one), and the remedy.
 struct Error {
   std::string sentence;
 };

@@ -11,7 +11,7 @@
 namespace tact::firmware::admission {
 
 /// `limits`: as they hold on the device (gate/limits_for.h), whose motors may bear less for long
-/// than the scene says. Error: its thermal time is too short for that, and the cure.
+/// than the scene says. Error: its thermal time is too short for that, and the remedy.
 std::optional<model::Error> check_heat(const model::scene::Scene& scene,
                                        const model::Limits& limits);
 

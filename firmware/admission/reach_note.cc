@@ -58,12 +58,12 @@ std::string reach_note(const model::scene::Scene& scene) {
   const Vec3 extent_m = sum.high_m - sum.low_m;
   const double size_m = std::max({extent_m.x, extent_m.y, extent_m.z});
   const double ratio = size_m / (2.0 * scene.limits.workspace_radius_m);
-  const char* const cure = "tact-mesh MESH --place SCENE finds what to write";
+  const char* const remedy = "tact-mesh MESH --place SCENE finds what to write";
   if (ratio < kMinOrgan_ratio || ratio > kMaxOrgan_ratio)
     return fmt::format(
         "{}: the organ is {:.3g} m long in a workspace {:.3g} m wide: is organ.mesh_unit_m the "
         "unit of its file? {}",
-        scene.path, size_m, 2.0 * scene.limits.workspace_radius_m, cure);
+        scene.path, size_m, 2.0 * scene.limits.workspace_radius_m, remedy);
   if (scene.hand.path.size() < 2) return {};
   const double gap_m = least_gap_m(scene);
   if (gap_m <= 1e-4) return {};  // a stroke of depth 0 just touches
@@ -71,7 +71,7 @@ std::string reach_note(const model::scene::Scene& scene) {
       "{}: no stroke of the hand reaches the organ, {:.3g} mm are missing: change "
       "organ.position_m, "
       "organ.orientation_deg or hand.site_m; {}",
-      scene.path, 1e3 * gap_m, cure);
+      scene.path, 1e3 * gap_m, remedy);
 }
 
 }  // namespace tact::firmware::admission

@@ -97,15 +97,15 @@ Error too_stiff(const model::scene::Scene& scene, const model::scene::TissueLaw&
   const std::string what = is_law   ? fmt::format("law {}", model::scene::name_of(scene.law))
                            : is_set ? std::string("contact.sliding_stiffness_N_per_m")
                                     : std::string("the tissue, held and pulled along its surface,");
-  const std::string cure = is_law   ? "soften " + stiff_key(scene, law)
-                           : is_set ? std::string("lower it")
-                                    : std::string("set contact.sliding_stiffness_N_per_m");
+  const std::string remedy = is_law   ? "soften " + stiff_key(scene, law)
+                             : is_set ? std::string("lower it")
+                                      : std::string("set contact.sliding_stiffness_N_per_m");
   const double one_N_per_m = is_law ? demand.law_N_per_m : demand.sliding_N_per_m;
   return Error{fmt::format(
       "{}: {} is too stiff: {:.4g} N/m on {} is {:.4g} N/m, this device is stable to {:.4g} N/m at "
       "{:g} Hz; {} to {:.4g} N/m or less, raise rate_Hz, or take a device with more damping{}",
       scene.path, what, one_N_per_m, spheres_in_words(scene.tool.spheres.size()),
-      demand.spheres * one_N_per_m, demand.limit_N_per_m, scene.rate_Hz, cure,
+      demand.spheres * one_N_per_m, demand.limit_N_per_m, scene.rate_Hz, remedy,
       rounded_down(demand.limit_N_per_m / demand.spheres), damping_hint(device))};
 }
 

@@ -48,7 +48,7 @@ bool OperatorView::show(const telemetry::Frame& newest) {
     const model::FaultEntry& fault = model::describe(number);
     const std::string trouble = trouble_behind(number, device_, lines_);
     report(fmt::format("fault {}, {}: {}{}{}; {}", newest.fault, fault.name, fault.cause,
-                       trouble.empty() ? "" : ": ", trouble, fault.cure));
+                       trouble.empty() ? "" : ": ", trouble, fault.remedy));
   } else if (newest.fault == 0 && waits(newest.state)) {
     const std::string now = device_.trouble();
     if (!now.empty() && now != waits_for_) report(now);
@@ -85,7 +85,7 @@ void OperatorView::report_inside(const telemetry::Frame& newest) {
   const bool was_inside = std::exchange(inside_, std::ranges::any_of(newest.site, is_inside));
   if (!inside_ || was_inside) return;
   const model::FaultEntry& limit = model::describe(Fault::kToolInside);
-  report(fmt::format("{}: {}; {}", limit.name, limit.cause, limit.cure));
+  report(fmt::format("{}: {}; {}", limit.name, limit.cause, limit.remedy));
 }
 
 std::string OperatorView::why_not_arm() const {

@@ -38,10 +38,10 @@ std::vector<PcRow> check_pc(const PcQuestion& question) {
   check_permissions(settled, rows);
   check_core(settled, rows);
   check_others(settled, rows);
-  // Rows are written with their cure, whatever they
+  // Rows are written with their remedy, whatever they
   // find; here it is dropped where nothing is wrong.
   for (PcRow& row : rows)
-    if (row.verdict == Verdict::kGreen) row.cure.clear();
+    if (row.verdict == Verdict::kGreen) row.remedy.clear();
   return rows;
 }
 
@@ -53,8 +53,9 @@ std::string name_red_rows(const std::vector<PcRow>& rows) {
     names += fmt::format("{}{}", red++ == 0 ? "" : ", ", row.name);
   }
   if (red == 0) return {};
-  return fmt::format("{} of {} checks of this PC are red ({}); tact-doctor tells why and the cure",
-                     red, rows.size(), names);
+  return fmt::format(
+      "{} of {} checks of this PC are red ({}); tact-doctor tells why and the remedy", red,
+      rows.size(), names);
 }
 
 nlohmann::json to_json(const std::vector<PcRow>& rows) {
@@ -64,7 +65,7 @@ nlohmann::json to_json(const std::vector<PcRow>& rows) {
                     {"verdict", name_of(row.verdict)},
                     {"found", row.found},
                     {"why", row.why},
-                    {"cure", row.cure}});
+                    {"remedy", row.remedy}});
   return list;
 }
 

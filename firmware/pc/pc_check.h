@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // pc_check.h - is this PC fit for hard real time? One row a question: what was found, why it
-// matters, and the cure as a command.
+// matters, and the remedy as a command.
 //
 // Read from files alone (pc_files.h); nothing is changed, no device is opened. `tact-doctor` shows
 // all rows, `tactd` names the red ones when it starts. Evidence: RT-1 to RT-13.
@@ -22,9 +22,9 @@ const char* name_of(Verdict verdict);
 struct PcRow {
   std::string name;
   Verdict verdict = Verdict::kUnknown;
-  std::string found;  // what the files say
-  std::string why;    // what it does to the loop
-  std::string cure;   // empty for a green row
+  std::string found;   // what the files say
+  std::string why;     // what it does to the loop
+  std::string remedy;  // empty for a green row
 };
 
 struct PcQuestion {
@@ -39,7 +39,7 @@ int core_in_question(const PcQuestion& question);
 
 /// The red ones in a line, for a program that starts; empty when none is red.
 std::string name_red_rows(const std::vector<PcRow>& rows);
-/// [{"name","verdict","found","why","cure"}]
+/// [{"name","verdict","found","why","remedy"}]
 nlohmann::json to_json(const std::vector<PcRow>& rows);
 
 // The groups that check_pc() puts together, each in a file of its own.

@@ -28,14 +28,14 @@ std::string other_cpus(const PcQuestion& q) {
   return make_cpu_list(cpus);
 }
 
-/// The cure of what only a boot can change: the parameters are those of tools/deploy/rt.
+/// The remedy of what only a boot can change: the parameters are those of tools/deploy/rt.
 std::string boot_parameters(const PcQuestion& q) {
   const std::string others = other_cpus(q);
   if (others.empty()) return "a PC with two cores or more: one for the loop, one for all else";
   return fmt::format(
       "{1} and boot, or: add isolcpus=domain,managed_irq,{0} nohz_full={0} rcu_nocbs={0} "
       "irqaffinity={2} to GRUB_CMDLINE_LINUX in /etc/default/grub, sudo update-grub, boot",
-      q.core, kRtPackageCure, others);
+      q.core, kRtPackageRemedy, others);
 }
 
 /// RT-6: a core of its own.
@@ -49,7 +49,7 @@ PcRow isolation_row(const PcQuestion& q) {
           .found = !known ? "not told"
                           : fmt::format("core {} is {}isolated", q.core, isolated ? "" : "not "),
           .why = "other programs run on the core of the loop; each costs it a switch and its cache",
-          .cure = boot_parameters(q)};
+          .remedy = boot_parameters(q)};
 }
 
 /// RT-6: and without the kernel's tick.
@@ -66,7 +66,7 @@ PcRow tick_row(const PcQuestion& q) {
           .why =
               "the kernel's own tick takes a few microseconds from the loop, up to 1000 times a "
               "second",
-          .cure = boot_parameters(q)};
+          .remedy = boot_parameters(q)};
 }
 
 /// "36 virtio1-req.0": the number and what its device is called, a folder beside its settings.
@@ -86,7 +86,7 @@ PcRow interrupt_row(const PcQuestion& q) {
             .why =
                 "a device's interrupt goes before the loop, and its handler takes as long as its "
                 "driver likes",
-            .cure = {}};
+            .remedy = {}};
   std::string numbers, named;
   int there = 0, here = 0;
   for (const std::string& number : q.files.names("/proc/irq")) {
@@ -98,7 +98,7 @@ PcRow interrupt_row(const PcQuestion& q) {
     if (name.empty()) continue;  // nobody waits for it
     ++there;
     if (!contains(parse_cpu_list(*list), q.core)) continue;
-    // A row stays readable: the cure has all numbers, the finding four names.
+    // A row stays readable: the remedy has all numbers, the finding four names.
     if (here++ < 4) named += fmt::format("{}{} {}", named.empty() ? "" : ", ", number, name);
     numbers += fmt::format("{}{}", numbers.empty() ? "" : " ", number);
   }
@@ -108,11 +108,12 @@ PcRow interrupt_row(const PcQuestion& q) {
                         : fmt::format("{} of {} come to core {}: {}{}", here, there, q.core, named,
                                       here > 4 ? ", ..." : "");
   const std::string others = other_cpus(q);
-  row.cure = others.empty() ? boot_parameters(q)
-                            : fmt::format(
-                                  "{}, or until the next boot: for i in {}; do echo {} | sudo tee "
-                                  "/proc/irq/$i/smp_affinity_list; done",
-                                  kRtPackageCure, numbers, others);
+  row.remedy = others.empty()
+                   ? boot_parameters(q)
+                   : fmt::format(
+                         "{}, or until the next boot: for i in {}; do echo {} | sudo tee "
+                         "/proc/irq/$i/smp_affinity_list; done",
+                         kRtPackageRemedy, numbers, others);
   return row;
 }
 
@@ -127,10 +128,11 @@ PcRow governor_row(const PcQuestion& q) {
                                : Verdict::kRed,
           .found = governor.value_or("the kernel does not set the CPU's speed"),
           .why = "a CPU that slows down between ticks begins each at its lowest speed",
-          .cure = governor ? fmt::format("{}, or until the next boot: echo performance | sudo tee "
-                                         "{}/cpu*/cpufreq/scaling_governor",
-                                         kRtPackageCure, kCpus)
-                           : "set the highest speed in the firmware (BIOS) or on the host"};
+          .remedy = governor
+                        ? fmt::format("{}, or until the next boot: echo performance | sudo tee "
+                                      "{}/cpu*/cpufreq/scaling_governor",
+                                      kRtPackageRemedy, kCpus)
+                        : "set the highest speed in the firmware (BIOS) or on the host"};
 }
 
 /// RT-5, RT-7: tactd may forbid deep sleep for its own time, or there is none.
@@ -153,7 +155,7 @@ PcRow sleep_row(const PcQuestion& q) {
                                            "state wakes in {} us",
                                            slowest_us),
           .why = kPowerReason.why,
-          .cure = kPowerReason.cure};
+          .remedy = kPowerReason.remedy};
 }
 
 /// RT-7: nobody on the other half of the core.
@@ -169,11 +171,11 @@ PcRow sibling_row(const PcQuestion& q) {
                                     : Verdict::kRed,
       .found = !list ? "not told" : "the core is not shared",
       .why = "two hardware threads share one core's units: what runs beside the loop slows it",
-      .cure = "switch SMT off in the firmware (BIOS)"};
+      .remedy = "switch SMT off in the firmware (BIOS)"};
   if (siblings.empty()) return row;
   row.found = fmt::format("CPU {} shares the core of CPU {}", make_cpu_list(siblings), q.core);
   // Until the next boot: a switch that can be taken back.
-  row.cure = fmt::format("echo 0 | sudo tee {}/cpu{}/online", kCpus, siblings.front());
+  row.remedy = fmt::format("echo 0 | sudo tee {}/cpu{}/online", kCpus, siblings.front());
   return row;
 }
 

@@ -52,7 +52,7 @@ PcRow kernel_row(const PcFiles& files) {
                                : known  ? ", not PREEMPT_RT"
                                         : ""),
           .why = kKernelReason.why,
-          .cure = kKernelReason.cure};
+          .remedy = kKernelReason.remedy};
 }
 
 /// RT-9. The flag "hypervisor" is set by the machine that the kernel runs in.
@@ -68,7 +68,7 @@ PcRow machine_row(const PcFiles& files) {
                    : guest ? "a virtual machine"
                            : "no hypervisor",
           .why = "another system can take the CPU at any time, unseen",
-          .cure = "run tactd on the PC itself; here numbers only compare with each other"};
+          .remedy = "run tactd on the PC itself; here numbers only compare with each other"};
 }
 
 /// RT-10. A clock that is on neither list is not judged.
@@ -81,7 +81,7 @@ PcRow clock_row(const PcFiles& files) {
             .why =
                 "the loop reads the clock twice a tick; some clocks need a system call of "
                 "a microsecond for each",
-            .cure =
+            .remedy =
                 "add tsc=reliable clocksource=tsc to GRUB_CMDLINE_LINUX, sudo update-grub, "
                 "boot; dmesg says why the kernel left tsc"};
   if (!source) return row;
@@ -102,7 +102,7 @@ PcRow throttling_row(const PcFiles& files) {
             .verdict = Verdict::kUnknown,
             .found = "not told",
             .why = "the kernel stops real-time threads that use up their share of a period",
-            .cure = "sudo sysctl kernel.sched_rt_runtime_us=950000"};
+            .remedy = "sudo sysctl kernel.sched_rt_runtime_us=950000"};
   if (!runtime || !period) return row;
   const double runtime_us = std::strtod(runtime->c_str(), nullptr);
   const double period_us = std::strtod(period->c_str(), nullptr);
@@ -127,7 +127,7 @@ PcRow priority_row(const PcFiles& files) {
                    : limit.empty() ? "not told"
                                    : fmt::format("up to {} of {}", limit, kHighestPriority),
           .why = kPriorityReason.why,
-          .cure = kPriorityReason.cure};
+          .remedy = kPriorityReason.remedy};
 }
 
 /// RT-2. A limit in bytes is red, whatever it is: MCL_FUTURE counts all that is to come.
@@ -143,7 +143,7 @@ PcRow memory_row(const PcFiles& files) {
                    : limit == "unlimited" ? limit
                                           : fmt::format("at most {} bytes", limit),
           .why = kMemoryReason.why,
-          .cure = kMemoryReason.cure};
+          .remedy = kMemoryReason.remedy};
 }
 
 /// RT-12: an inherited limit kills the thread without a word.
@@ -157,7 +157,7 @@ PcRow time_limit_row(const PcFiles& files) {
                    : limit == "unlimited" ? "none"
                                           : fmt::format("{} us", limit),
           .why = "a real-time thread that runs so long without a sleep is killed without a word",
-          .cure = "ulimit -R unlimited, and take rttime out of /etc/security/limits.d/"};
+          .remedy = "ulimit -R unlimited, and take rttime out of /etc/security/limits.d/"};
 }
 
 }  // namespace

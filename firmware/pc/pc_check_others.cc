@@ -62,7 +62,7 @@ PcRow swap_row(const PcFiles& files) {
                    : lines > 1 ? fmt::format("{} in use", lines - 1)
                                : "none",
           .why = "tactd locks its own memory; programs that swap keep disk, bus and kernel busy",
-          .cure = "sudo swapoff -a, and take swap out of /etc/fstab"};
+          .remedy = "sudo swapoff -a, and take swap out of /etc/fstab"};
 }
 
 /// RT-13: irqbalance moves interrupts back.
@@ -78,7 +78,7 @@ PcRow balancer_row(const PcFiles& files, const std::vector<Thread>& threads) {
                    : runs ? "it runs"
                           : "it does not run",
           .why = "it moves interrupts to the core of the loop again",
-          .cure = "sudo systemctl disable --now irqbalance"};
+          .remedy = "sudo systemctl disable --now irqbalance"};
 }
 
 /// RT-4. Only of a loop that runs: the limit belongs to a thread.
@@ -87,7 +87,7 @@ PcRow slack_row(const PcFiles& files, const std::vector<Thread>& threads) {
             .verdict = Verdict::kUnknown,
             .found = "no loop runs; it asks for 1 ns when it starts",
             .why = "the kernel may wake a thread so much later than it asked",
-            .cure = "build/tactd SCENE in another terminal, then ask again"};
+            .remedy = "build/tactd SCENE in another terminal, then ask again"};
   for (const Thread& t : threads) {
     if (t.name != "tact-loop") continue;
     const auto slack = files.line(fmt::format("/proc/{}/timerslack_ns", t.id));
@@ -96,7 +96,7 @@ PcRow slack_row(const PcFiles& files, const std::vector<Thread>& threads) {
     // 0: a real-time thread has none, from Linux 6.12 on
     row.verdict = slack_ns <= kQuickSlack_ns ? Verdict::kGreen : Verdict::kRed;
     row.found = fmt::format("{} ns of the loop {}", slack_ns, t.id);
-    row.cure = fmt::format("echo 1 | sudo tee /proc/{}/timerslack_ns", t.id);
+    row.remedy = fmt::format("echo 1 | sudo tee /proc/{}/timerslack_ns", t.id);
     return row;
   }
   return row;
@@ -119,7 +119,7 @@ PcRow bus_row(const PcFiles& files, const std::vector<Thread>& threads) {
             .verdict = Verdict::kUnknown,
             .found = "no thread carries USB or CAN interrupts here",
             .why = "below the loop's priority they wait for it, and a sample comes a tick late",
-            .cure = "a PREEMPT_RT kernel has them; boot it and ask again"};
+            .remedy = "a PREEMPT_RT kernel has them; boot it and ask again"};
   std::string behind, found;
   for (const Thread& t : threads) {
     if (!carries_a_bus(t.name)) continue;
@@ -133,7 +133,7 @@ PcRow bus_row(const PcFiles& files, const std::vector<Thread>& threads) {
   if (found.empty()) return row;
   row.verdict = behind.empty() ? Verdict::kGreen : Verdict::kRed;
   row.found = fmt::format("{}, the loop at {}", found, kLoopPriority);
-  row.cure = behind;
+  row.remedy = behind;
   return row;
 }
 
@@ -150,13 +150,13 @@ void check_devices(const PcFiles& files, std::vector<PcRow>& rows) {
                     .found = part.lacking.empty() ? part.what + ", ready"
                                                   : fmt::format("{}: {}", part.what, part.lacking),
                     .why = "a scene that names it cannot open it",
-                    .cure = part.cure});
+                    .remedy = part.remedy});
   if (parts.empty())
     rows.push_back({.name = "devices",
                     .verdict = Verdict::kUnknown,
                     .found = "none is plugged in",
                     .why = "only the simulated device can be felt",
-                    .cure = "build/tactd --list-devices tells what is looked for"});
+                    .remedy = "build/tactd --list-devices tells what is looked for"});
 }
 
 }  // namespace

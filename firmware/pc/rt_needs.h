@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// rt_needs.h - what hard real time needs of a PC, why, and the cure: said by the doctor's rows
+// rt_needs.h - what hard real time needs of a PC, why, and the remedy: said by the doctor's rows
 // (pc_check.h) and by a start that does not get it (rt_setup.h).
 #pragma once
 
@@ -8,23 +8,23 @@ namespace tact::firmware::pc {
 inline constexpr int kLoopPriority = 80;   // SCHED_FIFO
 inline constexpr int kWatchAboveLoop = 5;  // the watch's priority over the loop's
 
-/// Why something matters, and the cure.
+/// Why something matters, and the remedy.
 struct Reason {
   const char* why;
-  const char* cure;
+  const char* remedy;
 };
 /// Kernel parameters, CPU speed and interrupts: what the package tact-rt sets.
-inline constexpr const char* kRtPackageCure = "sudo apt install ./tact_*.deb ./tact-rt_*.deb";
+inline constexpr const char* kRtPackageRemedy = "sudo apt install ./tact_*.deb ./tact-rt_*.deb";
 /// The group's rights: what the package tact sets.
-inline constexpr const char* kGroupCure =
+inline constexpr const char* kGroupRemedy =
     "sudo apt install ./tact_*.deb, sudo adduser $USER haptics, then log in again";
 
 inline constexpr Reason kKernelReason{"any driver can delay a tick by milliseconds",
                                       "sudo apt install linux-image-rt-amd64, then boot it"};
 inline constexpr Reason kMemoryReason{"a page fault can stop the loop for milliseconds",
-                                      kGroupCure};
-inline constexpr Reason kPriorityReason{"other programs can hold up the loop", kGroupCure};
+                                      kGroupRemedy};
+inline constexpr Reason kPriorityReason{"other programs can hold up the loop", kGroupRemedy};
 inline constexpr Reason kPowerReason{"the CPU may sleep deeply between ticks and wake late",
-                                     kGroupCure};
+                                     kGroupRemedy};
 
 }  // namespace tact::firmware::pc

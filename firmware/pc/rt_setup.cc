@@ -35,7 +35,7 @@ void lock_memory(std::vector<Shortfall>& shortfalls) {
   mallopt(M_ARENA_MAX, 1);        // one heap, not one per thread
   if (mlockall(MCL_CURRENT | MCL_FUTURE) == 0) return;
   shortfalls.push_back({fmt::format("memory is not locked ({}): {}; {}", std::strerror(errno),
-                                    kMemoryReason.why, kMemoryReason.cure)});
+                                    kMemoryReason.why, kMemoryReason.remedy)});
 }
 
 // RT-5. The kernel keeps the promise while the file stays open.
@@ -44,7 +44,7 @@ int hold_power_latency(std::vector<Shortfall>& shortfalls) {
   const std::int32_t latency_us = 0;
   if (fd >= 0 && write(fd, &latency_us, sizeof latency_us) == sizeof latency_us) return fd;
   shortfalls.push_back({fmt::format("/dev/cpu_dma_latency: {}: {}; {}", std::strerror(errno),
-                                    kPowerReason.why, kPowerReason.cure)});
+                                    kPowerReason.why, kPowerReason.remedy)});
   if (fd >= 0) close(fd);
   return -1;
 }
@@ -78,7 +78,7 @@ int choose_core(const RtSettings& settings) {
 ProcessSetup::ProcessSetup(std::vector<Shortfall>& shortfalls) {
   if (!is_realtime_kernel(PcFiles{}))
     shortfalls.push_back({fmt::format("the kernel is not PREEMPT_RT: {}; {}", kKernelReason.why,
-                                      kKernelReason.cure)});
+                                      kKernelReason.remedy)});
   prctl(PR_SET_THP_DISABLE, 1, 0, 0,
         0);  // joining pages into huge ones takes them away for a moment
   lock_memory(shortfalls);
@@ -120,7 +120,7 @@ void enter_rt_thread(const RtSettings& settings, std::vector<Shortfall>& shortfa
   if (refused != 0)
     shortfalls.push_back(
         {fmt::format("SCHED_FIFO priority {} is refused ({}): {}; {}", settings.priority,
-                     std::strerror(refused), kPriorityReason.why, kPriorityReason.cure)});
+                     std::strerror(refused), kPriorityReason.why, kPriorityReason.remedy)});
   touch_stack();
 }
 

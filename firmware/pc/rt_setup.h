@@ -12,7 +12,7 @@
 
 namespace tact::firmware::pc {
 
-/// One thing this PC does not give: what is missing, and the cure.
+/// One thing this PC does not give: what is missing, and the remedy.
 struct Shortfall {
   std::string sentence;
 };

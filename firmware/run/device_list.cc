@@ -20,11 +20,11 @@ std::string devices_as_text(const std::vector<FoundPart>& parts) {
   for (const FoundPart& part : parts) {
     fmt::format_to(out, "{}: {}\n", part.name, part.what);
     // A part that is ready is told as the lines that a
-    // scene needs; else what it lacks, and the cure.
+    // scene needs; else what it lacks, and the remedy.
     if (part.lacking.empty())
       fmt::format_to(out, "  ready: {}\n", part.scene);
     else
-      fmt::format_to(out, "  not ready: {}\n  cure: {}\n", part.lacking, part.cure);
+      fmt::format_to(out, "  not ready: {}\n  remedy: {}\n", part.lacking, part.remedy);
   }
   // Of a kind that is not there it is told, too, what was looked for.
   for (const PartKind kind : hal::list::kPartKinds) {
@@ -45,7 +45,7 @@ std::string devices_as_json(const std::vector<FoundPart>& parts) {
                     {"scene", part.scene},
                     {"ready", part.lacking.empty()},
                     {"lacking", part.lacking},
-                    {"cure", part.cure}});
+                    {"remedy", part.remedy}});
   return model::io::text_of(
              nlohmann::json{{"format", "tactd-devices"}, {"version", 1}, {"devices", list}}, 2) +
          "\n";

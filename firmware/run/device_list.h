@@ -12,7 +12,7 @@ namespace tact::firmware::run {
 /// For people: one paragraph per part, then what is not there.
 std::string devices_as_text(const std::vector<hal::list::FoundPart>& parts);
 
-/// {"devices":[{"kind","name","what","scene","ready","lacking","cure"}]}
+/// {"devices":[{"kind","name","what","scene","ready","lacking","remedy"}]}
 std::string devices_as_json(const std::vector<hal::list::FoundPart>& parts);
 
 }  // namespace tact::firmware::run

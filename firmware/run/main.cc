@@ -31,9 +31,9 @@ int complain(const std::string& sentence, int status) {
 }
 
 void print_fault_lines() {
-  say(stdout, "{:>4}  {:18}  {}\n", "no", "name", "cause; cure");
+  say(stdout, "{:>4}  {:18}  {}\n", "no", "name", "cause; remedy");
   for (const model::FaultEntry& f : model::fault_table())
-    say(stdout, "{:>4}  {:18}  {}; {}\n", static_cast<int>(f.fault), f.name, f.cause, f.cure);
+    say(stdout, "{:>4}  {:18}  {}; {}\n", static_cast<int>(f.fault), f.name, f.cause, f.remedy);
 }
 
 /// What the page must say in words: {"faults": [...], "states": [...]}, states by number.
@@ -43,7 +43,7 @@ std::string faults_as_json() {
     list.push_back({{"number", static_cast<int>(f.fault)},
                     {"name", f.name},
                     {"cause", f.cause},
-                    {"cure", f.cure},
+                    {"remedy", f.remedy},
                     {"latches", model::latches(f.fault)}});
   for (const auto& s : firmware::loop::kStateTable)
     states.push_back({{"name", s.name}, {"words", s.words}});

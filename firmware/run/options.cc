@@ -76,9 +76,9 @@ void add_telemetry(CLI::App& app, Options& o) {
 // What is done without a run.
 void add_answers(CLI::App& app, Options& o) {
   app.add_flag("--check", o.check, "check scene, meshes, law and device, then leave");
-  app.add_flag("--faults", o.faults, "print every fault with its cause and cure, then leave");
+  app.add_flag("--faults", o.faults, "print every fault with its cause and remedy, then leave");
   app.add_flag("--list-devices", o.list_devices,
-               "print what is plugged in, what it lacks and the cure, then leave");
+               "print what is plugged in, what it lacks and the remedy, then leave");
   app.add_flag("--parameters", o.parameters,
                "print the numbers of the scene's law with their ranges, then leave");
   app.add_flag("--help-scene", o.help_scene, "print every scene key with its range, then leave");

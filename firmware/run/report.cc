@@ -43,7 +43,7 @@ json fault_entry(const RunFacts& facts) {
           {"name", fault.name},
           {"cause", fault.cause},
           {"trouble", facts.trouble},
-          {"cure", fault.cure}};
+          {"remedy", fault.remedy}};
 }
 
 std::string duration_line(const char* what, const loop::LatencyHistogram& h) {
@@ -159,7 +159,7 @@ std::string make_summary(const RunFacts& facts, const loop::LoopStatistics& loop
                        facts.costs.minor_faults + facts.costs.major_faults);
   if (loop.contact_losses > 0)
     out += fmt::format("\n  contact lost {} times: the tool moved unseen; {}", loop.contact_losses,
-                       model::describe(model::Fault::kContactLost).cure);
+                       model::describe(model::Fault::kContactLost).remedy);
   if (loop.inside_ticks > 0)
     out += fmt::format("\n  the tool was inside the organ, without force, in {} of {} ticks",
                        loop.inside_ticks, loop.ticks);
@@ -174,7 +174,7 @@ std::string make_summary(const RunFacts& facts, const loop::LoopStatistics& loop
   if (facts.fault != model::Fault::kNone) {
     const model::FaultEntry& fault = model::describe(facts.fault);
     out += fmt::format("\n  fault {}: {}: {}{}{}; {}", static_cast<int>(facts.fault), fault.name,
-                       fault.cause, facts.trouble.empty() ? "" : ": ", facts.trouble, fault.cure);
+                       fault.cause, facts.trouble.empty() ? "" : ": ", facts.trouble, fault.remedy);
   }
   return out;
 }

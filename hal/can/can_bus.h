@@ -95,7 +95,7 @@ using CanBus = BasicCanBus<CanFrame>;
 using CanFdReceived = BasicCanReceived<CanFdFrame>;
 using CanFdBus = BasicCanBus<CanFdFrame>;
 
-/// What a cause of the bus means, with the cure; empty for causes that are not the bus's.
+/// What a cause of the bus means, with the remedy; empty for causes that are not the bus's.
 std::string can_bus_trouble(const FaultCause& cause, const std::string& interface,
                             const char* link_type = CanFrame::kLinkType);
 

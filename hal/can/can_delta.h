@@ -67,7 +67,7 @@ class CanDelta {
 /// "arm 2 (node 2 on can0)".
 std::string can_arm_name(std::size_t axis, const model::CanSettings& can);
 
-/// What a cause of a lost homing means, with the cure; empty for other causes.
+/// What a cause of a lost homing means, with the remedy; empty for other causes.
 std::string homing_trouble(const FaultCause& cause, const model::DeltaSettings& delta);
 
 }  // namespace tact::hal::can

@@ -139,7 +139,7 @@ class BasicCanDrives {
   virtual bool push_stop(Loop& loop, int step) = 0;
   /// After those, so that drives do not miss a host that has left.
   virtual void push_leave(Loop& loop) { (void)loop; }
-  /// What a cause of their own means, with the cure. Any thread.
+  /// What a cause of their own means, with the remedy. Any thread.
   virtual std::string words(const FaultCause& cause) const = 0;
   /// What they counted.
   virtual std::vector<DeviceCount> tally() const = 0;

@@ -75,7 +75,7 @@ struct CanError {
 /// than 8 data bytes) or name no class at all.
 std::optional<CanError> decode_can_error(std::span<const std::uint8_t> bytes) RT_SAFE;
 
-/// A bit, its name in logs, and a sentence with the cure.
+/// A bit, its name in logs, and a sentence with the remedy.
 struct CanErrorWords {
   std::uint32_t bit;
   const char* name;

@@ -32,7 +32,7 @@ using CanFdFrameBytes = std::array<std::uint8_t, kCanFdFrameBytes>;
 
 struct CanFdFrame {
   using Bytes = CanFdFrameBytes;
-  /// How its interface is set up, for a cure.
+  /// How its interface is set up, for a remedy.
   static constexpr const char* kLinkType =
       "type can bitrate 1000000 dbitrate 5000000 sample-point 0.666 dsample-point 0.666 fd on";
 

@@ -28,7 +28,7 @@ using CanFrameBytes = std::array<std::uint8_t, kCanFrameBytes>;
 
 struct CanFrame {
   using Bytes = CanFrameBytes;
-  /// How its interface is set up, for a cure.
+  /// How its interface is set up, for a remedy.
   static constexpr const char* kLinkType = "type can bitrate 1000000";
 
   std::uint32_t id = 0;                // 0 to 0x7FF; the lower one wins the bus

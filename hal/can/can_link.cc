@@ -64,7 +64,7 @@ void take_link_info(std::span<const std::uint8_t> info, CanLink& link) {
     if (one.type == kInfoData) take_can_data(one.value, link);
 }
 
-// A bus on which frames are not sent, with its cure.
+// A bus on which frames are not sent, with its remedy.
 std::optional<Error> check_state(const CanLink& link, const std::string& name) {
   if (link.state == CanLinkState::kBusOff) {
     return Error{

@@ -27,8 +27,8 @@ using model::Result;
 
 constexpr int kReplyTimeout_ms = 1000;
 
-Error refused(const std::string& name, const char* what, int error, const char* cure) {
-  return Error{fmt::format("{}: {} ({}): {}", name, what, std::strerror(error), cure)};
+Error refused(const std::string& name, const char* what, int error, const char* remedy) {
+  return Error{fmt::format("{}: {} ({}): {}", name, what, std::strerror(error), remedy)};
 }
 constexpr const char* kLookAtLink = "the link may have gone; ip -details link shows it";
 constexpr const char* kNewerKernel =

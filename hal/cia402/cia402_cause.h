@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// cia402_cause.h - why a CiA 402 drive stops the force, or what it waits for, and the cure.
+// cia402_cause.h - why a CiA 402 drive stops the force, or what it waits for, and the remedy.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ enum class Cia402Cause : std::uint8_t {
   kWaits,            // code: statusword; for motor supply, enable or STO, before any force
 };
 
-/// For a person, with the cure; empty for a cause that all drives have. Any thread.
+/// For a person, with the remedy; empty for a cause that all drives have. Any thread.
 std::string words_of_cia402_cause(const can::FaultCause& cause);
 
 }  // namespace tact::hal::cia402

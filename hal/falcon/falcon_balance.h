@@ -36,7 +36,7 @@ class FalconBalanceRamp {
   bool ended() const RT_SAFE { return state_ != State::kLifting && state_ != State::kLowering; }
   /// Means of lifting and sinking, of a balanced weight.
   std::array<double, 3> words() const RT_SAFE;
-  /// What an end without a result means, and the cure; "" otherwise.
+  /// What an end without a result means, and the remedy; "" otherwise.
   const char* advice() const RT_SAFE;
 
  private:

@@ -54,7 +54,7 @@ enum class FalconBootFault {
   kEchoDiffers,  // ... or came back changed
   kNoReport,     // the image went through, and does not answer
 };
-/// What happened, and the cure; "" for kNone.
+/// What happened, and the remedy; "" for kNone.
 const char* falcon_boot_advice(FalconBootFault fault) noexcept;
 
 struct FalconBootSettings {

@@ -30,7 +30,7 @@ struct alignas(8) FalconTrouble {
 };
 static_assert(std::atomic<FalconTrouble>::is_always_lock_free);
 
-/// One sentence: which part, why, the cure; empty for kNone.
+/// One sentence: which part, why, the remedy; empty for kNone.
 std::string in_words(const FalconTrouble& trouble);
 
 }  // namespace tact::hal::falcon

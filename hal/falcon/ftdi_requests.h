@@ -75,7 +75,7 @@ struct FtdiRead {
 std::optional<FtdiRead> ftdi_strip(std::span<const std::uint8_t> transfer,
                                    std::span<std::uint8_t> data) RT_SAFE;
 
-/// What one error bit of the line status means, and the cure; "" for any other bit.
+/// What one error bit of the line status means, and the remedy; "" for any other bit.
 const char* ftdi_line_error(std::uint8_t bit) RT_SAFE;
 
 }  // namespace tact::hal::falcon

@@ -42,7 +42,7 @@ enum class FalconImageVerdict {
 constexpr bool may_be_sent(FalconImageVerdict verdict) noexcept {
   return verdict == FalconImageVerdict::kKnown || verdict == FalconImageVerdict::kAsNamed;
 }
-/// What is wrong, and the cure; "" for those that may be sent.
+/// What is wrong, and the remedy; "" for those that may be sent.
 const char* falcon_image_advice(FalconImageVerdict verdict) noexcept;
 
 /// The digest in hexadecimal, upper or lower case; empty: only known images.

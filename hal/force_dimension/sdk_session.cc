@@ -49,7 +49,7 @@ Result<char> open_device(const SdkFunctions& sdk, int wanted,
   return static_cast<char>(id);
 }
 
-/// What the device itself lacks, with the cure.
+/// What the device itself lacks, with the remedy.
 std::optional<Error> find_shortfall(const SdkSession& s) {
   SdkStatusWords status{};
   if (s.sdk.status(status.data(), s.id) < 0) return failed(s.sdk, "tell its status");

@@ -25,11 +25,11 @@ enum SdkStatus : int {
 };
 using SdkStatusWords = std::array<int, kSdkStatusWords>;
 
-/// What happened and the cure, of dhdErrorGetLast; never blank.
+/// What happened and the remedy, of dhdErrorGetLast; never blank.
 const char* words_of_sdk_error(int code);
 /// kDeviceUnplugged when nobody answers, else kDeviceFailed.
 model::Fault fault_of_sdk_error(int code) RT_SAFE;
-/// Why the device switched its forces off, and the cure; never blank.
+/// Why the device switched its forces off, and the remedy; never blank.
 const char* words_of_force_off(int cause);
 
 }  // namespace tact::hal::force_dimension

@@ -41,7 +41,7 @@ int number_of(const std::string& name) {
   return number;
 }
 
-/// Label and number of lines; the errno of opening stays, as the cure depends on it.
+/// Label and number of lines; the errno of opening stays, as the remedy depends on it.
 void ask_chip(GpioChip& chip) {
   const int fd = open(chip.path.c_str(), O_RDWR | O_CLOEXEC);
   if (fd < 0) {
@@ -125,7 +125,7 @@ model::Result<GpioChip> choose_chip(const std::vector<GpioChip>& chips, const st
   const GpioChip* found = nullptr;
   const GpioChip* closed = nullptr;
   for (const GpioChip& chip : chips) {
-    // Its label cannot be read, so it may be the one that is meant: the rights are then the cure.
+    // Its label cannot be read, so it may be the one that is meant: the rights are then the remedy.
     if (chip.error != 0 && chip.bus.empty()) closed = &chip;
     if (path != chip.path && wanted != chip.label && wanted != chip.name) continue;
     if (found != nullptr)

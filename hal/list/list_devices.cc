@@ -49,10 +49,10 @@ void lack_permission(FoundPart& part, const std::string& node, const char* rule,
   if (error == EACCES || error == EPERM) {
     const Refusal refusal = why_refused(node, rule);
     part.lacking = refusal.lacking;
-    part.cure = refusal.cure;
+    part.remedy = refusal.remedy;
   } else {
     part.lacking = fmt::format("{} cannot be opened: {}", node, std::strerror(error));
-    part.cure = "unplug it, plug it in again, and look at dmesg";
+    part.remedy = "unplug it, plug it in again, and look at dmesg";
   }
 }
 
@@ -76,14 +76,14 @@ FoundPart can_part(const PartProbes& probes, const fs::path& folder) {
                            "device.can.interface = \"{}\"",
                            name),
       .lacking = {},
-      .cure = {}};
+      .remedy = {}};
   if (link.bitrate.value_or(0) != 0) part.what += fmt::format(", {} bit/s", *link.bitrate);
   // No bits and no rate: what a scene would load the bus with is not known here.
   if (const auto refusal = check_can_link(link, name, 0, 0.0)) {
-    const std::string& sentence = refusal->sentence;  // "what: cure"
+    const std::string& sentence = refusal->sentence;  // "what: remedy"
     const std::size_t colon = std::min(sentence.find(": "), sentence.size());
     part.lacking = sentence.substr(0, colon);
-    part.cure = sentence.substr(std::min(colon + 2, sentence.size()));
+    part.remedy = sentence.substr(std::min(colon + 2, sentence.size()));
   }
   return part;
 }
@@ -103,15 +103,15 @@ std::string bound_driver(const fs::path& device) {
 void lack_driver(FoundPart& part, const std::string& driver) {
   if (driver.empty()) return;
   part.what += fmt::format(", bound to {}", driver);
-  // Missing rights come first: without them the driver's cure cannot be tried.
+  // Missing rights come first: without them the driver's remedy cannot be tried.
   if (!part.lacking.empty()) return;
   if (driver == "usbfs") {
     part.lacking = "another program uses it";
-    part.cure = "end that program";
+    part.remedy = "end that program";
   } else if (part.kind == PartKind::kFalcon) {
     // The Falcon alone: what the vendor's library does about a driver is not known here.
     part.lacking = fmt::format("the kernel driver {} holds it", driver);
-    part.cure =
+    part.remedy =
         fmt::format("echo {}:1.0 | sudo tee /sys/bus/usb/drivers/{}/unbind", part.name, driver);
   }
 }
@@ -141,7 +141,7 @@ std::optional<FoundPart> usb_part(const PartProbes& probes, const fs::path& fold
                  .what = known->words,
                  .scene = fmt::format("device.kind = \"{}\"", name_of(known->kind)),
                  .lacking = {},
-                 .cure = {}};
+                 .remedy = {}};
   if (part.kind == PartKind::kFalcon)
     part.scene += fmt::format(", device.falcon.bus_path = \"{}\"", part.name);
   else if (const std::string words = line_of(folder / "product"); !words.empty())
@@ -160,13 +160,13 @@ FoundPart gpio_part(const PartProbes& probes, const gpio::GpioChip& chip) {
                  .scene = fmt::format("device.lines.chip = \"{}\"",
                                       chip.label.empty() ? chip.path : chip.label),
                  .lacking = {},
-                 .cure = {}};
+                 .remedy = {}};
   if (!chip.label.empty()) part.what += fmt::format(" \"{}\"", chip.label);
   if (chip.lines >= 0) part.what += fmt::format(", {} lines", chip.lines);
   part.what += chip.bus.empty() ? ", does not sleep" : fmt::format(", may sleep (on {})", chip.bus);
   if (!chip.bus.empty()) {
     part.lacking = "an access may wait for milliseconds, so it cannot carry safety lines";
-    part.cure = "use a chip on PCI, LPC or the processor itself";
+    part.remedy = "use a chip on PCI, LPC or the processor itself";
   } else {
     const int error = probes.access_error(chip.path);
     lack_permission(part, chip.path, kGpioRule, error != 0 ? error : chip.error);

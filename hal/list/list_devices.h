@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// list_devices.h - what is plugged into this PC, what each part lacks, and the cure.
+// list_devices.h - what is plugged into this PC, what each part lacks, and the remedy.
 //
 // Read from sysfs, so a running tactd is not disturbed. GPIO chips alone are opened, for a label:
 //   class/net/*/type 280 (ARPHRD_CAN), flags bit 0 (IFF_UP)          CAN interfaces; bit rate by
@@ -37,7 +37,7 @@ struct FoundPart {
   std::string what;     // "CAN interface, up, 1000000 bit/s"
   std::string scene;    // the lines that name it: device.can.interface = "can0"
   std::string lacking;  // empty: ready
-  std::string cure;     // of what is lacking
+  std::string remedy;   // of what is lacking
 };
 
 /// How to look; others in tests.

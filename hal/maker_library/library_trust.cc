@@ -68,10 +68,10 @@ Result<std::string> find_library(const std::string& name, const LibraryFolders& 
   return Error{fmt::format("{}: in no system folder", name)};
 }
 
-std::optional<Error> distrust_library(const std::string& file, const std::string& cure,
+std::optional<Error> distrust_library(const std::string& file, const std::string& remedy,
                                       const LibraryFolders& folders) {
   const auto refused = [&](const std::string& why) {
-    return Error{fmt::format("{} is not loaded, {}: {}", file, why, cure)};
+    return Error{fmt::format("{} is not loaded, {}: {}", file, why, remedy)};
   };
   const bool allowed = std::ranges::any_of(
       folders.allowed, [&](const std::string& folder) { return lies_below(file, folder); });

@@ -32,8 +32,8 @@ model::Result<std::string> find_library(const std::string& name,
                                         const LibraryFolders& folders = system_folders());
 
 /// Why this file, by its whole path, is not loaded: the first part of the path that may not be
-/// trusted, with owner, mode and this cure.
-std::optional<model::Error> distrust_library(const std::string& file, const std::string& cure,
+/// trusted, with owner, mode and this remedy.
+std::optional<model::Error> distrust_library(const std::string& file, const std::string& remedy,
                                              const LibraryFolders& folders = system_folders());
 
 }  // namespace tact::hal::maker_library

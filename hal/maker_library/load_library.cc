@@ -31,12 +31,12 @@ Result<LoadedLibrary> load_library(const std::string& name, bool trusted, const 
   };
   const auto file = trusted ? Result<std::string>(name) : find_library(name);
   if (!file) return not_loaded(file.error().sentence);
-  const std::string cure = fmt::format(
+  const std::string remedy = fmt::format(
       "let root install it (sudo install -D -o root -m 644 {0} {1}/{0}) and {2} name that, or say "
       "--trust-library if you know the file",
       of.file, of.folder, of.setting);
   if (!trusted)
-    if (const auto refused = distrust_library(*file, cure)) return *refused;
+    if (const auto refused = distrust_library(*file, remedy)) return *refused;
   // NOW: no symbol is looked up in the loop. LOCAL: its names do not reach our other libraries.
   void* library = dlopen(file->c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// moteus_words.h - what a moteus' mode and fault code mean, in words and with the cure.
+// moteus_words.h - what a moteus' mode and fault code mean, in words and with the remedy.
 //
 // Codes as the maker's register reference (0x000, 0x00F) and the open firmware (fw/error.h) have
 // them: 32 and above a fault, which ends torque; 96 and above a limit that acts while it runs.

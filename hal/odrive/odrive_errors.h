@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// odrive_errors.h - what an ODrive's error bits mean, in words and with the cure.
+// odrive_errors.h - what an ODrive's error bits mean, in words and with the remedy.
 //
 // Bits of `axis_error` in the heartbeat, and of 0.6's `active_errors` and `disarm_reason`, as the
 // enumerations ODrive.Error (0.6) and AxisError (0.5) of the maker's reference name them. The two

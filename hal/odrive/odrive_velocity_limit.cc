@@ -51,7 +51,7 @@ model::Result<std::string> judge_odrive_velocity_limit(const model::DeviceSettin
   const bool own = own_turns_per_s > 0.0;
   const double limit_turns_per_s = own ? own_turns_per_s : kMakersLimit_turns_per_s;
   const auto limit = odrive_velocity_limit(settings.delta, limit_turns_per_s);
-  const std::string cure = fmt::format(
+  const std::string remedy = fmt::format(
       "set controller.config.enable_torque_mode_vel_limit = False in odrivetool, and "
       "device.can.max_velocity_turns_per_s = {:g} or more, with max_current_A",
       limit.least_turns_per_s);
@@ -62,19 +62,19 @@ model::Result<std::string> judge_odrive_velocity_limit(const model::DeviceSettin
       limit_turns_per_s * kMakersGain_Nms_per_turn, limit.motor_torque_Nm);
   if (own && limit.uncut_turns_per_s <= 0.0) {
     return model::Error{fmt::format("device.can.max_velocity_turns_per_s = {:g} {}, and {}: {}",
-                                    own_turns_per_s, at_rest, trips, cure)};
+                                    own_turns_per_s, at_rest, trips, remedy)};
   }
   if (!own) {
     return fmt::format(
         "the ODrives keep their own velocity limit, which CAN does not tell; the maker's 2 turn/s "
         "{}, and {}: {}",
-        at_rest, trips, cure);
+        at_rest, trips, remedy);
   }
   if (limit.uncut_mps >= kHand_mps) return std::string();
   return fmt::format(
       "device.can.max_velocity_turns_per_s = {:g} may cut torque from {:.2f} m/s of the hand on, "
       "and {}: {}",
-      own_turns_per_s, limit.uncut_mps, trips, cure);
+      own_turns_per_s, limit.uncut_mps, trips, remedy);
 }
 
 }  // namespace tact::hal::odrive

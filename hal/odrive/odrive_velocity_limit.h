@@ -26,7 +26,7 @@ struct OdriveVelocityLimit {
 OdriveVelocityLimit odrive_velocity_limit(const model::DeltaSettings& delta,
                                           double limit_turns_per_s);
 
-/// What a person should know, with numbers and the cure; empty: nothing. An error for a scene whose
+/// What a person should know, with numbers and the remedy; empty: nothing. An error for a scene whose
 /// own limit may cut torque at rest.
 model::Result<std::string> judge_odrive_velocity_limit(const model::DeviceSettings& settings);
 

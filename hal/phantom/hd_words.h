@@ -8,7 +8,7 @@
 
 namespace tact::hal::phantom {
 
-/// What happened and the cure; never blank.
+/// What happened and the remedy; never blank.
 std::string words_of_hd_error(unsigned code);
 /// kDeviceUnplugged when nobody answers, kForceOff when the forces were too much for the device,
 /// else kDeviceFailed.

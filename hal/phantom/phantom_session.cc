@@ -113,7 +113,7 @@ Result<PhantomSession> open_phantom_session(const model::PhantomSettings& settin
   return session;
 }
 
-const char* calibration_cure(const PhantomSession& session) {
+const char* calibration_remedy(const PhantomSession& session) {
   return (session.calibration_styles & kHdInkwell) != 0
              ? "put its stylus into the inkwell"
              : "calibrate it by the maker's Touch_Diagnostic";

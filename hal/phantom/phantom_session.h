@@ -33,7 +33,7 @@ model::Result<PhantomSession> open_phantom_session(const model::PhantomSettings&
                                                    const SystemRoots& roots = {});
 
 /// What a person does for a device that has no calibration.
-const char* calibration_cure(const PhantomSession& session);
+const char* calibration_remedy(const PhantomSession& session);
 
 /// Which axis of the device is x, y, z of W.
 inline constexpr int kAxisOfDevice[3] = {2, 0, 1};

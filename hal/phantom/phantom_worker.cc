@@ -82,7 +82,7 @@ std::optional<Error> PhantomWorker::wait_until_calibrated() {
         "programs of OpenHaptics, then start tactd again",
         device)};
   return Error{fmt::format("the {} is not calibrated; {}, then start tactd again", device,
-                           calibration_cure(session_))};
+                           calibration_remedy(session_))};
 }
 
 std::string PhantomWorker::words_of_trouble() const {
@@ -102,7 +102,7 @@ std::string PhantomWorker::words_of_trouble() const {
       break;
   }
   return fmt::format("the PHANTOM has lost its calibration; {}, then start tactd again",
-                     calibration_cure(session_));
+                     calibration_remedy(session_));
 }
 
 unsigned PhantomWorker::on_cycle(void* of) {

@@ -122,7 +122,7 @@ int finish(const Options& options, const std::vector<tracking::PosePair>& poses)
   return fit->largest_m <= tracking::kDoubtful_m ? kGood : kCheckFailed;
 }
 
-/// Error: why this description cannot be registered, and the cure.
+/// Error: why this description cannot be registered, and the remedy.
 std::optional<Error> check(const std::string& path, const tracking::OperatorTracking& tracking) {
   const tracking::MarkerBody* tool = tracking.setup().body_of(tracking::BodyRole::kTool);
   if (tool == nullptr || !tool->tip_m) {

@@ -49,7 +49,7 @@ struct TrackingSetup {
   const MarkerBody* body_of(BodyRole role) const;
 };
 
-/// Error: one line with what is wrong, where (file:line) and the cure.
+/// Error: one line with what is wrong, where (file:line) and the remedy.
 model::Result<TrackingSetup> load_tracking_setup(const std::string& path);
 
 /// SCENE.registration.toml beside SCENE.tracking.toml.

@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::size_t kRead_bytes = 1 << 16;
 
-Error error_of(const std::string& path, std::string_view what, std::string_view cure) {
-  return {fmt::format("{}: {}; {}", path, what, cure)};
+Error error_of(const std::string& path, std::string_view what, std::string_view remedy) {
+  return {fmt::format("{}: {}; {}", path, what, remedy)};
 }
 
 std::string_view words_of(int number) {
@@ -34,18 +34,18 @@ std::string_view kind_of(mode_t mode) {
 
 }  // namespace
 
-Result<InputFile> InputFile::open(const std::string& path, std::string_view cure) {
+Result<InputFile> InputFile::open(const std::string& path, std::string_view remedy) {
   struct stat status{};
-  if (stat(path.c_str(), &status) != 0) return error_of(path, words_of(errno), cure);
-  if (const auto kind = kind_of(status.st_mode); !kind.empty()) return error_of(path, kind, cure);
+  if (stat(path.c_str(), &status) != 0) return error_of(path, words_of(errno), remedy);
+  if (const auto kind = kind_of(status.st_mode); !kind.empty()) return error_of(path, kind, remedy);
   // Not blocking, should a pipe have taken its place since.
   const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
-  if (fd < 0) return error_of(path, words_of(errno), cure);
+  if (fd < 0) return error_of(path, words_of(errno), remedy);
   // Owner of fd from here on. Asked once more: what was
   // opened may be another than what was looked at.
-  InputFile file(path, std::string(cure), fd, 0);
-  if (fstat(fd, &status) != 0) return error_of(path, words_of(errno), cure);
-  if (const auto kind = kind_of(status.st_mode); !kind.empty()) return error_of(path, kind, cure);
+  InputFile file(path, std::string(remedy), fd, 0);
+  if (fstat(fd, &status) != 0) return error_of(path, words_of(errno), remedy);
+  if (const auto kind = kind_of(status.st_mode); !kind.empty()) return error_of(path, kind, remedy);
   file.size_bytes_ = static_cast<std::uintmax_t>(std::max<off_t>(status.st_size, 0));
   return file;
 }
@@ -63,7 +63,7 @@ Result<std::size_t> InputFile::read(void* to, std::size_t bytes) {
       done += static_cast<std::size_t>(n);
     } else if (errno != EINTR) {
       return error_of(path_, fmt::format("cannot be read to its end ({})", std::strerror(errno)),
-                      cure_);
+                      remedy_);
     }
   }
   return done;
@@ -72,18 +72,18 @@ Result<std::size_t> InputFile::read(void* to, std::size_t bytes) {
 Result<std::size_t> InputFile::read_end(void* to, std::size_t bytes) {
   const std::uintmax_t from = size_bytes_ > bytes ? size_bytes_ - bytes : 0;
   if (lseek(fd_, static_cast<off_t>(from), SEEK_SET) < 0)
-    return error_of(path_, words_of(errno), cure_);
+    return error_of(path_, words_of(errno), remedy_);
   auto got = read(to, bytes);
-  if (lseek(fd_, 0, SEEK_SET) < 0) return error_of(path_, words_of(errno), cure_);
+  if (lseek(fd_, 0, SEEK_SET) < 0) return error_of(path_, words_of(errno), remedy_);
   return got;
 }
 
-Result<std::string> read_file(const std::string& path, std::string_view cure,
+Result<std::string> read_file(const std::string& path, std::string_view remedy,
                               std::uintmax_t most_bytes) {
-  auto file = InputFile::open(path, cure);
+  auto file = InputFile::open(path, remedy);
   if (!file) return file.error();
   const auto too_large = [&] {
-    return error_of(path, fmt::format("larger than {} bytes", most_bytes), cure);
+    return error_of(path, fmt::format("larger than {} bytes", most_bytes), remedy);
   };
   if (file->size_bytes() > most_bytes) return too_large();
   std::string text;

@@ -21,10 +21,10 @@ inline constexpr std::uintmax_t kMaxBytes = 1'000'000'000;
 class InputFile {
  public:
   /// An error is "PATH: what is wrong; CURE".
-  static Result<InputFile> open(const std::string& path, std::string_view cure);
+  static Result<InputFile> open(const std::string& path, std::string_view remedy);
   InputFile(InputFile&& other) noexcept
       : path_(std::move(other.path_)),
-        cure_(std::move(other.cure_)),
+        remedy_(std::move(other.remedy_)),
         fd_(std::exchange(other.fd_, -1)),
         size_bytes_(other.size_bytes_) {}
   InputFile(const InputFile&) = delete;
@@ -40,16 +40,16 @@ class InputFile {
   Result<std::size_t> read_end(void* to, std::size_t bytes);
 
  private:
-  InputFile(std::string path, std::string cure, int fd, std::uintmax_t size_bytes)
-      : path_(std::move(path)), cure_(std::move(cure)), fd_(fd), size_bytes_(size_bytes) {}
+  InputFile(std::string path, std::string remedy, int fd, std::uintmax_t size_bytes)
+      : path_(std::move(path)), remedy_(std::move(remedy)), fd_(fd), size_bytes_(size_bytes) {}
 
-  std::string path_, cure_;
+  std::string path_, remedy_;
   int fd_ = -1;
   std::uintmax_t size_bytes_ = 0;
 };
 
 /// All of a file; an error is "PATH: what is wrong; CURE".
-Result<std::string> read_file(const std::string& path, std::string_view cure = "check the name",
+Result<std::string> read_file(const std::string& path, std::string_view remedy = "check the name",
                               std::uintmax_t most_bytes = kMaxBytes);
 
 }  // namespace tact::model::io

@@ -32,11 +32,11 @@ Result<Json> parse_json(std::string_view text, std::string_view source) {
 }
 
 template <typename Json = nlohmann::json>
-Result<Json> read_json(const std::string& path, std::string_view cure = "check the name") {
-  const auto text = read_file(path, cure);
+Result<Json> read_json(const std::string& path, std::string_view remedy = "check the name") {
+  const auto text = read_file(path, remedy);
   if (!text) return text.error();
   auto json = parse_json<Json>(*text, path);
-  if (!json) return Error{fmt::format("{}; {}", json.error().sentence, cure)};
+  if (!json) return Error{fmt::format("{}; {}", json.error().sentence, remedy)};
   return json;
 }
 

@@ -65,8 +65,8 @@ std::optional<Error> SealedWriter::finish() {
   return file_.finish();
 }
 
-Result<SealedFile> SealedFile::open(const std::string& path, std::string_view cure) {
-  auto file = InputFile::open(path, cure);
+Result<SealedFile> SealedFile::open(const std::string& path, std::string_view remedy) {
+  auto file = InputFile::open(path, remedy);
   if (!file) return file.error();
   std::string seal(kSealBytes, '\0');
   std::uint64_t size_bytes = file->size_bytes();

@@ -63,7 +63,7 @@ class SealedWriter {
 /// Such a file, from its start to its seal; one without a seal, to its end.
 class SealedFile {
  public:
-  static Result<SealedFile> open(const std::string& path, std::string_view cure);
+  static Result<SealedFile> open(const std::string& path, std::string_view remedy);
   /// Without the seal.
   std::uint64_t size_bytes() const { return size_bytes_; }
   /// How many bytes there were, at most `bytes`.

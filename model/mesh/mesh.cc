@@ -164,7 +164,7 @@ const char* what(MeshFlaw flaw) {
   return "is unsound";
 }
 
-const char* cure(MeshFlaw flaw) {
+const char* remedy(MeshFlaw flaw) {
   switch (flaw) {
     case MeshFlaw::kMissingVertex:
     case MeshFlaw::kNotFinite:
@@ -242,7 +242,7 @@ Result<SurfaceMesh> make_surface_mesh(std::vector<Vec3> vertex_m,
   if (auto* mesh = std::get_if<SurfaceMesh>(&built)) return std::move(*mesh);
   const MeshDefect& defect = *std::get_if<MeshDefect>(&built);
   return Error{
-      fmt::format("triangle {} {}; {}", defect.triangle, what(defect.flaw), cure(defect.flaw))};
+      fmt::format("triangle {} {}; {}", defect.triangle, what(defect.flaw), remedy(defect.flaw))};
 }
 
 MeshSummary summarize(const SurfaceMesh& mesh) {

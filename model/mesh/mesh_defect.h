@@ -33,7 +33,7 @@ struct MeshDefect {
 /// What is wrong, without where: "has zero area".
 const char* what(MeshFlaw flaw);
 /// What to do about it.
-const char* cure(MeshFlaw flaw);
+const char* remedy(MeshFlaw flaw);
 
 using SurfaceOrDefect = std::variant<SurfaceMesh, MeshDefect>;
 

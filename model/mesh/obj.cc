@@ -119,7 +119,7 @@ Error defect_error(const std::string& path, const MeshDefect& defect,
                         file_vertex[defect.to], line[defect.other]);
   }
   return {fmt::format("{}:{}: the face {}{}; {}", path, line[defect.triangle], what(defect.flaw),
-                      where, cure(defect.flaw))};
+                      where, remedy(defect.flaw))};
 }
 
 // (a, b, c) becomes (a, c, b): the first and the last edge change places.

@@ -21,7 +21,7 @@ namespace {
 // A scene has some kilobytes: a megabyte is a file that was named by mistake.
 constexpr std::uintmax_t kMaxFile_bytes = 1'000'000;
 
-std::string cure() {
+std::string remedy() {
   const auto installed = io::installed("scenes/liver.toml");
   std::error_code wrong;
   const bool there = std::filesystem::exists(installed, wrong);
@@ -73,8 +73,8 @@ class Override {
   static constexpr std::string_view kShape =
       "write key.path=value, for example rhombus.units=8 or law=rhombus";
 
-  Error error(std::string_view what, std::string_view cure) const {
-    return {fmt::format("{}: {}; {}", where_, what, cure)};
+  Error error(std::string_view what, std::string_view remedy) const {
+    return {fmt::format("{}: {}; {}", where_, what, remedy)};
   }
 
   /// As deep as the document goes; what it does not have stays in rest_.
@@ -140,7 +140,7 @@ TextPlace SceneDocument::place_of(const toml::node& node) const {
 
 Result<SceneDocument> load_scene_document(const std::string& path,
                                           const std::vector<std::string>& overrides) {
-  const Result<std::string> text = io::read_file(path, cure(), kMaxFile_bytes);
+  const Result<std::string> text = io::read_file(path, remedy(), kMaxFile_bytes);
   if (!text) return text.error();
   Result<toml::table> root = io::parse_toml(*text, path);
   if (!root) return root.error();

@@ -29,7 +29,7 @@ std::vector<double> numbers_of(const toml::table& table, const char* key) {
   return out;
 }
 
-std::string cure(const Scene& scene) {
+std::string remedy(const Scene& scene) {
   return fmt::format(
       "tact-lab reference {0} --tool --out TRUTH.json solves the truth, tact-lab chart {0} "
       "--tool-reference TRUTH.json --out DIR --accuracy {1} measures against it",
@@ -129,25 +129,26 @@ Result<Accuracy> read_accuracy(const Scene& scene) {
                              scene.path)};
   std::error_code failed;
   if (!fs::exists(path, failed))
-    return Error{fmt::format("nobody has measured it; {}", cure(scene))};
+    return Error{fmt::format("nobody has measured it; {}", remedy(scene))};
   // What is lacking is told from the outside inwards,
   // each time with the commands that make it anew.
-  const auto text = io::read_file(path, cure(scene));
+  const auto text = io::read_file(path, remedy(scene));
   if (!text) return text.error();
   const auto parsed = io::parse_toml(*text, path);
-  if (!parsed) return Error{fmt::format("{}; {}", parsed.error().sentence, cure(scene))};
+  if (!parsed) return Error{fmt::format("{}; {}", parsed.error().sentence, remedy(scene))};
   const toml::table& root = *parsed;
   if (root["schema"].value_or<std::string>("") != kSchema)
-    return Error{fmt::format("{} is of another version of tact-lab chart; {}", path, cure(scene))};
+    return Error{
+        fmt::format("{} is of another version of tact-lab chart; {}", path, remedy(scene))};
   const toml::table* table = root[name].as_table();
-  if (table == nullptr) return Error{fmt::format("{} has no [{}]; {}", path, name, cure(scene))};
+  if (table == nullptr) return Error{fmt::format("{} has no [{}]; {}", path, name, remedy(scene))};
   auto out = accuracy_of(*table, name);
   if (!out)
-    return Error{fmt::format("{}: [{}]: {}; {}", path, name, out.error().sentence, cure(scene))};
+    return Error{fmt::format("{}: [{}]: {}; {}", path, name, out.error().sentence, remedy(scene))};
   const auto hash = hash_of_linear_forces(scene, scene.law);
   if (!hash) return hash.error();
   if (out->law_hash != *hash)
-    return Error{fmt::format("{} is of another law, organ or tool; {}", path, cure(scene))};
+    return Error{fmt::format("{} is of another law, organ or tool; {}", path, remedy(scene))};
   return out;
 }
 

@@ -40,7 +40,7 @@ Result<std::string> hash_of_linear_forces(const Scene& scene, LawKind kind);
 std::string accuracy_path(const Scene& scene);
 std::string accuracy_text(const std::vector<Accuracy>& laws);
 /// The figure of this scene's law. An error says that there is none, or that it is of something
-/// else, and the cure.
+/// else, and the remedy.
 Result<Accuracy> read_accuracy(const Scene& scene);
 
 /// For people: the figure, and whether it is within the tolerance of the scene.

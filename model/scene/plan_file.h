@@ -3,7 +3,7 @@
 //
 // A scene with law = "auto" is felt through it. The file stands in the user's cache, named by the
 // hash of the scene, so a changed scene has none; it also names the machine that was measured. A
-// file that is missing, damaged or of another machine is an error whose cure is to plan again.
+// file that is missing, damaged or of another machine is an error whose remedy is to plan again.
 // Set-up code only.
 #pragma once
 
@@ -54,7 +54,7 @@ std::string plan_text(const Plan& plan);
 /// All or nothing; makes the folder. Returns the path.
 Result<std::string> write_plan(const Plan& plan, const std::string& path);
 /// `scene` is the one to be felt: its hash and this machine must be the plan's. The overrides it
-/// was loaded with go into the cure.
+/// was loaded with go into the remedy.
 Result<Plan> read_plan(const std::string& path, const Scene& scene,
                        const std::vector<std::string>& overrides);
 /// The plan of this scene on this machine, from the cache. With law=auto among the overrides that

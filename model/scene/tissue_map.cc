@@ -13,7 +13,7 @@ namespace {
 
 /// Makes the scene's own map beside it. One that the scene names elsewhere may be of other scenes,
 /// as the shipped ones are, and is never the output.
-std::string cure_of(const Scene& scene) {
+std::string remedy_of(const Scene& scene) {
   const std::filesystem::path own =
       std::filesystem::path(scene.path).replace_extension(".compliance");
   std::string command = fmt::format("tact-lab condense {} --out {}", scene.path, own.string());
@@ -27,7 +27,7 @@ std::string cure_of(const Scene& scene) {
 
 Result<tissue::ComplianceMap> read_scene_map(const Scene& scene) {
   const std::string& path = scene.compliance.map_path;
-  const std::string command = cure_of(scene);
+  const std::string command = remedy_of(scene);
   // From the scene to the file to what is in it: each is asked only where the one before is good.
   if (!scene.elastic)
     return Error{scene.path +

@@ -89,7 +89,7 @@ StepLimit limit_of(const Bounds& bounds, const Method& method) {
   return out;
 }
 
-/// How many times the mass would do; empty if mass is no cure.
+/// How many times the mass would do; empty if mass is no remedy.
 std::string mass_advice(const Bounds& bounds, const StepRule& rule) {
   // In steps of a quarter; a mass 10 000 times as large is no advice.
   for (double factor = 1.25; factor < 1e4; factor *= 1.25) {

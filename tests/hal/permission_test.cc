@@ -37,11 +37,11 @@ TEST_F(PermissionOfNode, TheRuleIsMissingUnlessTheNodeIsOfTheGroup) {
   const gid_t own = getegid();
   const Refusal of_root = why_refused(node, kGpioRule, own + 1);
   EXPECT_NE(of_root.lacking.find(kGpioRule), std::string::npos) << of_root.lacking;
-  EXPECT_EQ(of_root.cure, kRuleCure);
+  EXPECT_EQ(of_root.remedy, kRuleRemedy);
   const Refusal of_group = why_refused(node, kGpioRule, own);
   EXPECT_EQ(of_group.lacking.find("rule"), std::string::npos) << of_group.lacking;
   EXPECT_NE(of_group.lacking.find("group haptics"), std::string::npos);
-  EXPECT_EQ(of_group.cure, "sudo adduser $USER haptics, and log in again");
+  EXPECT_EQ(of_group.remedy, "sudo adduser $USER haptics, and log in again");
   EXPECT_NE(why_refused(node, kGpioRule, std::nullopt).lacking.find("rule"), std::string::npos);
   chmod(node.c_str(), 0640);
   EXPECT_NE(why_refused(node, kGpioRule, own).lacking.find("rule is missing"), std::string::npos);

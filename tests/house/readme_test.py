@@ -157,7 +157,7 @@ def tree():
 
 
 def blind_rules():
-    """Each rule against a breach of it, and against its cure: the names of those that err."""
+    """Each rule against a breach of it, and against its remedy: the names of those that err."""
     room = "# A room\n## Two  words, `a_b`: [c-d](b.png)\n## Twin\n## Twin\n```\n# Code\n```\n"
     wide = "x" * MAX_COLUMNS
     good = ("[a](a/README.md) ![b](a/b.png \"t\") [c](#top) [d](a/README.md#twin-1) `[e](none)` [f](https://g/h)\n"

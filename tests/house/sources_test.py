@@ -190,7 +190,7 @@ def breaches(texts):
 
 
 def blind_rules():
-    """Each rule against a breach of it, and against its cure: the names of those that err."""
+    """Each rule against a breach of it, and against its remedy: the names of those that err."""
     source = "a/SOURCES.md"
     good = "| id | what |\n|---|---|\n| RC-1 | F |\n| RC-2 | G |\n```\nRC-3   H\nX1  I\n```\n"
     names = "// RC-1 .. RC-3, X1"

@@ -8,19 +8,19 @@
 
 namespace tact::model::fault_test {
 
-TEST(Fault, EveryEntryHasNameCauseAndCure) {
+TEST(Fault, EveryEntryHasNameCauseAndRemedy) {
   for (const FaultEntry& entry : fault_table()) {
     EXPECT_GT(std::strlen(entry.name), 0u);
     EXPECT_GT(std::strlen(entry.cause), 0u);
-    EXPECT_GT(std::strlen(entry.cure), 0u);
+    EXPECT_GT(std::strlen(entry.remedy), 0u);
   }
 }
 
 // One fault serves classic CAN and CAN FD; the sentence beside it knows which, and where.
-TEST(Fault, NoCureNamesOneInterfaceOrOneKindOfBus) {
+TEST(Fault, NoRemedyNamesOneInterfaceOrOneKindOfBus) {
   for (const FaultEntry& entry : fault_table()) {
-    EXPECT_EQ(std::string(entry.cure).find("can0"), std::string::npos) << entry.name;
-    EXPECT_EQ(std::string(entry.cure).find("bitrate"), std::string::npos) << entry.name;
+    EXPECT_EQ(std::string(entry.remedy).find("can0"), std::string::npos) << entry.name;
+    EXPECT_EQ(std::string(entry.remedy).find("bitrate"), std::string::npos) << entry.name;
   }
 }
 

@@ -76,10 +76,10 @@ TEST_F(Tactd, KnowsNoLawAsPrinted) {
   EXPECT_TRUE(has(outcome, "rhombus_paper_literal")) << outcome.output;
 }
 
-TEST_F(Tactd, PrintsEveryFaultWithItsCure) {
+TEST_F(Tactd, PrintsEveryFaultWithItsRemedy) {
   const Outcome outcome = tactd("--faults");
   EXPECT_EQ(outcome.status, 0);
-  for (const auto& entry : tact::model::fault_table()) EXPECT_TRUE(has(outcome, entry.cure));
+  for (const auto& entry : tact::model::fault_table()) EXPECT_TRUE(has(outcome, entry.remedy));
   const json words = json::parse(tactd("--faults --json -").output);
   EXPECT_EQ(words.at("faults").size(), tact::model::fault_table().size());
   ASSERT_EQ(words.at("states").size(), 4U) << "by number, for the page";

@@ -35,7 +35,7 @@ STATES = ("off", "ready", "armed", "stopped")
 
 
 class Error(Exception):
-    """A sentence: what, where, the cure."""
+    """A sentence: what, where, the remedy."""
 
 
 def _placed(size, fields):

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tact-doctor: is this PC fit for hard real time, and if not, what is the cure?
+// tact-doctor: is this PC fit for hard real time, and if not, what is the remedy?
 #include <fmt/color.h>
 #include <fmt/format.h>
 #include <sched.h>
@@ -52,7 +52,7 @@ void print_table(const std::vector<PcRow>& rows) {
     fmt::print("{:{}}  {:7}  {}\n", row.name, width, verdict, row.found);
     if (row.verdict == Verdict::kGreen) continue;
     fmt::print("{:{}}           why:  {}\n", "", width, row.why);
-    fmt::print("{:{}}           cure: {}\n", "", width, row.cure);
+    fmt::print("{:{}}           remedy: {}\n", "", width, row.remedy);
   }
   const auto count = [&](Verdict verdict) {
     return std::ranges::count(rows, verdict, &PcRow::verdict);
@@ -67,7 +67,7 @@ int main(int argc, char** argv) {
   tact::tools::program::Program program(
       "tact-doctor",
       "Is this PC fit for hard real time? One row a check: green, red or unknown, why it matters, "
-      "and the\ncure as a command. Opens no device and changes nothing.",
+      "and the\nremedy as a command. Opens no device and changes nothing.",
       "ns: nanoseconds, us: microseconds. Unknown is what this PC does not tell; only red fails.");
   Options options;
   add_options(program.options(), options);

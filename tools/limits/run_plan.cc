@@ -62,7 +62,7 @@ void report_fault(Fault found, const hal::Device& device, const hal::SafetyLines
   const model::FaultEntry& fault = model::describe(found);
   const std::string trouble = firmware::console::trouble_behind(found, device, lines);
   fmt::print(stderr, "tact-limits: the plan ended with {}: {}{}{}; {}\n", fault.name, fault.cause,
-             trouble.empty() ? "" : ": ", trouble, fault.cure);
+             trouble.empty() ? "" : ": ", trouble, fault.remedy);
 }
 
 /// Names the cases of the whole plan that are not to be played, as nobody asked for them.

@@ -22,7 +22,7 @@ using model::Error;
 using model::Result;
 using nlohmann::json;
 
-constexpr std::string_view kFileCure = "name a mesh file of at most 2 GB";
+constexpr std::string_view kFileRemedy = "name a mesh file of at most 2 GB";
 
 std::string ending_of(const std::string& path) {
   std::string ending = fs::path(path).extension().string();
@@ -46,7 +46,7 @@ Result<std::string> find_script() {
 /// An OBJ file is read by tact's own parser, which knows the line of an error, and handed on with
 /// vertices, their colours and faces alone.
 std::optional<Error> write_plain_obj(const std::string& from, const program::MemoryFile& to) {
-  const auto file = model::io::read_file(from, kFileCure, model::mesh::kMaxObjBytes);
+  const auto file = model::io::read_file(from, kFileRemedy, model::mesh::kMaxObjBytes);
   if (!file) return file.error();
   if (file->empty()) return Error{from + ":1: the file is empty; export the mesh again"};
   const auto text = model::mesh::parse_obj(*file, from);
@@ -71,12 +71,12 @@ std::optional<Error> write_plain_obj(const std::string& from, const program::Mem
 }
 
 /// Of what these steps have left.
-std::string cure_of(const std::vector<std::string>& options) {
+std::string remedy_of(const std::vector<std::string>& options) {
   std::string missing;
   for (const char* option : {"--weld", "--drop-degenerate"})
     if (std::find(options.begin(), options.end(), option) == options.end())
       missing += fmt::format(" {}", option);
-  return missing.empty() ? "cure it in a mesh editor" : "add" + missing;
+  return missing.empty() ? "remedy it in a mesh editor" : "add" + missing;
 }
 
 /// What repair.py says, line by line.
@@ -144,7 +144,7 @@ bool is_gltf(const std::string& path) {
 Result<Repaired> repair_file(const RepairOrder& order,
                              const std::function<void(const RepairStep&)>& on_step,
                              const std::function<void(const std::string&, int)>& on_percent) {
-  if (const auto file = model::io::InputFile::open(order.source, kFileCure); !file)
+  if (const auto file = model::io::InputFile::open(order.source, kFileRemedy); !file)
     return file.error();
   const auto script = find_script();
   if (!script) return Error{fmt::format("{}: {}", order.source, script.error().sentence)};
@@ -179,14 +179,14 @@ Result<Repaired> repair_file(const RepairOrder& order,
   if (!text) return text.error();
   auto obj = model::mesh::load_obj(target, 1.0);
   if (!obj) {
-    // "PATH:LINE: the face ...; cure in a mesh editor"
+    // "PATH:LINE: the face ...; remedy in a mesh editor"
     const std::string& reported = obj.error().sentence;
     const std::size_t what = reported.find(": ", target.size());
     std::string sentence = what == std::string::npos ? reported : reported.substr(what + 2);
-    // The reader's cure is this repair.
+    // The reader's remedy is this repair.
     sentence.resize(std::min(sentence.find("; "), sentence.size()));
     return Error{fmt::format("{}: after these steps {}; {}", order.source, sentence,
-                             cure_of(order.options))};
+                             remedy_of(order.options))};
   }
   return Repaired{
       .steps = std::move(listener.steps), .obj_text = std::move(*text), .obj = std::move(*obj)};

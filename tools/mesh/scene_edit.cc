@@ -16,7 +16,7 @@ namespace {
 using model::Error;
 using model::Result;
 
-constexpr const char* kCure = "run it without --write, and write the printed lines yourself";
+constexpr const char* kRemedy = "run it without --write, and write the printed lines yourself";
 
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;
@@ -52,7 +52,7 @@ std::optional<Error> set_keys(std::vector<std::string>& lines, const std::string
     return trimmed(line).starts_with("[" + section + "]");
   });
   if (header == lines.end())
-    return Error{fmt::format("the scene has no line [{}]; {}", section, kCure)};
+    return Error{fmt::format("the scene has no line [{}]; {}", section, kRemedy)};
   auto at = header - lines.begin();
   for (const auto& [key, value] : keys) {
     const auto begin = header + 1;
@@ -63,7 +63,7 @@ std::optional<Error> set_keys(std::vector<std::string>& lines, const std::string
         begin, end, [&key = key](const std::string& line) { return is_key(line, key); });
     if (found == end) continue;
     if (is_open(*found))
-      return Error{fmt::format("{}.{} goes over several lines; {}", section, key, kCure)};
+      return Error{fmt::format("{}.{} goes over several lines; {}", section, key, kRemedy)};
     *found = text;
     at = std::max(at, found - lines.begin());
   }
@@ -102,7 +102,7 @@ Result<std::string> placed_in(const std::string& scene_text, const Placement& pl
   if (!sound) return sound.error();
   if (!*sound)
     return Error{fmt::format(
-        "the keys of [organ] or [hand] stand in a form that is not understood; {}", kCure)};
+        "the keys of [organ] or [hand] stand in a form that is not understood; {}", kRemedy)};
   return text;
 }
 

@@ -22,7 +22,7 @@ READERS = {".obj": vtk.vtkOBJReader, ".stl": vtk.vtkSTLReader, ".ply": vtk.vtkPL
 
 
 class Refused(Exception):
-    """One sentence: file, line where known, what, cure."""
+    """One sentence: file, line where known, what, remedy."""
 
 
 def to_vtk(points, triangles):

@@ -43,10 +43,10 @@ std::string name_of(double unit_m) {
 std::string to_text(const Unit& unit, const model::mesh::SurfaceMesh& mesh) {
   const std::string name = name_of(unit.unit_m);
   if (unit.from == UnitFrom::kNamed) return name + ", as named";
-  const std::string cure = "--unit sets another";
+  const std::string remedy = "--unit sets another";
   if (unit.from == UnitFrom::kFormat)
-    return fmt::format("{}, as glTF is in metres; {}", name, cure);
-  return fmt::format("taken as {}: {:.4g} mm across; {}", name, 1e3 * longest(mesh), cure);
+    return fmt::format("{}, as glTF is in metres; {}", name, remedy);
+  return fmt::format("taken as {}: {:.4g} mm across; {}", name, 1e3 * longest(mesh), remedy);
 }
 
 std::string to_text(UnitFrom from) {

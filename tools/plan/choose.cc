@@ -30,7 +30,7 @@ std::string text_of(const Candidate& c) {
                      c.tick_median_us, c.tick_p999_us, 1e-3 * c.memory_bytes);
 }
 
-/// What stands between a candidate and being enough, each with its cure.
+/// What stands between a candidate and being enough, each with its remedy.
 std::string lacks(const Candidate& c, const ToleranceSettings& t) {
   std::string out;
   const auto add = [&out](const std::string& part) { out += (out.empty() ? "" : "; ") + part; };

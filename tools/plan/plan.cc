@@ -65,7 +65,7 @@ std::optional<Error> check_chart_fits(const report::Table& table, const model::s
   for (const report::Row& row : table.rows()) {
     // Peers are not chosen, and were measured elsewhere.
     if (table.word(row, "kind") == "peer") continue;
-    // Before the machine: a changed scene is the likelier slip, and its cure the same.
+    // Before the machine: a changed scene is the likelier slip, and its remedy the same.
     if (table.word(row, "scene_hash") != scene.hash)
       return Error{fmt::format(
           "{}: the chart of another scene, or of this one before a change; chart it again: "

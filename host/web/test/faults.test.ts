@@ -6,15 +6,15 @@ import { test } from "node:test";
 
 import { describe, describe_past_state, describe_state } from "../src/panels/faults";
 
-test("a number of tactd has a name, a cause and a cure", () => {
+test("a number of tactd has a name, a cause and a remedy", () => {
   const fault = describe(131);
-  for (const words of [fault.name, fault.cause, fault.cure]) assert.ok(words.length > 3);
+  for (const words of [fault.name, fault.cause, fault.remedy]) assert.ok(words.length > 3);
   assert.notEqual(fault.name, "fault 131");
 });
 
 test("a number of a newer tactd is shown as a number, with what to do", () => {
   assert.equal(describe(999).name, "fault 999");
-  assert.match(describe(999).cure, /of one build/);
+  assert.match(describe(999).remedy, /of one build/);
 });
 
 test("each state has tactd's name and words, and another number is shown as a number", () => {

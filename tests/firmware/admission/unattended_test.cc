@@ -12,7 +12,7 @@ TEST(Unattended, AServiceDoesNotHomeOnAJigThatNobodySees) {
     scene.device.can.homing = model::Homing::kJig;
     const auto refused = why_not_unattended(scene, true);
     ASSERT_TRUE(refused) << kind;
-    EXPECT_NE(refused->sentence.find("\"absolute\""), std::string::npos) << "the cure";
+    EXPECT_NE(refused->sentence.find("\"absolute\""), std::string::npos) << "the remedy";
     EXPECT_EQ(refused->sentence.find("\"index\"") != std::string::npos,
               scene.device.kind == "can-odrive")
         << "the others cannot";

@@ -212,7 +212,7 @@ TEST_F(BlackBoxTest, AFullDiskIsToldAndCostsNothingElse) {
   EXPECT_EQ(box->files().size(), 1u) << "the next fault is tried again";
 }
 
-TEST_F(BlackBoxTest, AFolderThatCannotBeWrittenIsRefusedWithItsCure) {
+TEST_F(BlackBoxTest, AFolderThatCannotBeWrittenIsRefusedWithItsRemedy) {
   std::ofstream(folder + "/file") << "no folder";
   const auto refused = black_box_folder(folder + "/file");
   ASSERT_FALSE(refused);

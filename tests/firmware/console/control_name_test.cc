@@ -53,7 +53,7 @@ TEST_F(ControlNames, WhatDeadOnesLeftGoesAndTheLivingAndOtherFilesStay) {
   EXPECT_TRUE(std::filesystem::exists(file));
 }
 
-TEST_F(ControlNames, APathThatIsTooLongIsRefusedWithTheCure) {
+TEST_F(ControlNames, APathThatIsTooLongIsRefusedWithTheRemedy) {
   const auto refused = ControlSocket::open(folder + "/" + std::string(120, 'x'));
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().sentence.find("XDG_RUNTIME_DIR"), std::string::npos);

@@ -171,7 +171,7 @@ TEST(Guardian, ItsCallsAreFilteredAndItsFilesAreFew) {
       << "socket, /dev/null, standard error, lifeline, device";
 }
 
-TEST(Guardian, AMissingProgramIsRefusedWithTheCure) {
+TEST(Guardian, AMissingProgramIsRefusedWithTheRemedy) {
   const Wire wire;
   const auto guardian =
       Guardian::start(wire.words, {.priority = 1, .program = "/nowhere/tact-guardian"});

@@ -83,13 +83,13 @@ class PcCheck : public testing::Test {
     ADD_FAILURE() << "no row " << name;
     return {};
   }
-  /// The row turns red, says what was found, and its cure is the one that is wanted.
+  /// The row turns red, says what was found, and its remedy is the one that is wanted.
   void expect_red(const std::string& name, const std::string& found,
-                  const std::string& cure) const {
+                  const std::string& remedy) const {
     const PcRow spoilt = row(name);
     EXPECT_EQ(spoilt.verdict, Verdict::kRed) << name << ": " << spoilt.found;
     EXPECT_NE(spoilt.found.find(found), std::string::npos) << name << ": " << spoilt.found;
-    EXPECT_NE(spoilt.cure.find(cure), std::string::npos) << name << ": " << spoilt.cure;
+    EXPECT_NE(spoilt.remedy.find(remedy), std::string::npos) << name << ": " << spoilt.remedy;
     EXPECT_NE(name_red_rows(check()).find(name), std::string::npos);
   }
 
@@ -114,7 +114,7 @@ TEST_F(PcCheck, APcThatTellsNothingIsRedOnlyWhereTactdWouldBeRefused) {
   for (const PcRow& row : check()) {
     EXPECT_EQ(row.verdict, row.name == "sleep states" ? Verdict::kRed : Verdict::kUnknown)
         << row.name << ": " << row.found;
-    EXPECT_FALSE(row.cure.empty() && row.name != "interrupts") << row.name;
+    EXPECT_FALSE(row.remedy.empty() && row.name != "interrupts") << row.name;
   }
 }
 
@@ -220,7 +220,7 @@ TEST_F(PcCheck, JsonHasEveryRow) {
   ASSERT_EQ(json.size(), check().size());
   EXPECT_EQ(json[0]["name"], "kernel");
   EXPECT_EQ(json[0]["verdict"], "green");
-  EXPECT_EQ(json[0]["cure"], "");
+  EXPECT_EQ(json[0]["remedy"], "");
 }
 
 TEST(ShortForm, IsToldByTactdWhenItStartsInRealTime) {
@@ -231,7 +231,7 @@ TEST(ShortForm, IsToldByTactdWhenItStartsInRealTime) {
                                         "/model/scenes/liver.toml --no-telemetry --ticks 10" + how)
             .output;
     return said.find(" checks of this PC are red (") != std::string::npos &&
-           said.find("); tact-doctor tells why and the cure\n") != std::string::npos;
+           said.find("); tact-doctor tells why and the remedy\n") != std::string::npos;
   };
   EXPECT_EQ(reports(""), !red.empty()) << red;
   EXPECT_FALSE(reports(" --free-run")) << "simulated time is never late";

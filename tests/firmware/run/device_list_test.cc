@@ -17,13 +17,13 @@ const std::vector<FoundPart> kParts{{.kind = PartKind::kCan,
                                      .what = "CAN interface, down",
                                      .scene = "device.can.interface = \"can0\"",
                                      .lacking = "it is down",
-                                     .cure = "ip link set can0 up"},
+                                     .remedy = "ip link set can0 up"},
                                     {.kind = PartKind::kFalcon,
                                      .name = "1-2",
                                      .what = "Novint Falcon",
                                      .scene = "device.kind = \"falcon\"",
                                      .lacking = "",
-                                     .cure = ""}};
+                                     .remedy = ""}};
 
 bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
@@ -34,7 +34,7 @@ TEST(DeviceList, TellsWhatIsReadyWhatLacksAndWhatIsNotThere) {
       devices_as_text(kParts),
       "can0: CAN interface, down\n"
       "  not ready: it is down\n"
-      "  cure: ip link set can0 up\n"
+      "  remedy: ip link set can0 up\n"
       "1-2: Novint Falcon\n"
       "  ready: device.kind = \"falcon\"\n"
       "no Force Dimension device (USB 1451:*); switch its supply on and plug in its cable "
@@ -51,7 +51,7 @@ TEST(DeviceList, TheJsonTellsTheSame) {
   ASSERT_EQ(json["devices"].size(), 2u);
   EXPECT_EQ(json["devices"][0]["kind"], "can");
   EXPECT_EQ(json["devices"][0]["ready"], false);
-  EXPECT_EQ(json["devices"][0]["cure"], "ip link set can0 up");
+  EXPECT_EQ(json["devices"][0]["remedy"], "ip link set can0 up");
   EXPECT_EQ(json["devices"][1]["kind"], "falcon");
   EXPECT_EQ(json["devices"][1]["ready"], true);
 }

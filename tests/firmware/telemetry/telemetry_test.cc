@@ -290,7 +290,7 @@ TEST(Telemetry, TheSocketOfADeadControllerIsReplaced) {
   EXPECT_TRUE(TelemetrySocket::open(path, Hello{}, -1));
 }
 
-TEST(Telemetry, APathThatIsTooLongIsRefusedWithTheCure) {
+TEST(Telemetry, APathThatIsTooLongIsRefusedWithTheRemedy) {
   const auto refused = TelemetrySocket::open(std::string(200, 'x'), Hello{}, -1);
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().sentence.find("--socket"), std::string::npos);

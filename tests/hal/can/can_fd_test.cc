@@ -121,7 +121,7 @@ TEST(CanFdBus, ADatagramOfAnotherLengthIsNoFrame) {
   for (const auto& one : received) EXPECT_EQ(one.frame, CanFdFrame{});
 }
 
-TEST(CanFdBus, CuresNameASetUpOfCanFd) {
+TEST(CanFdBus, RemediesNameASetUpOfCanFd) {
   Bus b;
   b.wire.say_error(0x080, 0);
   b.bus->receive();

@@ -208,7 +208,7 @@ TEST(CanLink, ItsRateIsWhatItTellsAndAVirtualOneCountsAsWellSetUp) {
   EXPECT_DOUBLE_EQ(bus_time_s(bits, link.rate()), 1100e-6);
 }
 
-TEST(CanLink, AnInterfaceThatIsNotThereIsNamedWithTheCure) {
+TEST(CanLink, AnInterfaceThatIsNotThereIsNamedWithTheRemedy) {
   for (const char* name : {"can99", "", "aNameThatIsFarTooLongForAnInterface"}) {
     const auto socket = open_checked_can(name, 690, 1000.0, {});
     ASSERT_FALSE(socket);

@@ -63,9 +63,9 @@ TEST_F(FalconUsbTest, SeveralNeedABusPath) {
   EXPECT_EQ((*second)->node(), "/dev/bus/usb/002/009");
 }
 
-TEST_F(FalconUsbTest, WithoutPermissionTheRuleAndItsCureAreNamed) {
+TEST_F(FalconUsbTest, WithoutPermissionTheRuleAndItsRemedyAreNamed) {
   usb.open_error = LIBUSB_ERROR_ACCESS;
-  expect_refusal({kFalconRule, kRuleCure, "/dev/bus/usb/001/004"});
+  expect_refusal({kFalconRule, kRuleRemedy, "/dev/bus/usb/001/004"});
 }
 
 TEST_F(FalconUsbTest, ARefusalThatUdevEndsIsNotTold) {

@@ -230,7 +230,7 @@ TEST_F(Session, TheTimeGuardAndASaturatedMotorAreNoErrors) {
   }
 }
 
-TEST(SdkWords, NoCodeIsBlankOrWithoutACure) {
+TEST(SdkWords, NoCodeIsBlankOrWithoutARemedy) {
   for (int code = -2; code < 30; ++code) {
     EXPECT_NE(std::strchr(words_of_sdk_error(code), ';'), nullptr) << words_of_sdk_error(code);
     EXPECT_NE(std::strchr(words_of_force_off(code), ';'), nullptr) << code;

@@ -198,7 +198,7 @@ TEST(SafetyLogic, TheLightShowsArmed) {
   EXPECT_FALSE(logic.drive({.healthy = true, .armed = false}).led);
 }
 
-TEST(SafetyLogic, EveryCauseHasWordsWithACure) {
+TEST(SafetyLogic, EveryCauseHasWordsWithARemedy) {
   for (int i = 1; i <= static_cast<int>(LinesCause::kChipLost); ++i) {
     const std::string sentence = words(static_cast<LinesCause>(i));
     EXPECT_NE(sentence.find("then "), std::string::npos) << sentence;

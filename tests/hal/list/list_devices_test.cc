@@ -101,14 +101,15 @@ TEST_F(ListDevices, ABitRateIsShownWhereItIsKnown) {
 TEST_F(ListDevices, AnInterfaceThatIsDownHasTheCommand) {
   net("can1", 280, "0x40080");
   EXPECT_EQ(only().lacking, "can1 is down");
-  EXPECT_TRUE(has(only().cure, "sudo ip link set can1 up type can bitrate 1000000")) << only().cure;
+  EXPECT_TRUE(has(only().remedy, "sudo ip link set can1 up type can bitrate 1000000"))
+      << only().remedy;
 }
 
 TEST_F(ListDevices, ABusThatIsOffIsNotReadyThoughItsInterfaceIsUp) {
   net("can0", 280, "0x40081");
   probes.can_link = bus_off;
   EXPECT_EQ(only().lacking, "can0 is bus-off");
-  EXPECT_TRUE(has(only().cure, "check bit rate")) << only().cure;
+  EXPECT_TRUE(has(only().remedy, "check bit rate")) << only().remedy;
 }
 
 TEST_F(ListDevices, AFalconIsFoundAmongOtherFtdiAdapters) {
@@ -124,7 +125,7 @@ TEST_F(ListDevices, AFalconIsFoundAmongOtherFtdiAdapters) {
 TEST_F(ListDevices, AKernelDriverOnTheFalconIsNamedWithTheCommandThatUnbindsIt) {
   usb("1-2", "0403", "cb48", "ftdi_sio");
   EXPECT_EQ(only().lacking, "the kernel driver ftdi_sio holds it");
-  EXPECT_EQ(only().cure, "echo 1-2:1.0 | sudo tee /sys/bus/usb/drivers/ftdi_sio/unbind");
+  EXPECT_EQ(only().remedy, "echo 1-2:1.0 | sudo tee /sys/bus/usb/drivers/ftdi_sio/unbind");
 }
 
 TEST_F(ListDevices, ADeviceInUseIsNotReady) {
@@ -168,7 +169,7 @@ TEST_F(ListDevices, AMissingPermissionPrintsTheRuleOfThatDevice) {
   usb("1-2", "0403", "cb48");
   EXPECT_TRUE(has(only().lacking, kFalconRule));
   EXPECT_TRUE(has(only().lacking, "/dev/bus/usb/001/007"));
-  EXPECT_TRUE(has(only().cure, "adduser $USER haptics"));
+  EXPECT_TRUE(has(only().remedy, "adduser $USER haptics"));
   usb("1-2", "1451", "0402");
   EXPECT_TRUE(has(only().lacking, kForceDimensionRule));
 }

@@ -14,7 +14,7 @@ namespace tact::hal::maker_library::library_trust_test {
 
 using tests::sentence_of;
 
-constexpr const char* kCure = "let root install it";
+constexpr const char* kRemedy = "let root install it";
 
 /// A folder of the test's own in the place of the system's, and the user in the place of root.
 class LibraryTrust : public testing::Test {
@@ -34,7 +34,7 @@ class LibraryTrust : public testing::Test {
   }
   std::string refusal(const std::string& name) const {
     const auto file = find_library(name, folders);
-    return file ? sentence_of(distrust_library(*file, kCure, folders)) : file.error().sentence;
+    return file ? sentence_of(distrust_library(*file, kRemedy, folders)) : file.error().sentence;
   }
   void expect_refusal(const std::string& name, const std::vector<std::string>& words) const {
     for (const std::string& word : words)
@@ -57,7 +57,7 @@ TEST_F(LibraryTrust, AFileOfTheOwnerBelowAnAllowedFolderIsTakenByPathAndByName) 
 }
 
 TEST_F(LibraryTrust, OtherFoldersAreRefusedAlsoByALinkAndByDots) {
-  expect_refusal(top + "/home/libdhd.so.3", {"below no system folder, nor /opt", kCure});
+  expect_refusal(top + "/home/libdhd.so.3", {"below no system folder, nor /opt", kRemedy});
   expect_refusal(top + "/opt/../home/libdhd.so.3", {"below no system"});
   std::filesystem::create_symlink(top + "/home/libdhd.so.3", top + "/opt/fd/link.so");
   expect_refusal(top + "/opt/fd/link.so", {"below no system", "/home/libdhd.so.3"});
@@ -65,10 +65,10 @@ TEST_F(LibraryTrust, OtherFoldersAreRefusedAlsoByALinkAndByDots) {
   expect_refusal(good, {"below no system"});
 }
 
-TEST_F(LibraryTrust, WhatOthersMayWriteIsRefusedWithItsModeAndTheCure) {
+TEST_F(LibraryTrust, WhatOthersMayWriteIsRefusedWithItsModeAndTheRemedy) {
   for (const mode_t mode : {mode_t{0664}, mode_t{0646}, mode_t{0666}}) {
     set_mode("/opt/fd/libdhd.so.3", mode);
-    expect_refusal(good, {"others than its owner may write " + good, kCure});
+    expect_refusal(good, {"others than its owner may write " + good, kRemedy});
   }
   set_mode("/opt/fd/libdhd.so.3", 0664);
   expect_refusal(good, {"mode 0664", "owner " + std::to_string(geteuid())});
@@ -98,8 +98,8 @@ TEST_F(LibraryTrust, WhatIsNotThereOrNoFileIsSaid) {
 TEST(SystemFolders, HoldTheSystemsOwnLibraries) {
   const auto file = find_library("libm.so.6");
   ASSERT_TRUE(file);
-  EXPECT_EQ(sentence_of(distrust_library(*file, kCure)), "");
-  EXPECT_NE(sentence_of(distrust_library("/proc/self/exe", kCure)), "");
+  EXPECT_EQ(sentence_of(distrust_library(*file, kRemedy)), "");
+  EXPECT_NE(sentence_of(distrust_library("/proc/self/exe", kRemedy)), "");
 }
 
 }  // namespace tact::hal::maker_library::library_trust_test

@@ -130,7 +130,7 @@ TEST_F(PhantomTrouble, AStopThatTheLibraryDoesNotAnswerIsTold) {
   EXPECT_TRUE(comes([&] { return !reported("no call for more than"); }));
 }
 
-TEST(HdWords, NoCodeIsBlankOrWithoutACure) {
+TEST(HdWords, NoCodeIsBlankOrWithoutARemedy) {
   for (unsigned code = 0x0100; code < 0x0700; ++code)
     EXPECT_NE(words_of_hd_error(code).find("; "), std::string::npos) << words_of_hd_error(code);
 }

@@ -289,10 +289,10 @@ TEST(Mesh, SurvivesAVertexWithVeryManyTriangles) {
   EXPECT_NEAR(summarize(disc.value()).area_m2, kPi, 1e-6);
 }
 
-TEST(Mesh, EveryFlawHasACauseAndACure) {
+TEST(Mesh, EveryFlawHasACauseAndARemedy) {
   for (int i = 0; i <= static_cast<int>(MeshFlaw::kCrowdedEdge); ++i) {
     EXPECT_NE(std::string(what(static_cast<MeshFlaw>(i))), "is unsound");
-    EXPECT_FALSE(std::string(cure(static_cast<MeshFlaw>(i))).empty());
+    EXPECT_FALSE(std::string(remedy(static_cast<MeshFlaw>(i))).empty());
   }
 }
 

@@ -36,7 +36,7 @@ class Obj : public testing::Test {
     EXPECT_EQ(sum.boundary_edges, 0u);
     EXPECT_NEAR(sum.volume_m3, 1e-6, 1e-18);
   }
-  // One line, "file:line: what; cure".
+  // One line, "file:line: what; remedy".
   static void expect_line(const Error& error, const std::string& path, std::size_t line) {
     const std::string start = path + ":" + std::to_string(line) + ": ";
     EXPECT_EQ(error.sentence.substr(0, start.size()), start) << error.sentence;

@@ -246,7 +246,7 @@ TEST(Scene, VariesByPlaceOnItsOwnOrganAloneAndSaysSo) {
   ASSERT_TRUE(other) << other.error().sentence;
   EXPECT_FALSE(other->varies_by_place);
   EXPECT_NE(other->note.find("is of another organ than"), std::string::npos) << other->note;
-  EXPECT_NE(other->note.find("tact-lab condense " + kLiver), std::string::npos) << "the cure";
+  EXPECT_NE(other->note.find("tact-lab condense " + kLiver), std::string::npos) << "the remedy";
   const auto unread = load_scene(kLiver, {"compliance.map=none.compliance"});
   ASSERT_TRUE(unread) << unread.error().sentence;
   EXPECT_TRUE(unread->varies_by_place) << "a file that is not there is an error of the law";

@@ -31,7 +31,7 @@ TEST(TissueMap, IsReadWhereItBelongs) {
   EXPECT_EQ(refusal(liver({"elastic.youngs_modulus_Pa=9000"})), "") << "the map holds r times E";
 }
 
-TEST(TissueMap, AMissingFileHasOneCure) {
+TEST(TissueMap, AMissingFileHasOneRemedy) {
   const Scene scene = liver({"compliance.map=none.compliance"});
   const std::string said = refusal(scene);
   EXPECT_NE(said.find("compliance.map names " + scene.compliance.map_path + ", no such file; "),

@@ -33,7 +33,7 @@ PRUNED = ("usr/share/doc", "usr/share/man", "usr/share/locale", "usr/share/info"
 
 
 class RigError(Exception):
-    """One sentence: what, where, the cure."""
+    """One sentence: what, where, the remedy."""
 
 
 def command(arguments, failure, **options):

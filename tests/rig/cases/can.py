@@ -51,7 +51,7 @@ def calls(back_end):
 
 
 def refused(back_end, name, emulator, *words):
-    return Case(f"{back_end.name}-{name}", "refused before any force, with the cure", back_end,
+    return Case(f"{back_end.name}-{name}", "refused before any force, with the remedy", back_end,
                 "refused", (checks.refused(*words),), variables={"EMULATOR": emulator})
 
 
@@ -65,7 +65,7 @@ CASES = [
     refused(ODRIVE06, "unpowered", "--fault unpowered@0", "are they on"),
     refused(CIA402, "unpowered", "--fault unpowered@0", "are they on"),
     refused(MOTEUS, "unpowered", "--fault unpowered@0", "are they on"),
-    Case("odrive06-bus-down", "refused before any force, with the cure", ODRIVE06,
+    Case("odrive06-bus-down", "refused before any force, with the remedy", ODRIVE06,
          "ip link set can0 down\nrefused", (checks.refused("ip link set can0 up"),)),
     refused(ODRIVE06, "no-ack", "--fault unpowered@0 --clock start " +
             " ".join(f"--fault no-ack-frame@{time}" for time in (0.4, 0.6, 0.8, 1.0, 1.2)),

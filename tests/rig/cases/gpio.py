@@ -75,7 +75,7 @@ CASES = [
          f"{PRESSING}kill -KILL $tactd; sleep .02\n"
          f"for i in $(seq 20); do gpio_sim get {HEARTBEAT}; sleep .0013; done >$RESULTS/heartbeat.txt\n"
          "finish", (checks.no_more_edges,), seconds=5),
-    Case("lines-chip-missing", "refused before any force, with the cure", SIM_DELTA_LINES,
+    Case("lines-chip-missing", "refused before any force, with the remedy", SIM_DELTA_LINES,
          "gpio_sim down\nrefused", (checks.refused("GPIO chip"),)),
     Case("lines-reset", "an e-stop is left by reset and then arm, in this order, and only so",
          SIM_DELTA_LINES,

@@ -128,7 +128,7 @@ TEST(RigEmulators, AFaultTellsWhatTheOtherSideDid) {
   EXPECT_EQ(fault.largest_after_zero_N, 0.7);
 }
 
-TEST(RigEmulators, AnOrderThatIsNoFaultIsRefusedWithTheCure) {
+TEST(RigEmulators, AnOrderThatIsNoFaultIsRefusedWithTheRemedy) {
   Fault fault;
   std::string error;
   for (const char* const text : {"", "lost", "lost@", "lost@x", "lost:4@1", "lost@1+", "lost@1+-5",

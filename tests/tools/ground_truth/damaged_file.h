@@ -25,16 +25,16 @@ model::Result<Data> read_text(ReferenceReader<Data> read, const std::string& tex
   return data;
 }
 
-/// The error names `what` and the command that is the cure.
+/// The error names `what` and the command that is the remedy.
 template <typename Data>
 void expect_error(ReferenceReader<Data> read, std::string text, const std::string& from,
-                  const std::string& to, const std::string& what, const std::string& cure) {
+                  const std::string& to, const std::string& what, const std::string& remedy) {
   const auto at = text.find(from);
   ASSERT_NE(at, std::string::npos) << from;
   const auto data = read_text(read, text.replace(at, from.size(), to));
   ASSERT_FALSE(data) << "with " << to;
   EXPECT_NE(data.error().sentence.find(what), std::string::npos) << data.error().sentence;
-  EXPECT_NE(data.error().sentence.find(cure), std::string::npos) << data.error().sentence;
+  EXPECT_NE(data.error().sentence.find(remedy), std::string::npos) << data.error().sentence;
 }
 
 }  // namespace tact::tests

@@ -31,7 +31,7 @@ class ReferenceFits : public testing::Test {
   }
   void expect(const std::string& words) const {
     EXPECT_NE(said().find(words), std::string::npos) << said();
-    EXPECT_NE(said().find("--out FILE"), std::string::npos) << "the cure";
+    EXPECT_NE(said().find("--out FILE"), std::string::npos) << "the remedy";
   }
 
   model::scene::Scene scene_ = tests::make_plate_scene();

@@ -100,7 +100,7 @@ class ToolReferenceFits : public testing::Test {
     ASSERT_EQ(error.has_value(), !words.empty()) << (error ? error->sentence : "");
     if (!error) return;
     EXPECT_NE(error->sentence.find(words), std::string::npos) << error->sentence;
-    EXPECT_NE(error->sentence.find("--tool --out FILE"), std::string::npos) << "the cure";
+    EXPECT_NE(error->sentence.find("--tool --out FILE"), std::string::npos) << "the remedy";
   }
 
   model::scene::Scene scene_ = tests::make_plate_scene();

@@ -57,7 +57,7 @@ JitterResult small_result(std::uint64_t ticks) {
                 .verdict = firmware::pc::Verdict::kRed,
                 .found = "stock",
                 .why = "late",
-                .cure = "boot another"}};
+                .remedy = "boot another"}};
   return result;
 }
 
@@ -269,7 +269,7 @@ TEST_F(JitterProgram, CtrlCEndsItAtOnceAndKeepsWhatWasMeasured) {
   EXPECT_LT(result["series"]["every_wake"]["samples"], 30'000);
 }
 
-TEST_F(JitterProgram, RefusesBadUsageWithACure) {
+TEST_F(JitterProgram, RefusesBadUsageWithARemedy) {
   for (const char* arguments : {"", "--bare x.toml", "--bare --load noise", "--bare --rate 5",
                                 "compare a.json", "nosuch.toml", "--bare --out /proc/x"}) {
     const auto run = run_program("tact-jitter", arguments);
@@ -288,7 +288,7 @@ TEST_F(Folder, DoctorTellsItsRowsAsTextAndJsonWithAnExitStatus) {
     any_red |= row["verdict"] == "red";
     EXPECT_TRUE(has(text.output, row["name"].get<std::string>())) << row["name"];
     if (row["verdict"] == "red")
-      EXPECT_TRUE(has(text.output, "cure: " + row["cure"].get<std::string>())) << row["name"];
+      EXPECT_TRUE(has(text.output, "remedy: " + row["remedy"].get<std::string>())) << row["name"];
   }
   EXPECT_EQ(machine.status, any_red ? 1 : 0);
   EXPECT_FALSE(has(text.output, "\033")) << "no colours in a pipe";

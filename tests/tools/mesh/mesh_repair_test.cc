@@ -183,7 +183,7 @@ TEST_F(MeshRepair, DropDegenerateDropsFacesWithoutAreaAndDoubledOnes) {
   EXPECT_EQ(report["closed"], true);
 }
 
-TEST_F(MeshRepair, WhatIsLeftWithoutAreaOrVolumeIsAnErrorWithItsCure) {
+TEST_F(MeshRepair, WhatIsLeftWithoutAreaOrVolumeIsAnErrorWithItsRemedy) {
   const std::string needle =
       temp_.write("needle.obj", kCubeVertices + "v 5 0 0\n" + kCubeFaces + "f 1 9 2\n");
   const std::string out = temp_.path() + "/out.obj";

@@ -119,7 +119,7 @@ TEST_F(MeshTool, AClosedSurfaceWithoutVolumeIsAnError) {
   EXPECT_EQ(run(temp_.write("thin.obj", thin + kCubeFaces)).status, 0);
 }
 
-TEST_F(MeshTool, TheCureOfAFaceWithoutAreaIsACommand) {
+TEST_F(MeshTool, TheRemedyOfAFaceWithoutAreaIsACommand) {
   const std::string flat = kCubeVertices + "v 5 0 0\n" + kCubeFaces + "f 1 9 2\n";
   const Ran ran = run(temp_.write("bad.obj", flat));
   EXPECT_EQ(ran.status, 2);

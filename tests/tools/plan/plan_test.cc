@@ -180,7 +180,7 @@ class PlanFile : public testing::Test {
     std::ofstream(path) << text;
     return path;
   }
-  void expect_cure(const model::Result<model::scene::Plan>& read, const std::string& what) const {
+  void expect_remedy(const model::Result<model::scene::Plan>& read, const std::string& what) const {
     ASSERT_FALSE(read) << what;
     EXPECT_TRUE(has(read.error().sentence, what)) << read.error().sentence;
     EXPECT_TRUE(
@@ -232,30 +232,31 @@ TEST_F(PlanFile, OfAShippedSceneIsFoundWhenAutoIsSetForOneRun) {
 }
 
 TEST_F(PlanFile, RefusesWhatIsMissingDamagedOrStale) {
-  expect_cure(model::scene::read_plan(folder_ + "/none.toml", scene_, kSet),
-              "no plan for this scene");
-  expect_cure(model::scene::read_plan(write("law = \"comp"), scene_, kSet), "damaged");
-  expect_cure(
+  expect_remedy(model::scene::read_plan(folder_ + "/none.toml", scene_, kSet),
+                "no plan for this scene");
+  expect_remedy(model::scene::read_plan(write("law = \"comp"), scene_, kSet), "damaged");
+  expect_remedy(
       model::scene::read_plan(write(model::io::sealed_text("law = \"glue\"\n")), scene_, kSet),
       "no law");
-  expect_cure(
+  expect_remedy(
       model::scene::read_plan(write(model::io::sealed_text("law = \"auto\"\n")), scene_, kSet),
       "no law");
-  expect_cure(model::scene::read_plan(
-                  write(model::io::sealed_text("law = \"rhombus\"\ncurves = -3\n")), scene_, kSet),
-              "out of range");
-  expect_cure(
+  expect_remedy(
+      model::scene::read_plan(write(model::io::sealed_text("law = \"rhombus\"\ncurves = -3\n")),
+                              scene_, kSet),
+      "out of range");
+  expect_remedy(
       model::scene::read_plan(write(model::io::sealed_text("law = \"rhombus\"\n")), scene_, kSet),
       "tick_p999_us is missing");
   model::scene::Plan other = plan_;
   other.machine = "1 x another processor";
-  expect_cure(model::scene::read_plan(write(plan_text(other)), scene_, kSet), "another machine");
+  expect_remedy(model::scene::read_plan(write(plan_text(other)), scene_, kSet), "another machine");
   other = plan_;
   other.scene_hash = "fedcba9876543210";
-  expect_cure(model::scene::read_plan(write(plan_text(other)), scene_, kSet), "another scene");
+  expect_remedy(model::scene::read_plan(write(plan_text(other)), scene_, kSet), "another scene");
   other = plan_;
   other.sizes.law = LawKind::kHexSheet;
-  expect_cure(model::scene::read_plan(write(plan_text(other)), scene_, kSet), "no law hex_sheet");
+  expect_remedy(model::scene::read_plan(write(plan_text(other)), scene_, kSet), "no law hex_sheet");
 }
 
 TEST_F(PlanFile, EveryDamageIsTold) {

@@ -99,10 +99,10 @@ Result<Comparison> compare_results(const json& before, const json& after,
 }
 
 Result<json> load_result(const std::string& path) {
-  constexpr const char* kCure = "name a jitter.json of tact-jitter --out";
-  auto result = model::io::read_json(path, kCure);
+  constexpr const char* kRemedy = "name a jitter.json of tact-jitter --out";
+  auto result = model::io::read_json(path, kRemedy);
   if (result && !is_result(*result))
-    return Error{fmt::format("{}: is no result of tact-jitter; {}", path, kCure)};
+    return Error{fmt::format("{}: is no result of tact-jitter; {}", path, kRemedy)};
   return result;
 }
 

@@ -92,7 +92,7 @@ json pc_rows(const std::vector<firmware::pc::PcRow>& pc) {
                     {"verdict", name_of(r.verdict)},
                     {"found", r.found},
                     {"why", r.why},
-                    {"cure", r.cure}});
+                    {"remedy", r.remedy}});
   return rows;
 }
 

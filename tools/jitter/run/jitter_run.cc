@@ -130,7 +130,7 @@ Result<JitterResult> Run::run() {
   if (!options_.bare) {
     const model::FaultEntry& fault = model::describe(parts_.controller->newest().fault);
     if (fault.fault != model::Fault::kNone)
-      result_.fault = fmt::format("{}: {}; {}", fault.name, fault.cause, fault.cure);
+      result_.fault = fmt::format("{}: {}; {}", fault.name, fault.cause, fault.remedy);
     parts_.lines->stop();
     parts_.device->stop();
   }

@@ -47,6 +47,6 @@ export function why_no_number(name: string, text: string): string {
   const written = text.trim();
   if (written === "") return `${name} has no number`;
   const with_point = written.replace(",", ".");
-  const cure = Number.isNaN(number_in(with_point)) ? "" : `: write ${with_point}`;
-  return `${name}: ${written} is no number${cure}`;
+  const remedy = Number.isNaN(number_in(with_point)) ? "" : `: write ${with_point}`;
+  return `${name}: ${written} is no number${remedy}`;
 }

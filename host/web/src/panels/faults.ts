@@ -7,7 +7,7 @@ import table from "./faults.json";
 export interface Fault {
   name: string;
   cause: string;
-  cure: string;
+  remedy: string;
 }
 
 const kFaults = new Map<number, Fault>(table.faults.map((fault) => [fault.number, fault]));
@@ -18,7 +18,7 @@ export function describe(number: number): Fault {
     kFaults.get(number) ?? {
       name: `fault ${number}`,
       cause: "this page does not know this number",
-      cure: "run tactd --faults, and use tactd and tact-view of one build",
+      remedy: "run tactd --faults, and use tactd and tact-view of one build",
     }
   );
 }

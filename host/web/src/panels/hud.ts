@@ -170,7 +170,7 @@ export class Hud {
     warn(text("notice"), tone("link"));
     if (!by_id("fault").hidden) {
       warn(text("fault_name"), tone("fault"));
-      warn(`${text("fault_cause")}; ${text("fault_cure")}`, "plain");
+      warn(`${text("fault_cause")}; ${text("fault_remedy")}`, "plain");
     }
     warn(text("banner"), "wait");
     const held = frozen && !this.silent;
@@ -212,7 +212,7 @@ export class Hud {
     box.dataset.tone = latches(limit) ? "bad" : "wait";
     write("fault_name", `${this.is_replay ? "in the recording: " : ""}${this.limits.name(now_ms)}`);
     write("fault_cause", words.cause);
-    write("fault_cure", words.cure);
+    write("fault_remedy", words.remedy);
   }
 
   private notice(text: string): void {

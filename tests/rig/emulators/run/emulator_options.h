@@ -25,7 +25,7 @@ struct EmulatorOptions {
 };
 
 void add_options(CLI::App& app, EmulatorOptions& options, FaultSide side);
-/// The faults ordered. False: the sentence with the cure.
+/// The faults ordered. False: the sentence with the remedy.
 bool parse_faults(const EmulatorOptions& options, FaultSide side, FaultPlan& plan,
                   std::string& error);
 /// The answer on stdout and the record, when real time is over. The exit status.
