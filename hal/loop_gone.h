@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // loop_gone.h - after how long a silent loop counts as gone, for a thread beside it that holds its
-// last force: a Falcon's USB thread, and the one that calls a maker's library.
+// last force: a Falcon's USB thread, and the one that calls a vendor SDK.
 //
 // Chosen. The watch above the loop acts sooner with hard real time above 250 Hz, else later.
 #pragma once

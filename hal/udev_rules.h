@@ -12,7 +12,7 @@ inline constexpr const char* kForceDimensionRule =
 /// An older Touch, vendor and product exchanged (HD-6).
 inline constexpr const char* kOldPhantomRule =
     R"(SUBSYSTEMS=="usb", ATTRS{idVendor}=="0301", ATTRS{idProduct}=="2988", GROUP="haptics", MODE="0660")";
-/// Of the serial port or the HID node too, as the maker's library opens that.
+/// Of the serial port or the HID node too, as the vendor SDK opens that.
 inline constexpr const char* kPhantomRule =
     R"(SUBSYSTEMS=="usb", ATTRS{idVendor}=="2988", GROUP="haptics", MODE="0660")";
 inline constexpr const char* kGpioRule =

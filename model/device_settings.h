@@ -3,7 +3,7 @@
 //
 // Plain numbers and names; what they mean to a device is said in hal/. What only the owner of a
 // device can know has no default: a scene must name it (model/scene/scene_device.cc). Other
-// defaults are those of the makers' manuals. Set-up code only.
+// defaults are those of the vendors' manuals. Set-up code only.
 #pragma once
 
 #include <array>
@@ -86,19 +86,19 @@ struct FalconSettings {
 };
 
 struct ForceDimensionSettings {
-  std::string library = "libdhd.so.3";  // name or path; the maker's, never part of tact
+  std::string library = "libdhd.so.3";  // name or path; the vendor's, never part of tact
   int id = -1;                          // -1: the only device
   double watchdog_s = 0.004;            // the device lets go by itself; at most 0.0318
-  double effector_mass_kg = 0.0;        // 0: the maker's value
+  double effector_mass_kg = 0.0;        // 0: the vendor's value
   double damping_Ns_per_m = 1.0;        // what the device itself has, at the handle
-  double gripper_open_rad = 0.0;        // its gripper, fully open; 0: the maker's value
+  double gripper_open_rad = 0.0;        // its gripper, fully open; 0: the vendor's value
 };
 
 struct PhantomSettings {
-  std::string library = "libHD.so";  // name or path; the maker's, never part of tact
-  std::string name;                  // that the maker's Touch_Setup gave; empty: the default device
-  double damping_Ns_per_m = 1.0;     // what the device itself has, at the stylus
-  double position_step_m = 5.5e-5;   // of its encoders, at the stylus
+  std::string library = "libHD.so";  // name or path; the vendor's, never part of tact
+  std::string name;                 // that the vendor's Touch_Setup gave; empty: the default device
+  double damping_Ns_per_m = 1.0;    // what the device itself has, at the stylus
+  double position_step_m = 5.5e-5;  // of its encoders, at the stylus
 };
 
 /// Lines of one GPIO chip, by offset; -1: not wired.
@@ -118,7 +118,7 @@ struct DeviceSettings {
   Vec3 base_orientation_deg{};  // turn of its base, axis times angle; 0: as hal/ draws it
   Vec3 base_position_m{};       // of its base, W
   double motion_scale = 1.0;    // way of the tool for a way of the handle
-  bool trust_library = false;   // the maker's may be anybody's file; a person says so, no scene can
+  bool trust_library = false;  // the vendor's may be anybody's file; a person says so, no scene can
   SimDeviceSettings sim{};
   DeltaSettings delta{};
   CanSettings can{};

@@ -45,7 +45,7 @@ constexpr CanopenWords kEmergencyWords[] = {
      "A part at the drive failed, such as encoder or brake: check its cable and supply."},
     {0x8000, kGroup, "The drive's monitoring stopped it: look its code up in the manual."},
     {0x9000, kGroup, "Something outside stopped the drive: check its safety and limit inputs."},
-    {0xF000, kGroup, "An error that the maker of the drive defines: look it up in its manual."},
+    {0xF000, kGroup, "An error that the vendor of the drive defines: look it up in its manual."},
     {0, 0, "An error that no standard names: look it up in the drive's manual."},
 };
 
@@ -81,7 +81,7 @@ constexpr CanopenWords kAbort[] = {
     {0x060A0023, kExact, "The drive has no room for this: see its manual."},
     {0x08000000, kExact, "The drive refused without a reason: restart it and try again."},
     {0x08000020, kExact, "The drive cannot store this value: restart it and try again."},
-    {0x08000021, kExact, "The drive is under local control: close its maker's program."},
+    {0x08000021, kExact, "The drive is under local control: close its vendor's program."},
     {0x08000022, kExact, "The drive does not take this in its present state: switch it off first."},
     {0x08000023, kExact, "The drive's list of settings is damaged: load its firmware again."},
     {0x08000024, kExact, "The drive has no data for this: see its manual."},

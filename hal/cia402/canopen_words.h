@@ -2,7 +2,7 @@
 // canopen_words.h - what a CANopen drive's codes mean, in words and with the remedy.
 //
 // Emergency codes of CiA 301 and CiA 402, and the abort codes of SDO transfers of CiA 301. A drive
-// may send a code that only its maker knows; it then gets the words of its group.
+// may send a code that only its vendor knows; it then gets the words of its group.
 #pragma once
 
 #include <cstdint>

@@ -130,7 +130,7 @@ class BringUp {
                                   emergency_sentence(static_cast<std::uint16_t>(code)), code));
     }
     return wrong(i, fmt::format("stays in state {}: switch it off and on, and read its errors with "
-                                "its maker's program",
+                                "its vendor's program",
                                 cia402_state_name(state)));
   }
 

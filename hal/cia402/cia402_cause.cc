@@ -16,7 +16,7 @@ std::string words_of_cia402_cause(const can::FaultCause& cause) {
       return fmt::format("{} (code 0x{:04X})",
                          emergency_sentence(static_cast<std::uint16_t>(cause.code)), cause.code);
     case Cia402Cause::kStatus:
-      return "the drive is in its fault state: read object 603F with its maker's program";
+      return "the drive is in its fault state: read object 603F with its vendor's program";
     case Cia402Cause::kLeftEnabled:
       return fmt::format(
           "the drive left operation by itself and is {}: check its enable and safety inputs",

@@ -78,7 +78,7 @@ std::optional<std::string> DriveSettings::end_guarding(int node) {
   if (off) return std::nullopt;
   return fmt::format(
       "keeps its node guarding on (objects 100C, 100D), which does not go with heartbeat: set both "
-      "to 0 with its maker's program. It {}",
+      "to 0 with its vendor's program. It {}",
       refusal);
 }
 
@@ -150,7 +150,7 @@ std::optional<std::string> DriveSettings::check_mode(int node) {
   if (mode == 0) return std::nullopt;
   return fmt::format(
       "stays in mode {} of operation (object 6061) and does not take cyclic synchronous torque, "
-      "{}: set it with its maker's program",
+      "{}: set it with its vendor's program",
       static_cast<std::int8_t>(mode), kModeCst);
 }
 

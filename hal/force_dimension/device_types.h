@@ -5,7 +5,7 @@
 // the hand it is built for. All other types have a user button.
 //
 // Forces and radii are the defaults of CHAI3D (FD-1, chai3d.org, devices/CDeltaDevices.cpp), where
-// they are below the data sheet; lengths and resolutions are those of the maker's data sheets.
+// they are below the data sheet; lengths and resolutions are those of the vendor's data sheets.
 #pragma once
 
 #include "hal/device.h"

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "hal/force_dimension/sdk_worker.h"
-#include "hal/maker_library/library_device.h"
+#include "hal/vendor_sdk/library_device.h"
 
 namespace tact::hal::force_dimension {
 namespace {
@@ -28,13 +28,13 @@ DeviceInfo info_of(const SdkSession& session, const model::ForceDimensionSetting
           .grip = {grip_of(session), grip_of(session) == GripKind::kForce ? kGripperForce_N : 0.0},
           .turns_with_base = type.wrist,
           .at_tool = model::DeviceAtTool{.damping_Ns_per_m = settings.damping_Ns_per_m,
-                                         .friction_N = 0.0,  // the maker tells none
+                                         .friction_N = 0.0,  // the vendor tells none
                                          .position_step_m = type.resolution_m,
                                          .delay_s = kDelay_s},
           .damping_key = kDampingKey,
-          .caution = std::string(maker_library::kNoGuardian) +
+          .caution = std::string(vendor_sdk::kNoGuardian) +
                      (session.balances_weight ? "" : kWeightFelt) + (type.old ? kOldType : "") +
-                     maker_library::words_of_assumed_damping(
+                     vendor_sdk::words_of_assumed_damping(
                          settings.damping_Ns_per_m,
                          model::ForceDimensionSettings{}.damping_Ns_per_m, kDampingKey)};
 }
@@ -46,7 +46,7 @@ model::Result<std::unique_ptr<Device>> open_force_dimension(const model::DeviceS
   const auto session =
       open_sdk_session(settings.force_dimension, settings.trust_library, mounting_of(settings));
   if (!session) return session.error();
-  return std::unique_ptr<Device>(new maker_library::LibraryDevice(
+  return std::unique_ptr<Device>(new vendor_sdk::LibraryDevice(
       info_of(*session, settings.force_dimension), SdkWorker::start(*session, rate_Hz)));
 }
 

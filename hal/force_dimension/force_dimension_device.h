@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// force_dimension_device.h - a delta.3, omega, sigma or lambda, driven through its maker's library.
+// force_dimension_device.h - a delta.3, omega, sigma or lambda, driven through its vendor SDK.
 //
-// The loop's side is maker_library/library_device.h, the library's side sdk_worker.h. The maker's
+// The loop's side is vendor_sdk/library_device.h, the library's side sdk_worker.h. The vendor's
 // frame is W: x towards the operator, y to the right, z up. The library balances the device's
 // weight.
 #pragma once

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hal/force_dimension/sdk_library.h"
 
-#include "hal/maker_library/load_library.h"
+#include "hal/vendor_sdk/load_library.h"
 
 namespace tact::hal::force_dimension {
 namespace {
 
-constexpr maker_library::MakerLibrary kMaker{.whose = "Force Dimension's",
-                                             .source = "the SDK at forcedimension.com",
-                                             .setting = "device.force_dimension.library",
-                                             .file = "libdhd.so.3",
-                                             .folder = "/opt/fd"};
+constexpr vendor_sdk::VendorSdk kVendor{.whose = "Force Dimension's",
+                                        .source = "the SDK at forcedimension.com",
+                                        .setting = "device.force_dimension.library",
+                                        .file = "libdhd.so.3",
+                                        .folder = "/opt/fd"};
 
 }  // namespace
 
 model::Result<SdkFunctions> load_sdk(const std::string& name, bool trusted) {
-  auto library = maker_library::load_library(name, trusted, kMaker);
+  auto library = vendor_sdk::load_library(name, trusted, kVendor);
   if (!library) return library.error();
   SdkFunctions sdk;
   library->need("dhdGetDeviceCount", sdk.device_count);

@@ -2,7 +2,7 @@
 // sdk_library.h - Force Dimension's library, loaded by name when a scene asks for it.
 //
 // The library is proprietary and never part of tact: these are prototypes of our own, with the
-// names and meanings of the maker's documentation (Force Dimension SDK 3.17, dhdc.h). Every call
+// names and meanings of the vendor's documentation (Force Dimension SDK 3.17, dhdc.h). Every call
 // takes the device's id last (FD-2). 0 is success, 1 "no new data yet" (time guard), 2 "force
 // scaled down, direction kept"; negative is an error, whose code dhdErrorGetLast tells the same
 // thread.
@@ -42,7 +42,7 @@ struct SdkFunctions {
 };
 
 /// Loads the file that device.force_dimension.library names and finds the functions in it. Unless
-/// the person trusts it, it must be one of root's (maker_library/library_trust.h).
+/// the person trusts it, it must be one of root's (vendor_sdk/library_trust.h).
 model::Result<SdkFunctions> load_sdk(const std::string& library, bool trusted);
 
 }  // namespace tact::hal::force_dimension

@@ -68,7 +68,7 @@ std::optional<Error> find_shortfall(const SdkSession& s) {
     return Error{fmt::format(
         "the {} is not calibrated; {}, then start tactd again", s.type.name,
         by_hand ? "sweep each axis by hand from stop to stop until its status light is steady"
-                : "keep its workspace clear, run HapticInit of the maker's SDK (the device moves "
+                : "keep its workspace clear, run HapticInit of the vendor's SDK (the device moves "
                   "by itself)")};
   }
   return std::nullopt;

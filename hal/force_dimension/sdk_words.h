@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // sdk_words.h - what the numbers of Force Dimension's library mean, for a person.
 //
-// Source: the maker's documentation (SDK 3.17, dhdc.h): error codes, words of dhdGetStatus, causes
+// Source: the vendor's documentation (SDK 3.17, dhdc.h): error codes, words of dhdGetStatus, causes
 // of forces that the device switched off by itself.
 #pragma once
 

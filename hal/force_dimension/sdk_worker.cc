@@ -10,21 +10,21 @@
 #include <thread>
 
 #include "hal/force_dimension/sdk_words.h"
-#include "hal/maker_library/rotation.h"
 #include "hal/monotonic.h"
+#include "hal/vendor_sdk/rotation.h"
 #include "model/time_ns.h"
 
 namespace tact::hal::force_dimension {
 namespace {
 
-using maker_library::LibraryForce;
-using maker_library::LibraryPose;
-using maker_library::LibraryTrouble;
 using model::Fault;
 using model::Quat;
 using model::Vec3;
+using vendor_sdk::LibraryForce;
+using vendor_sdk::LibraryPose;
+using vendor_sdk::LibraryTrouble;
 
-// 4 kHz, the rate that the maker claims: the pose is young, and the watchdog fed, whatever the
+// 4 kHz, the rate that the vendor claims: the pose is young, and the watchdog fed, whatever the
 // loop's rate.
 constexpr std::int64_t kLongestCycle_ns = 250'000;
 constexpr std::int64_t kMinPause_ns = 50'000;  // a slow library must not starve the PC
@@ -124,7 +124,7 @@ bool SdkWorker::read_pose(std::int64_t now_ns) {
   if (answer < 0) return fail(SdkTroubleSource::kPose);
   // No sample: the loop counts the gap by the stamp of the last one.
   if (answer == kTimeGuard) return true;
-  pose.orientation = session_.type.wrist ? maker_library::quat_from_rotation(rotation) : Quat{};
+  pose.orientation = session_.type.wrist ? vendor_sdk::quat_from_rotation(rotation) : Quat{};
   if (!read_grip(pose)) return false;
   publish(pose);
   return true;

@@ -15,7 +15,7 @@
 #include <string>
 
 #include "hal/force_dimension/sdk_session.h"
-#include "hal/maker_library/library_worker.h"
+#include "hal/vendor_sdk/library_worker.h"
 
 namespace tact::hal::force_dimension {
 
@@ -31,12 +31,12 @@ enum class SdkTroubleSource : std::uint8_t {
   kStatus
 };
 
-std::string words_of_sdk_trouble(const maker_library::LibraryTrouble& trouble);
+std::string words_of_sdk_trouble(const vendor_sdk::LibraryTrouble& trouble);
 
 /// From one pose and force to the next.
 std::int64_t sdk_cycle_ns(double rate_Hz);
 
-class SdkWorker final : public maker_library::LibraryWorker {
+class SdkWorker final : public vendor_sdk::LibraryWorker {
  public:
   /// Starts both threads, for a loop of that rate.
   static std::shared_ptr<SdkWorker> start(const SdkSession& session, double rate_Hz);
@@ -48,10 +48,10 @@ class SdkWorker final : public maker_library::LibraryWorker {
   void run();
   bool cycle();
   bool read_pose(std::int64_t now_ns);
-  bool read_grip(maker_library::LibraryPose& pose);
+  bool read_grip(vendor_sdk::LibraryPose& pose);
   bool switch_forces(bool on) override;
   void close() override { close_sdk_session(session_); }
-  bool send(const maker_library::LibraryForce& force);
+  bool send(const vendor_sdk::LibraryForce& force);
   void watch();
   void check_status();
   bool fail(SdkTroubleSource source);

@@ -71,7 +71,7 @@ class BringUp {
     run_until(moteus_ask_kind, reported, kKind_ms);
     if (auto error = wrong(
             [](const Heard& a) { return !a.kind || a.kind->register_map != kMoteusRegisterMap; },
-            "does not speak register map 5: install its maker's firmware of today")) {
+            "does not speak register map 5: install its vendor's firmware of today")) {
       return error;
     }
     if (can_.homing != model::Homing::kAbsolute) return {};
@@ -110,8 +110,9 @@ class BringUp {
     }
     for (std::size_t i = 0; i < 3; ++i) {
       if (const char* what = lacking_in(axes_[i].last)) {
-        return Error{fmt::format("{} answers without its {}: install its maker's firmware of today",
-                                 can::can_arm_name(i, can_), what)};
+        return Error{
+            fmt::format("{} answers without its {}: install its vendor's firmware of today",
+                        can::can_arm_name(i, can_), what)};
       }
     }
     return {};

@@ -7,7 +7,7 @@
 //                  kind 0x00 write, 0x10 read, 0x20 reply; 0x30, 0x31 a register that was refused
 //                  type 0 int8, 1 int16, 2 int32, 3 binary32, little endian
 //
-// As the maker's protocol and register reference and the open firmware have them (MO-1). Units are
+// As the vendor's protocol and register reference and the open firmware have them (MO-1). Units are
 // turn, turn/s, N m, V, degC, of the output shaft. A torque is the feed-forward torque of position
 // mode with both gains scaled to 0 (MO-2). A number that is no number
 // is refused by encoders; the smallest integer and NaN are "not known" in a reply.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // moteus_words.h - what a moteus' mode and fault code mean, in words and with the remedy.
 //
-// Codes as the maker's register reference (0x000, 0x00F) and the open firmware (fw/error.h) have
+// Codes as the vendor's register reference (0x000, 0x00F) and the open firmware (fw/error.h) have
 // them: 32 and above a fault, which ends torque; 96 and above a limit that acts while it runs.
 #pragma once
 
@@ -18,7 +18,7 @@ struct MoteusFaultWords {
 };
 std::span<const MoteusFaultWords> moteus_fault_words() RT_SAFE;
 
-/// With its number, to search for in the maker's pages.
+/// With its number, to search for in the vendor's pages.
 std::string moteus_fault_sentence(int code);
 
 /// "in position mode"; for a mode that is not known here "in another mode".

@@ -2,7 +2,7 @@
 // odrive_errors.h - what an ODrive's error bits mean, in words and with the remedy.
 //
 // Bits of `axis_error` in the heartbeat, and of 0.6's `active_errors` and `disarm_reason`, as the
-// enumerations ODrive.Error (0.6) and AxisError (0.5) of the maker's reference name them. The two
+// enumerations ODrive.Error (0.6) and AxisError (0.5) of the vendor's reference name them. The two
 // generations use the same bits for different things.
 #pragma once
 
@@ -19,7 +19,7 @@ enum class OdriveGeneration : std::uint8_t { k05, k06 };
 
 struct OdriveErrorWords {
   std::uint32_t bit;
-  const char* name;      // the maker's, to search for
+  const char* name;      // the vendor's, to search for
   const char* sentence;  // for a person: what happened, what to do
 };
 

@@ -51,7 +51,7 @@ OdriveAddress odrive_address(const can::CanFrame& frame) RT_SAFE;
 
 // --- To the drive. Nothing if the node or a number is outside its range. ---
 
-/// Eight bytes as the maker's own tools send it, or the first four of them, which save 32 us.
+/// Eight bytes as the vendor's own tools send it, or the first four of them, which save 32 us.
 enum class OdriveTorqueLength : std::uint8_t { kShort = 4, kPadded = 8 };
 std::optional<can::CanFrame> odrive_input_torque(int node, double torque_Nm,
                                                  OdriveTorqueLength length) RT_SAFE;

@@ -13,7 +13,7 @@
 namespace tact::hal::odrive {
 namespace {
 
-constexpr double kMakersLimit_turns_per_s = 2.0, kMakersGain_Nms_per_turn = 1.0 / 6.0;
+constexpr double kVendorsLimit_turns_per_s = 2.0, kVendorsGain_Nms_per_turn = 1.0 / 6.0;
 constexpr double kOverspeed = 1.2, kHand_mps = 1.0;
 
 /// Of the fastest motor for the hand's worst direction, in the middle of the workspace.
@@ -38,7 +38,7 @@ OdriveVelocityLimit odrive_velocity_limit(const model::DeltaSettings& delta,
                                           double limit_turns_per_s) {
   const double turns_per_m = std::max(motor_turns_per_m(delta), 1e-9);
   const double torque_Nm = delta.max_joint_torque_Nm / delta.gear_ratio;
-  const double cut_turns_per_s = torque_Nm / kMakersGain_Nms_per_turn;
+  const double cut_turns_per_s = torque_Nm / kVendorsGain_Nms_per_turn;
   return {.motor_torque_Nm = torque_Nm,
           .uncut_turns_per_s = limit_turns_per_s - cut_turns_per_s,
           .uncut_mps = (limit_turns_per_s - cut_turns_per_s) / turns_per_m,
@@ -49,7 +49,7 @@ OdriveVelocityLimit odrive_velocity_limit(const model::DeltaSettings& delta,
 model::Result<std::string> judge_odrive_velocity_limit(const model::DeviceSettings& settings) {
   const double own_turns_per_s = settings.can.max_velocity_turns_per_s;
   const bool own = own_turns_per_s > 0.0;
-  const double limit_turns_per_s = own ? own_turns_per_s : kMakersLimit_turns_per_s;
+  const double limit_turns_per_s = own ? own_turns_per_s : kVendorsLimit_turns_per_s;
   const auto limit = odrive_velocity_limit(settings.delta, limit_turns_per_s);
   const std::string remedy = fmt::format(
       "set controller.config.enable_torque_mode_vel_limit = False in odrivetool, and "
@@ -59,14 +59,14 @@ model::Result<std::string> judge_odrive_velocity_limit(const model::DeviceSettin
       fmt::format("stops the drive at {:.2f} m/s of the hand", limit.stops_mps);
   const std::string at_rest = fmt::format(
       "may cut torque above {:.2f} N m at rest, of the {:.2f} N m that a motor is asked for",
-      limit_turns_per_s * kMakersGain_Nms_per_turn, limit.motor_torque_Nm);
+      limit_turns_per_s * kVendorsGain_Nms_per_turn, limit.motor_torque_Nm);
   if (own && limit.uncut_turns_per_s <= 0.0) {
     return model::Error{fmt::format("device.can.max_velocity_turns_per_s = {:g} {}, and {}: {}",
                                     own_turns_per_s, at_rest, trips, remedy)};
   }
   if (!own) {
     return fmt::format(
-        "the ODrives keep their own velocity limit, which CAN does not tell; the maker's 2 turn/s "
+        "the ODrives keep their own velocity limit, which CAN does not tell; the vendor's 2 turn/s "
         "{}, and {}: {}",
         at_rest, trips, remedy);
   }

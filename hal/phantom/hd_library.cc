@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hal/phantom/hd_library.h"
 
-#include "hal/maker_library/load_library.h"
+#include "hal/vendor_sdk/load_library.h"
 
 namespace tact::hal::phantom {
 namespace {
 
-constexpr maker_library::MakerLibrary kMaker{.whose = "3D Systems'",
-                                             .source = "OpenHaptics at 3dsystems.com",
-                                             .setting = "device.phantom.library",
-                                             .file = "libHD.so",
-                                             .folder = "/opt/openhaptics"};
+constexpr vendor_sdk::VendorSdk kVendor{.whose = "3D Systems'",
+                                        .source = "OpenHaptics at 3dsystems.com",
+                                        .setting = "device.phantom.library",
+                                        .file = "libHD.so",
+                                        .folder = "/opt/openhaptics"};
 constexpr int kMaxErrors = 64;  // a stack that never empties must not hold a thread
 
 }  // namespace
 
 model::Result<HdFunctions> load_hd(const std::string& name, bool trusted) {
-  auto library = maker_library::load_library(name, trusted, kMaker);
+  auto library = vendor_sdk::load_library(name, trusted, kVendor);
   if (!library) return library.error();
   HdFunctions hd;
   library->need("hdInitDevice", hd.init_device);

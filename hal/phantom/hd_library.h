@@ -3,7 +3,7 @@
 // asks for it.
 //
 // The library is proprietary and never part of tact: these are prototypes and numbers of our own,
-// with the names and meanings of the maker's published interface (HD-1). Most calls speak of the
+// with the names and meanings of the vendor's published interface (HD-1). Most calls speak of the
 // current device and answer nothing; errors wait on a stack, the newest on top. Lengths are mm,
 // forces N, in the device's frame: x to the right, y up, z towards the operator (HD-2).
 #pragma once
@@ -70,7 +70,7 @@ struct HdFunctions {
 };
 
 /// Loads the file that device.phantom.library names and finds the functions in it. Unless the
-/// person trusts it, it must be one of root's (maker_library/library_trust.h).
+/// person trusts it, it must be one of root's (vendor_sdk/library_trust.h).
 model::Result<HdFunctions> load_hd(const std::string& library, bool trusted);
 
 /// Empties the stack: the code of its oldest error, which is the cause; 0 without one.

@@ -28,7 +28,7 @@ constexpr Row kRows[] = {
     {0x0302, Fault::kDeviceUnplugged,
      "the device does not answer; check its cable and its supply, and who may open it"},
     {0x0303, Fault::kDeviceUnplugged,
-     "its connection is not set up; run the maker's Touch_Setup, and check its cable"},
+     "its connection is not set up; run the vendor's Touch_Setup, and check its cable"},
     {0x0304, Fault::kDeviceFailed,
      "the library found no clock for its scheduler; end other programs of OpenHaptics"},
     {0x0400, Fault::kDeviceFailed,
@@ -38,7 +38,7 @@ constexpr Row kRows[] = {
     {0x0402, Fault::kDeviceFailed, "the library lost a frame; start tactd again"},
     {0x0501, Fault::kDeviceFailed, "the library's scheduler is full; start tactd again"},
     {0x0600, Fault::kDeviceFailed,
-     "the library has no valid licence; install OpenHaptics as its maker says"},
+     "the library has no valid licence; install OpenHaptics as its vendor says"},
 };
 
 const Row* row_of(unsigned code) {

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "hal/maker_library/library_device.h"
 #include "hal/phantom/phantom_worker.h"
+#include "hal/vendor_sdk/library_device.h"
 
 namespace tact::hal::phantom {
 namespace {
@@ -21,10 +21,10 @@ std::string caution_of(const PhantomSession& session, const model::PhantomSettin
                                     ? fmt::format("{:g} N/m", session.max_stiffness_N_per_m)
                                     : "not told";
   return fmt::format(
-      "{}; what its motors bear for long: {}; the stiffest law that its maker advises: {}{}",
-      maker_library::kNoGuardian, for_long, stiffness,
-      maker_library::words_of_assumed_damping(
-          settings.damping_Ns_per_m, model::PhantomSettings{}.damping_Ns_per_m, kDampingKey));
+      "{}; what its motors bear for long: {}; the stiffest law that its vendor advises: {}{}",
+      vendor_sdk::kNoGuardian, for_long, stiffness,
+      vendor_sdk::words_of_assumed_damping(settings.damping_Ns_per_m,
+                                           model::PhantomSettings{}.damping_Ns_per_m, kDampingKey));
 }
 
 DeviceInfo info_of(const PhantomSession& session, const model::PhantomSettings& settings) {
@@ -52,16 +52,16 @@ DeviceInfo info_of(const PhantomSession& session, const model::PhantomSettings& 
 model::Result<std::unique_ptr<Device>> open_phantom(const model::DeviceSettings& settings,
                                                     double rate_Hz) {
   if (rate_Hz > kPhantomRate_Hz)
-    return model::Error{fmt::format(
-        "rate_Hz is {:g}, but the maker's library serves a PHANTOM {:g} times a second: set "
-        "rate_Hz to {:g} or less",
-        rate_Hz, kPhantomRate_Hz, kPhantomRate_Hz)};
+    return model::Error{
+        fmt::format("rate_Hz is {:g}, but the vendor SDK serves a PHANTOM {:g} times a second: set "
+                    "rate_Hz to {:g} or less",
+                    rate_Hz, kPhantomRate_Hz, kPhantomRate_Hz)};
   const auto session = open_phantom_session(settings.phantom, settings.trust_library);
   if (!session) return session.error();
   auto worker = PhantomWorker::start(*session, rate_Hz);
   if (!worker) return worker.error();
   return std::unique_ptr<Device>(
-      new maker_library::LibraryDevice(info_of(*session, settings.phantom), *worker));
+      new vendor_sdk::LibraryDevice(info_of(*session, settings.phantom), *worker));
 }
 
 }  // namespace tact::hal::phantom

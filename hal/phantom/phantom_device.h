@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// phantom_device.h - a PHANTOM or 3D Systems Touch, driven through its maker's library.
+// phantom_device.h - a PHANTOM or 3D Systems Touch, driven through its vendor SDK.
 //
-// The loop's side is maker_library/library_device.h, the library's side phantom_worker.h.
+// The loop's side is vendor_sdk/library_device.h, the library's side phantom_worker.h.
 #pragma once
 
 #include <memory>

@@ -63,7 +63,7 @@ std::optional<Error> ask_limits(PhantomSession& s) {
       !is_positive(s.radius_m) || !is_positive(s.half_length_m))
     return Error{fmt::format(
         "the PHANTOM tells {:g} N and a workspace of {:g} x {:g} m, which cannot be: install the "
-        "driver of this device, and configure it by the maker's Touch_Setup",
+        "driver of this device, and configure it by the vendor's Touch_Setup",
         s.max_force_N, 2.0 * s.radius_m, 2.0 * s.half_length_m)};
   return std::nullopt;
 }
@@ -96,7 +96,7 @@ Result<PhantomSession> open_phantom_session(const model::PhantomSettings& settin
         "the PHANTOM \"{}\" does not open: {}; {}", name,
         code == 0 ? "there is no such device" : words_of_hd_error(code),
         refusal ? refusal->error().sentence
-                : "device.phantom.name is the name that the maker's Touch_Setup gave it")};
+                : "device.phantom.name is the name that the vendor's Touch_Setup gave it")};
   }
   hd->make_current(session.id);
   auto error = ask_limits(session);
@@ -116,7 +116,7 @@ Result<PhantomSession> open_phantom_session(const model::PhantomSettings& settin
 const char* calibration_remedy(const PhantomSession& session) {
   return (session.calibration_styles & kHdInkwell) != 0
              ? "put its stylus into the inkwell"
-             : "calibrate it by the maker's Touch_Diagnostic";
+             : "calibrate it by the vendor's Touch_Diagnostic";
 }
 
 }  // namespace tact::hal::phantom

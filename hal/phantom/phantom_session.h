@@ -2,7 +2,7 @@
 // phantom_session.h - a PHANTOM or a Touch, opened, with what its library tells of it.
 //
 // W is the device's frame with its axes renamed (kAxisOfDevice). Its origin is the middle of the
-// box in which the maker promises forces (HD-5). Set-up code only; tact
+// box in which the vendor promises forces (HD-5). Set-up code only; tact
 // locks its memory before, and the library's heap with it.
 #pragma once
 

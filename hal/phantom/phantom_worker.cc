@@ -9,18 +9,18 @@
 #include <thread>
 #include <utility>
 
-#include "hal/maker_library/rotation.h"
 #include "hal/monotonic.h"
 #include "hal/phantom/hd_words.h"
+#include "hal/vendor_sdk/rotation.h"
 
 namespace tact::hal::phantom {
 namespace {
 
-using maker_library::LibraryPose;
 using model::Error;
 using model::Fault;
 using model::Quat;
 using model::Vec3;
+using vendor_sdk::LibraryPose;
 
 constexpr unsigned short kHighestPriority = 0xFFFF;  // of the scheduler's callbacks
 constexpr int kPatience_ms = 1000;                   // until it is calibrated
@@ -35,7 +35,7 @@ Quat orientation_of(const double transform[16]) {
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 3; ++column)
       r[row][column] = kSign[column] * transform[4 * kAxisOfStylus[column] + kAxisOfDevice[row]];
-  return maker_library::quat_from_rotation(r);
+  return vendor_sdk::quat_from_rotation(r);
 }
 
 }  // namespace
@@ -156,7 +156,7 @@ bool PhantomWorker::evaluate(LibraryPose& pose) {
   hd.get_integers(kHdCurrentButtons, &buttons);
   const unsigned calibration = hd.check_calibration();
   // Before any force alone: an update during a run might move the position under the force (HD-4).
-  // Encoders that a person resets by hand are left to the maker's program.
+  // Encoders that a person resets by hand are left to the vendor's program.
   const int ways = session_.calibration_styles & (kHdAuto | kHdInkwell);
   if (calibration == kHdNeedsUpdate && !calibrated_ && ways != 0)
     hd.update_calibration((ways & kHdAuto) != 0 ? kHdAuto : kHdInkwell);

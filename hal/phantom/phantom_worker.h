@@ -16,15 +16,15 @@
 #include <optional>
 #include <string>
 
-#include "hal/maker_library/library_worker.h"
 #include "hal/phantom/phantom_session.h"
+#include "hal/vendor_sdk/library_worker.h"
 
 namespace tact::hal::phantom {
 
 /// The scheduler's rate (HD-3).
 inline constexpr double kPhantomRate_Hz = 1000.0;
 
-class PhantomWorker final : public maker_library::LibraryWorker {
+class PhantomWorker final : public vendor_sdk::LibraryWorker {
  public:
   /// Starts the scheduler, for a loop of that rate, and waits until the device is calibrated. It
   /// closes the device when that fails.
@@ -41,7 +41,7 @@ class PhantomWorker final : public maker_library::LibraryWorker {
   static unsigned on_cycle(void* of);
   bool cycle();
   void exchange();
-  bool evaluate(maker_library::LibraryPose& pose);
+  bool evaluate(vendor_sdk::LibraryPose& pose);
   bool errors();
   void send(const model::Vec3& force_N);
   void let_go();

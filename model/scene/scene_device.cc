@@ -161,21 +161,21 @@ void visit_falcon(reader::Keys& k, FalconSettings& f) {
 }
 
 void visit_force_dimension(reader::Keys& k, ForceDimensionSettings& f) {
-  k.text("library", "the maker's, by name or path", f.library, kOptional);
+  k.text("library", "the vendor's, by name or path", f.library, kOptional);
   visit_whole(k, "id", {-1.0, 15.0}, "of the device, -1: the only one", f.id);
   // FD-3: the device counts 255 units of 125 us at most.
   k.number("watchdog_s", {0.001, 0.0318}, "without a force for so long the device lets go",
            f.watchdog_s, kOptional);
-  k.number("effector_mass_kg", {0.0, 5.0}, "0: the maker's value", f.effector_mass_kg, kOptional);
+  k.number("effector_mass_kg", {0.0, 5.0}, "0: the vendor's value", f.effector_mass_kg, kOptional);
   k.number("damping_Ns_per_m", {0.0, 50.0}, "that the device has at the handle", f.damping_Ns_per_m,
            kOptional);
-  k.number("gripper_open_rad", {0.0, 1.6}, "of its gripper, fully open; 0: the maker's value",
+  k.number("gripper_open_rad", {0.0, 1.6}, "of its gripper, fully open; 0: the vendor's value",
            f.gripper_open_rad, kOptional);
 }
 
 void visit_phantom(reader::Keys& k, PhantomSettings& p) {
-  k.text("library", "the maker's, by name or path", p.library, kOptional);
-  k.text("name", "that the maker's Touch_Setup gave it; empty: the default device", p.name,
+  k.text("library", "the vendor's, by name or path", p.library, kOptional);
+  k.text("name", "that the vendor's Touch_Setup gave it; empty: the default device", p.name,
          kOptional);
   k.number("damping_Ns_per_m", {0.0, 50.0}, "that the device has at the stylus", p.damping_Ns_per_m,
            kOptional);
@@ -239,10 +239,10 @@ void visit_device(reader::Keys& k, DeviceSettings& out) {
       "falcon", "a Novint Falcon", [&](reader::Keys& falcon) { visit_falcon(falcon, out.falcon); },
       kOptional);
   k.section(
-      "force_dimension", "a Force Dimension device, by its maker's library",
+      "force_dimension", "a Force Dimension device, by its vendor SDK",
       [&](reader::Keys& keys) { visit_force_dimension(keys, out.force_dimension); }, kOptional);
   k.section(
-      "phantom", "a PHANTOM or 3D Systems Touch, by its maker's library",
+      "phantom", "a PHANTOM or 3D Systems Touch, by its vendor SDK",
       [&](reader::Keys& keys) { visit_phantom(keys, out.phantom); }, kOptional);
   k.section(
       "lines", "safety lines", [&](reader::Keys& lines) { visit_lines(lines, out.lines); },

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// led_handle.h - the device behind a stand-in for a maker's library, frame W.
+// led_handle.h - the device behind a stand-in for a vendor SDK, frame W.
 //
 // A handle of 0.3 kg whose weight is balanced, led by a hand of 400 N/m and 12 N s/m down to
 // z = -10 mm and back to 20 mm every 4 s. With TACT_STUB_GRIPS it grips on the way back. The

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// stub_library.h - a stand-in for a maker's library, loaded by a test that steers it.
+// stub_library.h - a stand-in for a vendor SDK, loaded by a test that steers it.
 #pragma once
 
 #include <dlfcn.h>

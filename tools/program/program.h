@@ -76,7 +76,7 @@ class Program {
 struct SceneArguments {
   std::string path;
   std::vector<std::string> overrides;
-  bool trust_library = false;  // of the maker, whoever's file it is
+  bool trust_library = false;  // of the vendor, whoever's file it is
 
   void add_to(CLI::App& options, const std::string& needs = "");
   model::Result<model::scene::Scene> load() const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Press, grip, twist, pull and tear of liver_twist on the stand-ins for the makers' libraries of
+// Press, grip, twist, pull and tear of liver_twist on the stand-ins for the vendor SDKs of
 // Force Dimension and of PHANTOM: the handle goes exactly as the scene's hand wants, three times as
 // fast. The jaws close by the gripper, or by a button.
 #include <fmt/format.h>

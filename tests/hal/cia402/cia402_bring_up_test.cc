@@ -91,7 +91,7 @@ TEST(Cia402BringUp, NodeGuardingMayBeReadOnlyUnlessItStaysOn) {
   stays.drives.axis[1].read_only = {0x100C00, 0x100D00};
   stays.expect_refused(
       "arm 2 (node 2 on can0) keeps its node guarding on (objects 100C, 100D), which does not go "
-      "with heartbeat: set both to 0 with its maker's program. It refuses setting 0x100D:00");
+      "with heartbeat: set both to 0 with its vendor's program. It refuses setting 0x100D:00");
 }
 
 TEST(Cia402BringUp, NodeGuardingThatCannotBeReadIsNotTakenForNone) {

@@ -90,7 +90,7 @@ TEST(Cia402State, NoFaultIsEverTakenForEnabled) {
   }
 }
 
-TEST(Cia402State, BitsTheMakerMayUseDoNotChangeTheState) {
+TEST(Cia402State, BitsTheVendorMayUseDoNotChangeTheState) {
   for (const std::uint16_t bits : std::initializer_list<std::uint16_t>{0x0010, 0x0080, 0xFF00}) {
     EXPECT_EQ(cia402_state(0x27 | bits), Cia402State::kOperationEnabled);
     EXPECT_EQ(cia402_state(0x08 | bits), Cia402State::kFault);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// cia402_emulated_bench.h - a delta on three emulated CiA 402 drives with habits of a maker.
+// cia402_emulated_bench.h - a delta on three emulated CiA 402 drives with habits of a vendor.
 #pragma once
 
 #include <gtest/gtest.h>

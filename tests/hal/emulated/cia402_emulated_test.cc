@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A delta on CiA 402 drives as several makers have them, the virtual bench's emulators.
+// A delta on CiA 402 drives as several vendors have them, the virtual bench's emulators.
 #include <gtest/gtest.h>
 
 #include <utility>
@@ -30,7 +30,7 @@ std::vector<ObjectHabits> all_habits() {
            .life_from_boot = true}};
 }
 
-TEST(Cia402Emulated, EveryMakersDriveGivesTheTorquesThatItIsAskedFor) {
+TEST(Cia402Emulated, EveryVendorsDriveGivesTheTorquesThatItIsAskedFor) {
   for (const ObjectHabits& habits : all_habits()) {
     Bench bench(habits);
     ASSERT_TRUE(bench.run());

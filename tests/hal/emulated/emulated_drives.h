@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // emulated_drives.h - tact's back ends and the virtual bench's drives on one scripted bus.
 //
-// The emulators are written from the makers' objects and share no header with hal/
+// The emulators are written from the vendors' objects and share no header with hal/
 // (tests/house/layering_test.py), so what both sides read alike is no accident of one reading. Time
 // is made: each millisecond of the host is one of the drives.
 #pragma once

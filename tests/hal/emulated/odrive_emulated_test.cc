@@ -187,7 +187,7 @@ constexpr rig::OdriveSettings kAsDelivered{.generation = OdriveGeneration::k05,
                                            .torque_velocity_limit = true,
                                            .velocity_limit_turns_per_s = 2.0};
 
-TEST(OdriveEmulated, WhatTheMakersVelocityLimitCutsIsToldWithTheDrivesOwnNumbers) {
+TEST(OdriveEmulated, WhatTheVendorsVelocityLimitCutsIsToldWithTheDrivesOwnNumbers) {
   Bench bench(kAsDelivered);
   ASSERT_EQ(bench.open(), "");
   const std::string caution = bench.device->info().caution;

@@ -62,7 +62,7 @@ TEST_F(ForceDimension, IsFreshOnlyAfterTheForcesAreOnWithZeroShown) {
   FAIL() << "never fresh";
 }
 
-TEST_F(ForceDimension, TheMakersAxesAreThoseOfW) {
+TEST_F(ForceDimension, TheVendorsAxesAreThoseOfW) {
   open();
   stub.hold(0.011, -0.022, 0.033);
   ASSERT_TRUE(ready());

@@ -176,7 +176,7 @@ TEST_F(Session, WhatHasNoKnownLimitsIsRefused) {
   EXPECT_TRUE(has(refusal(), "device.kind = \"falcon\"")) << refusal();
 }
 
-TEST_F(Session, EveryTypeOfTheMakerOpensWithForceAndRoom) {
+TEST_F(Session, EveryTypeOfTheVendorOpensWithForceAndRoom) {
   for (const int type :
        {31, 32, 61, 62, 63, 64, 33, 34, 35, 36, 37, 206, 104, 105, 106, 107, 203, 108, 109}) {
     const auto known = force_dimension_type(type);

@@ -112,7 +112,7 @@ TEST(OdriveBringUp, ThreeFirmwaresOfTwoGenerationsAreRefused) {
 
 TEST(OdriveBringUp, ADriveThatTellsItsPositionTooSeldomIsNamed) {
   Bench bench;
-  bench.drives.axis[0].position_every_ms = 10;  // the maker's default
+  bench.drives.axis[0].position_every_ms = 10;  // the vendor's default
   bench.expect_refused("arm 1 (node 1 on can0) sends its position 100 times a second, not 1000");
   Bench mute;
   mute.drives.axis[0].says_position = false;

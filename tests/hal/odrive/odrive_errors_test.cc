@@ -10,7 +10,7 @@
 
 namespace tact::hal::odrive::odrive_errors_test {
 
-TEST(OdriveErrors, EveryBitOfTheMakerHasItsOwnSentence) {
+TEST(OdriveErrors, EveryBitOfTheVendorHasItsOwnSentence) {
   const auto check = [](std::span<const OdriveErrorWords> table, std::uint32_t all) {
     std::uint32_t bits = 0;
     std::set<std::string> names, sentences;

@@ -54,7 +54,7 @@ TEST_F(Phantom, IsFreshOnlyAfterTheForceOutputIsOnWithZeroShown) {
 
 TEST_F(Phantom, RightUpAndTowardsTheOperatorAreYZAndXOfW) {
   open();
-  // The middle of the box where the maker promises forces is 0, 10, 5 mm.
+  // The middle of the box where the vendor promises forces is 0, 10, 5 mm.
   stub.hold(11.0, 32.0, -28.0);
   const auto there = [&] {
     return sample.fresh && norm(sample.tool.position_m - Vec3{-0.033, 0.011, 0.022}) < 1e-12;

@@ -101,7 +101,7 @@ TEST_F(PhantomSessions, WithoutCalibrationItSaysWhatToDo) {
   stub.set_calibration(kHdNeedsHand);
   expect_refusal({"the Touch is not calibrated; put its stylus into the inkwell"});
   stub.set_number(kHdCalibrationStyle, 1);
-  expect_refusal({"the Touch is not calibrated; calibrate it by the maker's Touch_Diagnostic"});
+  expect_refusal({"the Touch is not calibrated; calibrate it by the vendor's Touch_Diagnostic"});
 }
 
 TEST_F(PhantomSessions, AStylusInTheInkwellIsCalibratedByTheStart) {
@@ -113,7 +113,7 @@ TEST_F(PhantomSessions, AStylusInTheInkwellIsCalibratedByTheStart) {
 TEST_F(PhantomSessions, EncodersThatAreResetByHandAreNeverResetByTact) {
   stub.set_number(kHdCalibrationStyle, 1);
   stub.set_calibration(kHdNeedsUpdate);
-  expect_refusal({"not calibrated; calibrate it by the maker's Touch_Diagnostic"});
+  expect_refusal({"not calibrated; calibrate it by the vendor's Touch_Diagnostic"});
   EXPECT_EQ(stub.calls("hdUpdateCalibration"), 0);
 }
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A Falcon on USB, and the makers' libraries of the others as stubs."""
+"""A Falcon on USB, and the vendor SDKs of the others as stubs."""
 from bench import checks
 from bench.back_ends import FALCON, FALCON_COLD, FORCE_DIMENSION, PHANTOM
 from bench.case import Case

@@ -54,9 +54,9 @@ void add_odrive(CLI::App& app, OdriveSettings& odrive) {
   app.add_flag("--estimates-from-power-on", odrive.estimates_from_power_on,
                "ODrive 0.5: without waiting for closed loop, unlike firmware 0.5.6");
   app.add_flag("--torque-velocity-limit", odrive.torque_velocity_limit,
-               "ODrive: velocity cuts the torque, the maker's default");
+               "ODrive: velocity cuts the torque, the vendor's default");
   app.add_option("--velocity-limit-turns-per-s", odrive.velocity_limit_turns_per_s,
-                 "ODrive; the maker's default is 2")
+                 "ODrive; the vendor's default is 2")
       ->capture_default_str();
 }
 

@@ -66,7 +66,7 @@ void catch_up() {
 
 extern "C" {
 
-// NOLINTBEGIN(readability-identifier-naming): the maker's names
+// NOLINTBEGIN(readability-identifier-naming): the vendor's names
 int dhdGetDeviceCount() {
   const Locked locked;
   return enter("dhdGetDeviceCount") < 0 ? -1 : state.count;

@@ -2,7 +2,7 @@
 // stub_hd.cc - a library with the symbols of OpenHaptics' libHD.so, for PCs without it: a stand-in
 // for tests and for the bench (device.phantom.library = ".../libtact-stub-hd.so").
 //
-// Behind it a Touch, led by a hand (led_handle.h). As in the maker's, the device is driven by a
+// Behind it a Touch, led by a hand (led_handle.h). As in the vendor's, the device is driven by a
 // thread of the library, 1000 times a second, with one frame in each of its cycles; a force counts
 // when its frame ends. With TACT_STUB_HD_HANGS_AT=N that thread stands for ever in its N-th cycle.
 #include <unistd.h>
@@ -105,7 +105,7 @@ void call_once_a_millisecond() {
 
 extern "C" {
 
-// NOLINTBEGIN(readability-identifier-naming): the maker's names
+// NOLINTBEGIN(readability-identifier-naming): the vendor's names
 struct HDErrorInfo {
   unsigned code;
   int internal_code;

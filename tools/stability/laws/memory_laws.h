@@ -14,7 +14,7 @@ namespace tact::tools::stability {
 
 inline constexpr double kPatchRange_m = 0.01;
 
-/// Makers of a mass-spring patch, and of a closed-form law that relaxes.
+/// Vendors of a mass-spring patch, and of a closed-form law that relaxes.
 SiteLawMaker patch_maker(bool relaxes);
 SiteLawMaker relaxing_maker(const std::shared_ptr<const model::law::Law>& law);
 

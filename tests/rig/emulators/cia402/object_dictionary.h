@@ -9,7 +9,7 @@
 //
 // Rules of CiA 301: a PDO is changed only while bit 31 of its COB-id disables it, its mapping only
 // while sub 0 is zero, and neither while the node is operational. Sources: CiA 301 and CiA 402-2 as
-// the makers' manuals quote them.
+// the vendors' manuals quote them.
 #pragma once
 
 #include <array>
@@ -50,7 +50,7 @@ using Sdo = std::array<std::uint8_t, 8>;
 /// The frame that refuses.
 Sdo sdo_abort(std::uint16_t index, std::uint8_t sub, SdoAbort code);
 
-/// What a drive may do otherwise, each as makers' objects or open stacks have it.
+/// What a drive may do otherwise, each as vendors' objects or open stacks have it.
 struct ObjectHabits {
   bool no_request_stays =
       false;  // 1800:01: bit 30, no remote request, is set and may not be cleared

@@ -10,7 +10,7 @@
 // writes here: with a gain and a limit it winds up all the same. A reply tells of the moment before
 // the command of its frame. Torque counts at the output.
 //
-// Reading of the maker's register reference and open firmware; nothing here comes from the drivers
+// Reading of the vendor's register reference and open firmware; nothing here comes from the drivers
 // under test.
 #pragma once
 
@@ -23,9 +23,9 @@ namespace tact::rig {
 struct MoteusSettings {
   int prepare_ms = 20;
   double default_timeout_s = 0.1;
-  int timeout_mode = 12;  // 0: lets go; 12: damps, the maker's default
+  int timeout_mode = 12;  // 0: lets go; 12: damps, the vendor's default
   double timeout_max_torque_Nm = 5.0;
-  double kp_Nm = 4.0, kd_Nms = 0.05;  // per turn, the maker's defaults
+  double kp_Nm = 4.0, kd_Nms = 0.05;  // per turn, the vendor's defaults
   double integral_gain_Nm_per_turn_s = 0.0, integral_limit_Nm = 0.0;
   double max_torque_Nm = 1.6;
   int home_state = 2;  // 0 relative, 1 rotor, 2 output

@@ -7,7 +7,7 @@
 //     types     int8, int16, int32 in steps of the register, float as it is
 //
 // The smallest integer, and NaN, mean "not known". Source: the protocol and register reference of
-// the maker's documentation, and the open firmware (moteus_controller.cc).
+// the vendor's documentation, and the open firmware (moteus_controller.cc).
 #pragma once
 
 #include <cstdint>

@@ -35,9 +35,9 @@ struct OdriveSettings {
   bool estimates_from_power_on = false;       // 0.5: not as firmware 0.5.6 has them
   bool is_calibrated = true;                  // else it refuses closed loop and index search
   bool motor_supply = true;                   // else it falls out of closed loop at once
-  bool torque_velocity_limit = false;         // the maker's default is true
-  double velocity_limit_turns_per_s = 100.0;  // the maker's default is 2
-  double velocity_gain = 1.0 / 6.0;           // N m/(turn/s), the maker's default
+  bool torque_velocity_limit = false;         // the vendor's default is true
+  double velocity_limit_turns_per_s = 100.0;  // the vendor's default is 2
+  double velocity_gain = 1.0 / 6.0;           // N m/(turn/s), the vendor's default
 };
 
 class OdriveDrive final : public Drive {

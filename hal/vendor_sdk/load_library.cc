@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hal/maker_library/load_library.h"
+#include "hal/vendor_sdk/load_library.h"
 
 #include <dlfcn.h>
 #include <fmt/format.h>
 
-#include "hal/maker_library/library_trust.h"
+#include "hal/vendor_sdk/library_trust.h"
 
-namespace tact::hal::maker_library {
+namespace tact::hal::vendor_sdk {
 
 using model::Error;
 using model::Result;
@@ -22,10 +22,10 @@ std::optional<Error> LoadedLibrary::lacks() {
       name_, missing_, of_.whose, of_.setting, of_.file)};
 }
 
-Result<LoadedLibrary> load_library(const std::string& name, bool trusted, const MakerLibrary& of) {
+Result<LoadedLibrary> load_library(const std::string& name, bool trusted, const VendorSdk& of) {
   const auto not_loaded = [&](const std::string& why) {
     return Error{fmt::format(
-        "{} library cannot be loaded: {}; it belongs to its maker and is no part of tact: get {}, "
+        "{} library cannot be loaded: {}; it belongs to its vendor and is no part of tact: get {}, "
         "and let {} name its {} by path",
         of.whose, why, of.source, of.setting, of.file)};
   };
@@ -46,4 +46,4 @@ Result<LoadedLibrary> load_library(const std::string& name, bool trusted, const 
   return LoadedLibrary(library, name, of);
 }
 
-}  // namespace tact::hal::maker_library
+}  // namespace tact::hal::vendor_sdk

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hal/maker_library/library_worker.h"
+#include "hal/vendor_sdk/library_worker.h"
 
 #include <gtest/gtest.h>
 
-namespace tact::hal::maker_library::library_worker_test {
+namespace tact::hal::vendor_sdk::library_worker_test {
 
 using namespace std::chrono_literals;
 using model::Fault;
@@ -146,4 +146,4 @@ TEST(LibraryWorker, AStopClosesWhatHasReturnedAndNothingElse) {
   EXPECT_TRUE(worker.closed);
 }
 
-}  // namespace tact::hal::maker_library::library_worker_test
+}  // namespace tact::hal::vendor_sdk::library_worker_test

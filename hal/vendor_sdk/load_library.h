@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// load_library.h - a maker's library, loaded by name when a scene asks for it, and its functions.
+// load_library.h - a vendor SDK, loaded by name when a scene asks for it, and its functions.
 //
 // The library is proprietary and never part of tact: a device's room declares prototypes of its
 // own. Unless the person trusts it, the file must be one of root's (library_trust.h). Once all
@@ -11,10 +11,10 @@
 
 #include "model/result.h"
 
-namespace tact::hal::maker_library {
+namespace tact::hal::vendor_sdk {
 
 /// Whose it is, for the sentences.
-struct MakerLibrary {
+struct VendorSdk {
   const char* whose;    // "Force Dimension's"
   const char* source;   // "the SDK at forcedimension.com"
   const char* setting;  // "device.force_dimension.library"
@@ -41,19 +41,19 @@ class LoadedLibrary {
 
  private:
   friend model::Result<LoadedLibrary> load_library(const std::string& name, bool trusted,
-                                                   const MakerLibrary& of);
-  LoadedLibrary(void* library, std::string name, const MakerLibrary& of)
+                                                   const VendorSdk& of);
+  LoadedLibrary(void* library, std::string name, const VendorSdk& of)
       : library_(library), name_(std::move(name)), of_(of) {}
   void* address_of(const char* symbol) const;
 
   void* library_;
   std::string name_;
-  MakerLibrary of_;
+  VendorSdk of_;
   const char* missing_ = nullptr;
 };
 
 /// Loads the file of this name or path.
 model::Result<LoadedLibrary> load_library(const std::string& name, bool trusted,
-                                          const MakerLibrary& of);
+                                          const VendorSdk& of);
 
-}  // namespace tact::hal::maker_library
+}  // namespace tact::hal::vendor_sdk

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hal/maker_library/library_worker.h"
+#include "hal/vendor_sdk/library_worker.h"
 
 #include <fmt/format.h>
 #include <pthread.h>
@@ -13,7 +13,7 @@
 
 #include "hal/loop_gone.h"
 
-namespace tact::hal::maker_library {
+namespace tact::hal::vendor_sdk {
 namespace {
 
 using namespace std::chrono_literals;
@@ -124,4 +124,4 @@ bool LibraryWorker::stop(std::chrono::milliseconds patience) {
   return true;
 }
 
-}  // namespace tact::hal::maker_library
+}  // namespace tact::hal::vendor_sdk

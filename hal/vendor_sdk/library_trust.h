@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// library_trust.h - which file may be loaded as a maker's library.
+// library_trust.h - which file may be loaded as a vendor SDK.
 //
 // A scene names it, and a scene may come from anybody; what is loaded runs with all that tactd may
 // do. So the file, and every folder on its way, belongs to root and can be written by nobody else,
@@ -16,7 +16,7 @@
 
 #include "model/result.h"
 
-namespace tact::hal::maker_library {
+namespace tact::hal::vendor_sdk {
 
 /// Where it may lie, and whose it must be; a test has others.
 struct LibraryFolders {
@@ -36,4 +36,4 @@ model::Result<std::string> find_library(const std::string& name,
 std::optional<model::Error> distrust_library(const std::string& file, const std::string& remedy,
                                              const LibraryFolders& folders = system_folders());
 
-}  // namespace tact::hal::maker_library
+}  // namespace tact::hal::vendor_sdk

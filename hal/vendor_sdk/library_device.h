@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// library_device.h - a device that its maker's library drives.
+// library_device.h - a device that its vendor SDK drives.
 //
 // The loop only exchanges slots with the thread that calls the library (library_worker.h): no
 // system call in read or write. Velocities come from the shared observer. A sample is fresh when it
@@ -12,14 +12,14 @@
 #include <string>
 
 #include "hal/device.h"
-#include "hal/maker_library/library_worker.h"
 #include "hal/velocity_observer.h"
+#include "hal/vendor_sdk/library_worker.h"
 
-namespace tact::hal::maker_library {
+namespace tact::hal::vendor_sdk {
 
 /// Of every such device, for `DeviceInfo::caution`.
 inline constexpr const char* kNoGuardian =
-    "if tactd is killed or the library hangs, nothing zeroes this device, because its maker's "
+    "if tactd is killed or the library hangs, nothing zeroes this device, because its vendor's "
     "library shares no handle: put its supply on a relay";
 
 /// For `DeviceInfo::caution`, "; " first: the damping is the default of this key. Empty where the
@@ -59,4 +59,4 @@ class LibraryDevice final : public Device {
   std::atomic<bool> stopped_{false}, stuck_{false};
 };
 
-}  // namespace tact::hal::maker_library
+}  // namespace tact::hal::vendor_sdk

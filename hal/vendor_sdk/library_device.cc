@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hal/maker_library/library_device.h"
+#include "hal/vendor_sdk/library_device.h"
 
 #include <fmt/format.h>
 
@@ -7,11 +7,11 @@
 #include <cmath>
 #include <utility>
 
-#include "hal/maker_library/rotation.h"
 #include "hal/monotonic.h"
 #include "hal/saturation.h"
+#include "hal/vendor_sdk/rotation.h"
 
-namespace tact::hal::maker_library {
+namespace tact::hal::vendor_sdk {
 namespace {
 
 constexpr double kObserver_Hz = 40.0;
@@ -93,4 +93,4 @@ void LibraryDevice::stop() {
   if (!stopped_.exchange(true)) stuck_ = !worker_->stop();
 }
 
-}  // namespace tact::hal::maker_library
+}  // namespace tact::hal::vendor_sdk

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hal/maker_library/load_library.h"
+#include "hal/vendor_sdk/load_library.h"
 
 #include <gtest/gtest.h>
 
-namespace tact::hal::maker_library::load_library_test {
+namespace tact::hal::vendor_sdk::load_library_test {
 
-constexpr MakerLibrary kMaker{.whose = "A maker's",
-                              .source = "the SDK at example.org",
-                              .setting = "device.example.library",
-                              .file = "libexample.so.1",
-                              .folder = "/opt/example"};
+constexpr VendorSdk kVendor{.whose = "A vendor's",
+                            .source = "the SDK at example.org",
+                            .setting = "device.example.library",
+                            .file = "libexample.so.1",
+                            .folder = "/opt/example"};
 
 TEST(LoadLibrary, FindsAFunctionInALibraryOfTheSystem) {
-  auto library = load_library("libm.so.6", false, kMaker);
+  auto library = load_library("libm.so.6", false, kVendor);
   ASSERT_TRUE(library) << library.error().sentence;
   double (*root)(double) = nullptr;
   library->need("sqrt", root);
@@ -21,7 +21,7 @@ TEST(LoadLibrary, FindsAFunctionInALibraryOfTheSystem) {
 }
 
 TEST(LoadLibrary, NamesTheFirstFunctionThatIsMissingAndNoneThatMayBe) {
-  auto library = load_library("libm.so.6", false, kMaker);
+  auto library = load_library("libm.so.6", false, kVendor);
   ASSERT_TRUE(library) << library.error().sentence;
   void (*none)() = nullptr;
   EXPECT_FALSE(library->find("exampleMayLack", none));
@@ -32,12 +32,12 @@ TEST(LoadLibrary, NamesTheFirstFunctionThatIsMissingAndNoneThatMayBe) {
   const auto error = library->lacks();
   ASSERT_TRUE(error);
   EXPECT_EQ(error->sentence,
-            "libm.so.6 has no function exampleOpen, so it is not A maker's library or too old a "
+            "libm.so.6 has no function exampleOpen, so it is not A vendor SDK or too old a "
             "one; let device.example.library name libexample.so.1 of a current SDK");
 }
 
 TEST(LoadLibrary, WhatIsNotThereIsToldWithWhereToGetIt) {
-  const auto library = load_library("libexample.so.1", false, kMaker);
+  const auto library = load_library("libexample.so.1", false, kVendor);
   ASSERT_FALSE(library);
   for (const char* part : {"libexample.so.1: in no system folder", "the SDK at example.org",
                            "let device.example.library name its libexample.so.1 by path"})
@@ -47,16 +47,16 @@ TEST(LoadLibrary, WhatIsNotThereIsToldWithWhereToGetIt) {
 TEST(LoadLibrary, AFileOfAnybodyNeedsATrustingPerson) {
   const std::string file = testing::TempDir() + "tact-anybodys-library";
   std::ofstream(file) << "no library";
-  const auto refused = load_library(file, false, kMaker);
+  const auto refused = load_library(file, false, kVendor);
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().sentence.find("sudo install -D -o root -m 644 libexample.so.1 "
                                           "/opt/example/libexample.so.1"),
             std::string::npos)
       << refused.error().sentence;
-  const auto trusted = load_library(file, true, kMaker);
+  const auto trusted = load_library(file, true, kVendor);
   ASSERT_FALSE(trusted);
   EXPECT_NE(trusted.error().sentence.find("library cannot be loaded"), std::string::npos);
   std::filesystem::remove(file);
 }
 
-}  // namespace tact::hal::maker_library::load_library_test
+}  // namespace tact::hal::vendor_sdk::load_library_test

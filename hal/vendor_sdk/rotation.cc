@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hal/maker_library/rotation.h"
+#include "hal/vendor_sdk/rotation.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
 
-namespace tact::hal::maker_library {
+namespace tact::hal::vendor_sdk {
 namespace {
 
 using model::Quat;
@@ -14,7 +14,7 @@ using model::Vec3;
 
 /// R R^T = I within kNoRotation, det R = +1.
 bool is_rotation(const double r[3][3]) {
-  constexpr double kNoRotation = 1e-3;  // the maker's angles have rounding of their own
+  constexpr double kNoRotation = 1e-3;  // the vendor's angles have rounding of their own
   const Vec3 x{r[0][0], r[0][1], r[0][2]}, y{r[1][0], r[1][1], r[1][2]},
       z{r[2][0], r[2][1], r[2][2]};
   const double off[] = {dot(x, x) - 1.0, dot(y, y) - 1.0, dot(z, z) - 1.0,
@@ -58,4 +58,4 @@ Vec3 rotation_vector_rad(const Quat& q) RT_SAFE {
   return s > 1e-12 ? v * (2.0 * std::atan2(s, sign * q.w) / s) : 2.0 * v;
 }
 
-}  // namespace tact::hal::maker_library
+}  // namespace tact::hal::vendor_sdk

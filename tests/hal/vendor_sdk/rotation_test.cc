@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hal/maker_library/rotation.h"
+#include "hal/vendor_sdk/rotation.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-namespace tact::hal::maker_library::rotation_test {
+namespace tact::hal::vendor_sdk::rotation_test {
 
 TEST(Rotation, ARotationBecomesTheQuaternionThatTurnsTheSame) {
   const double third_turn[3][3] = {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}};  // about (1, 1, 1)
@@ -56,4 +56,4 @@ TEST(Rotation, WhatIsNoRotationIsNoOrientation) {
   for (const auto& r : none) EXPECT_TRUE(std::isnan(quat_from_rotation(r).w));
 }
 
-}  // namespace tact::hal::maker_library::rotation_test
+}  // namespace tact::hal::vendor_sdk::rotation_test

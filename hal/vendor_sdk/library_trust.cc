@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hal/maker_library/library_trust.h"
+#include "hal/vendor_sdk/library_trust.h"
 
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <optional>
 
-namespace tact::hal::maker_library {
+namespace tact::hal::vendor_sdk {
 namespace {
 
 using model::Error;
@@ -85,4 +85,4 @@ std::optional<Error> distrust_library(const std::string& file, const std::string
   return std::nullopt;
 }
 
-}  // namespace tact::hal::maker_library
+}  // namespace tact::hal::vendor_sdk

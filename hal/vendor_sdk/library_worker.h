@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// library_worker.h - what the threads that call a maker's library share with the loop.
+// library_worker.h - what the threads that call a vendor SDK share with the loop.
 //
 // The library may wait for USB, for locks, for threads of its own; the loop never calls it. It
 // exchanges the newest pose and the newest command with the worker's thread, which calls the
@@ -24,7 +24,7 @@
 #include "model/fault.h"
 #include "model/types.h"
 
-namespace tact::hal::maker_library {
+namespace tact::hal::vendor_sdk {
 
 struct LibraryPose {
   model::Vec3 position_m;
@@ -129,4 +129,4 @@ class LibraryWorker {
   std::atomic<int> running_{0};
 };
 
-}  // namespace tact::hal::maker_library
+}  // namespace tact::hal::vendor_sdk

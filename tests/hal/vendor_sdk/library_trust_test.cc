@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hal/maker_library/library_trust.h"
+#include "hal/vendor_sdk/library_trust.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -10,7 +10,7 @@
 
 #include "tests/support/sentence.h"
 
-namespace tact::hal::maker_library::library_trust_test {
+namespace tact::hal::vendor_sdk::library_trust_test {
 
 using tests::sentence_of;
 
@@ -102,4 +102,4 @@ TEST(SystemFolders, HoldTheSystemsOwnLibraries) {
   EXPECT_NE(sentence_of(distrust_library("/proc/self/exe", kRemedy)), "");
 }
 
-}  // namespace tact::hal::maker_library::library_trust_test
+}  // namespace tact::hal::vendor_sdk::library_trust_test
