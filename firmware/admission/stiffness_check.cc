@@ -40,10 +40,10 @@ double stiffest_sideways_N_per_m(const model::scene::Scene& scene,
   if (scene.contact.sliding_stiffness_N_per_m > 0.0) return scene.contact.sliding_stiffness_N_per_m;
   double most_N_per_m = 0.0;
   const auto ask = [&](const model::contact::Place& place, const model::contact::Axes& axes) {
-    const model::contact::TangentGive give = law.tangent_give(place, true, axes);
+    const model::contact::TangentCompliance give = law.tangent_compliance(place, true, axes);
     for (const model::contact::ProbeSphere& sphere : scene.tool.spheres) {
-      const double give_m_per_N = give.at(sphere.radius_m).least_eigenvalue();
-      if (give_m_per_N > 0.0) most_N_per_m = std::max(most_N_per_m, 1.0 / give_m_per_N);
+      const double compliance_m_per_N = give.at(sphere.radius_m).least_eigenvalue();
+      if (compliance_m_per_N > 0.0) most_N_per_m = std::max(most_N_per_m, 1.0 / compliance_m_per_N);
     }
   };
   // At every vertex, from every triangle that meets there: in between the give is a mean of them.

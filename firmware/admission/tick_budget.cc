@@ -85,7 +85,7 @@ LawTime measure_law(const model::scene::Scene& scene, model::contact::SiteLaw& t
       unused_N += twin.respond({.sphere = i,
                                 .place = site.place,
                                 .normal = site.normal,
-                                .dent_m = 0.25 * deepest_m * (1.0 + wave)})
+                                .indentation_m = 0.25 * deepest_m * (1.0 + wave)})
                       .law.force_N;
     }
     if (scene.tool.blade) twin.cut(still(*scene.tool.blade, ways[0][tick % kTurnTicks].point_m));

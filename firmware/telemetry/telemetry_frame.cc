@@ -218,14 +218,14 @@ void FrameBuilder::add_site(const model::contact::SphereContact& sphere_contact,
   // Its own dent, as the page adds the dents up; what lies in another's dent has none.
   const bool is_held = sphere_contact.state == model::contact::ContactState::kHeld;
   const bool presses = sphere_contact.state == model::contact::ContactState::kTouching &&
-                       sphere_contact.dent_m > 0.0;
+                       sphere_contact.indentation_m > 0.0;
   if (!is_held && !presses) return;
   std::array<double, kMaxRings> ring_m{};
   const model::contact::Indentation in{.place = sphere_contact.place,
                                        .normal = sphere_contact.normal,
-                                       .dent_m = sphere_contact.dent_m};
-  const std::size_t count = dents_.profile(in, ring_m);
-  put(site.tilt, dents_.tilt(in));
+                                       .indentation_m = sphere_contact.indentation_m};
+  const std::size_t count = indentations_.profile(in, ring_m);
+  put(site.tilt, indentations_.tilt(in));
   for (std::size_t j = 0; j < count; ++j) site.profile_m[j] = static_cast<float>(ring_m[j]);
 }
 

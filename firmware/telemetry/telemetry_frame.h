@@ -38,8 +38,9 @@ Frame frame_of_tick(const Frame& picture, const LoggedTick& tick, std::int64_t t
 class FrameBuilder {
  public:
   /// `dents` and `shapes` outlive the builder; profiles are solved here, far from the loop.
-  FrameBuilder(const model::contact::DentView& dents, loop::ShapeSlot& shapes, bool non_rt)
-      : dents_(dents), shapes_(shapes), non_rt_(non_rt) {}
+  FrameBuilder(const model::contact::IndentationView& indentations, loop::ShapeSlot& shapes,
+               bool non_rt)
+      : indentations_(indentations), shapes_(shapes), non_rt_(non_rt) {}
 
   void add(const loop::TickRecord& record);
   bool has_news() const { return !tick_us_.empty(); }
@@ -49,7 +50,7 @@ class FrameBuilder {
   void add_site(const model::contact::SphereContact& sphere_contact, FrameSite& site) const;
   void add_patch(FramePatch& patch);
 
-  const model::contact::DentView& dents_;
+  const model::contact::IndentationView& indentations_;
   loop::ShapeSlot& shapes_;
   model::contact::PatchShape shape_;
   bool non_rt_;

@@ -30,7 +30,7 @@ double FalconBalanceRamp::step(double height_m, double speed_mps, const std::arr
   highest_m_ = std::max(highest_m_, height_m);
   force_N_ = std::max(0.0, force_N_ - step_N);
   if (highest_m_ - height_m >= settings_.move_m) {
-    sunk_ = words;
+    coupled_ = words;
     end(State::kBalanced);
   }
   return force_N_;
@@ -38,7 +38,7 @@ double FalconBalanceRamp::step(double height_m, double speed_mps, const std::arr
 
 std::array<double, 3> FalconBalanceRamp::words() const RT_SAFE {
   std::array<double, 3> mean{};
-  for (std::size_t i = 0; i < 3; ++i) mean[i] = 0.5 * (lifted_[i] + sunk_[i]);
+  for (std::size_t i = 0; i < 3; ++i) mean[i] = 0.5 * (lifted_[i] + coupled_[i]);
   return mean;
 }
 

@@ -46,7 +46,7 @@ class FalconBalanceRamp {
   State state_ = State::kLifting;
   bool started_ = false;
   double lowest_m_ = 0.0, highest_m_ = 0.0, force_N_ = 0.0, elapsed_s_ = 0.0;
-  std::array<int, 3> lifted_{}, sunk_{};
+  std::array<int, 3> lifted_{}, coupled_{};
 };
 
 }  // namespace tact::hal::falcon

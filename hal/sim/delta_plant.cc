@@ -114,18 +114,18 @@ model::Vec3 DeltaPlant::with_friction(const model::Vec3& free_mps, const model::
   if (!(most_Nms > 0.0)) return free_mps;
   const model::Mat3 give =
       a_inverse * transpose(k);  // column i: velocity for a unit impulse on joint i
-  const model::Mat3 give_columns = transpose(give);
+  const model::Mat3 compliance_columns = transpose(give);
   model::Vec3 velocity_mps = free_mps;
   delta::Joints impulse_Nms{};
   for (int sweep = 0; sweep < kFrictionSweeps; ++sweep) {
     for (std::size_t i = 0; i < 3; ++i) {
-      const double compliance = dot(k.row[i], give_columns.row[i]);
+      const double compliance = dot(k.row[i], compliance_columns.row[i]);
       // A joint in line with its rod has a row of zeros: nothing can be told of it.
       if (!(compliance > 0.0)) continue;
       // the impulse that would stop joint i, as far as friction can give it
       const double wanted_Nms = impulse_Nms[i] - dot(k.row[i], velocity_mps) / compliance;
       const double next_Nms = std::clamp(wanted_Nms, -most_Nms, most_Nms);
-      velocity_mps += (next_Nms - impulse_Nms[i]) * give_columns.row[i];
+      velocity_mps += (next_Nms - impulse_Nms[i]) * compliance_columns.row[i];
       impulse_Nms[i] = next_Nms;
     }
   }

@@ -179,8 +179,8 @@ void Contact::let_go(Sphere& sphere) RT_SAFE {
     if (!sphere.lets_go) return;
     sphere.shrinks_m = organ().cut_to_law_m(sphere.index);
   }
-  organ().add_slack(sphere.index, kSlide_ratio * norm(sphere.moved_m) +
-                                      sphere.shrinks_m * scene_.period_s / kLetGo_s);
+  organ().add_depth_offset(sphere.index, kSlide_ratio * norm(sphere.moved_m) +
+                                             sphere.shrinks_m * scene_.period_s / kLetGo_s);
 }
 
 // The first that must: its going changes what the others feel.

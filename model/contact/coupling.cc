@@ -25,12 +25,12 @@ bool is_coupled(const Coupling& c, std::size_t i) RT_SAFE {
 
 // A sphere that is not held feels nothing of a dent that lies below it.
 void ask(SiteLaw& law, PressingSphere& sphere) RT_SAFE {
-  const double dent_m = sphere.in.dent_m;
-  const bool is_off = !sphere.in.held && !(dent_m > 0.0);
-  if (is_off) sphere.in.dent_m = 0.0;
+  const double indentation_m = sphere.in.indentation_m;
+  const bool is_off = !sphere.in.held && !(indentation_m > 0.0);
+  if (is_off) sphere.in.indentation_m = 0.0;
   // Asked at 0, not left out: a law that remembers must know that the sphere is there.
   sphere.response = law.respond(sphere.in);
-  sphere.in.dent_m = dent_m;
+  sphere.in.indentation_m = indentation_m;
   // Its force stays 0 while its dent changes: at rest a law tells a slope all the same.
   if (is_off) sphere.response.law.stiffness_N_per_m = 0.0;
 }
@@ -59,7 +59,7 @@ Vector miss_of(const Coupling& c, std::span<const PressingSphere> spheres) RT_SA
   Vector miss{};
   for (std::size_t i = 0; i < spheres.size(); ++i)
     if (spheres[i].presses)
-      miss[i] = spheres[i].depth_m - sunk_m(c, spheres, i) - spheres[i].in.dent_m;
+      miss[i] = spheres[i].depth_m - coupled_m(c, spheres, i) - spheres[i].in.indentation_m;
   return miss;
 }
 
@@ -72,7 +72,7 @@ bool is_solved(SiteLaw& law, const Coupling& c, std::span<PressingSphere> sphere
       continue;
     }
     // Alone, e is d to the bit: a single sphere pays for no iteration and gets no rounding.
-    if (!is_coupled(c, i)) sphere.in.dent_m = sphere.depth_m;
+    if (!is_coupled(c, i)) sphere.in.indentation_m = sphere.depth_m;
     ask(law, sphere);
   }
   for (int step = 0; step <= kMaxSteps; ++step) {
@@ -83,7 +83,7 @@ bool is_solved(SiteLaw& law, const Coupling& c, std::span<PressingSphere> sphere
     const Vector change_m = newton_step(c, spheres, miss_m);
     for (std::size_t i = 0; i < spheres.size(); ++i) {
       if (!spheres[i].presses || change_m[i] == 0.0) continue;
-      spheres[i].in.dent_m += change_m[i];
+      spheres[i].in.indentation_m += change_m[i];
       ask(law, spheres[i]);
     }
   }
@@ -97,7 +97,8 @@ double coupling_m_per_N(const SiteCoupling& c, const Vec3& n_i, const Vec3& n_j)
   return x * c.skin_m_per_N + 0.5 * x * (3.0 - x * x) * c.lobe_m_per_N;
 }
 
-double sunk_m(const Coupling& c, std::span<const PressingSphere> spheres, std::size_t i) RT_SAFE {
+double coupled_m(const Coupling& c, std::span<const PressingSphere> spheres,
+                 std::size_t i) RT_SAFE {
   double sum_m = 0.0;
   for (std::size_t j = 0; j < spheres.size(); ++j)
     if (spheres[j].presses) sum_m += c[i][j] * spheres[j].response.law.force_N;
@@ -110,14 +111,14 @@ double press_together(SiteLaw& law, Coupling& c, std::span<PressingSphere> spher
   for (int i = 0; i < kTries && !is_solved(law, c, spheres); ++i) {
     for (auto& row : c)
       for (double& m_per_N : row) m_per_N *= i + 2 < kTries ? 0.5 : 0.0;
-    for (PressingSphere& sphere : spheres) sphere.in.dent_m = sphere.depth_m;
+    for (PressingSphere& sphere : spheres) sphere.in.indentation_m = sphere.depth_m;
   }
   // MC-3  W = sum U_i(e_i) + F' C F / 2
   double energy_J = 0.0;
   for (std::size_t i = 0; i < spheres.size(); ++i)
     if (spheres[i].presses)
       energy_J += spheres[i].response.law.energy_J +
-                  0.5 * spheres[i].response.law.force_N * sunk_m(c, spheres, i);
+                  0.5 * spheres[i].response.law.force_N * coupled_m(c, spheres, i);
   return energy_J;
 }
 

@@ -49,7 +49,7 @@ double coupling_m_per_N(const SiteCoupling& c, const Vec3& n_i, const Vec3& n_j)
 double press_together(SiteLaw& law, Coupling& c, std::span<PressingSphere> spheres) RT_SAFE;
 
 /// sum over j of C_ij F_j, m: how far the others have sunk the site of sphere i.
-double sunk_m(const Coupling& c, std::span<const PressingSphere> spheres, std::size_t i) RT_SAFE;
+double coupled_m(const Coupling& c, std::span<const PressingSphere> spheres, std::size_t i) RT_SAFE;
 
 /// Largest factor of C, 0 .. 1, with which the matrix above is positive definite by a margin, for
 /// the largest stiffness of each sphere's site.

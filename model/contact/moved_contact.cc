@@ -78,7 +78,7 @@ void MovedContact::begin(const Sphere& sphere, const Site& site, double paid_m) 
   couple();
   fill_matrices(organ_);
   b.height_m = local_position(b.at, b.y_m).height_m;
-  b.slack_m = std::max(0.0, b.radius_m - b.height_m - paid_m);
+  b.depth_offset_m = std::max(0.0, b.radius_m - b.height_m - paid_m);
 }
 
 void MovedContact::leave(std::size_t sphere) RT_SAFE {
@@ -89,7 +89,7 @@ void MovedContact::leave(std::size_t sphere) RT_SAFE {
   for (std::size_t i = 0; i < organ_.count; ++i) {
     OrganSphere& b = organ_.sphere[i];
     const Vec3 lifted_m = organ_.compliance_m_per_N[i][slot] * gone->crept_N;
-    if (i != slot && !b.is_held) b.slack_m += std::max(0.0, -dot(b.at.normal, lifted_m));
+    if (i != slot && !b.is_held) b.depth_offset_m += std::max(0.0, -dot(b.at.normal, lifted_m));
   }
   for (std::size_t i = slot; i + 1 < organ_.count; ++i) organ_.sphere[i] = organ_.sphere[i + 1];
   // pair[i][j] with j < i: each moves up by as many of its two as come after the one that is gone.
@@ -110,8 +110,8 @@ void MovedContact::move(const Sphere& sphere) RT_SAFE {
                                       (kFreeOffset_ratio - kStuckOffset_ratio),
                                   0.0, 1.0);
   const double most_m = std::max(b->radius_m - b->height_m, 0.0);
-  if (!b->is_held && b->slack_m > most_m) {
-    b->slack_m = most_m;
+  if (!b->is_held && b->depth_offset_m > most_m) {
+    b->depth_offset_m = most_m;
     is_changed_ = true;
   }
   b->moved_m = sphere.centre_m - b->centre_m;
@@ -121,10 +121,10 @@ void MovedContact::move(const Sphere& sphere) RT_SAFE {
   b->speed_mps = -dot(sphere.velocity_mps, b->at.normal);
 }
 
-void MovedContact::add_slack(std::size_t sphere, double depth_m) RT_SAFE {
+void MovedContact::add_depth_offset(std::size_t sphere, double depth_m) RT_SAFE {
   OrganSphere* b = at(sphere);
   if (b == nullptr || !(depth_m > 0.0)) return;
-  b->slack_m += depth_m;
+  b->depth_offset_m += depth_m;
   is_changed_ = true;
 }
 
@@ -165,9 +165,9 @@ bool MovedContact::release(std::size_t sphere) RT_SAFE {
   double share = 1.0;
   for (int i = 0; i <= kHalvings; ++i, share = i < kHalvings ? 0.5 * share : 0.0) {
     // y moves while it is solved: what it gains on the way is slack, too.
-    b->slack_m = std::max(deepest_m - share * held_m, 0.0);
+    b->depth_offset_m = std::max(deepest_m - share * held_m, 0.0);
     status_.is_solved = solve_fixed();
-    b->slack_m += std::max(b->indentation_m - share * held_m, 0.0);
+    b->depth_offset_m += std::max(b->indentation_m - share * held_m, 0.0);
     status_.is_solved = solve_fixed() && status_.is_solved;
     if (status_.is_solved && stored_energy_J(organ_) <= held_J) break;
   }
@@ -206,8 +206,8 @@ OrganForce MovedContact::report(const Sphere& sphere, SphereContact& reported) c
   reported.place = b.at.place;
   reported.surface_point_m = b.at.point_m;
   reported.normal = b.at.normal;
-  reported.dent_m = b.indentation_m;
-  reported.slack_m = b.slack_m;
+  reported.indentation_m = b.indentation_m;
+  reported.depth_offset_m = b.depth_offset_m;
   reported.depth_m = b.indentation_m - dot(b.shift_m, b.at.normal);
   reported.shift_m = tangential(b.shift_m, b.at.normal);
   reported.law_status = is_beyond(b) ? law::LawStatus::kSaturated : b.tip.status;

@@ -58,7 +58,7 @@ class MovedContact final : public OrganContact {
   void move(const Sphere& sphere) RT_SAFE override;
   bool must_let_go(Sphere& sphere) RT_SAFE override;
   double cut_to_law_m(std::size_t sphere) RT_SAFE override;
-  void add_slack(std::size_t sphere, double depth_m) RT_SAFE override;
+  void add_depth_offset(std::size_t sphere, double depth_m) RT_SAFE override;
   void respond() RT_SAFE override;
   double pull_N(std::size_t sphere) const RT_SAFE override;
   bool release(std::size_t sphere) RT_SAFE override;

@@ -70,7 +70,7 @@ double MovedContact::cut_to_law_m(std::size_t sphere) RT_SAFE {
   const OrganSphere& b = *at(sphere);
   const double range_m = scene_.organ->range_m;
   const double left_m = std::min(b.indentation_m, range_m) + norm(b.shift_m);
-  add_slack(sphere, std::max(0.0, b.indentation_m - range_m));
+  add_depth_offset(sphere, std::max(0.0, b.indentation_m - range_m));
   return left_m;
 }
 

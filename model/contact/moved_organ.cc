@@ -28,7 +28,7 @@ bool presses(const OrganSphere& b) RT_SAFE { return b.tip.force_N > 0.0 || b.is_
 void fill_load(SiteLaw& law, OrganSphere& b) RT_SAFE {
   const LocalPosition at = local_position(b.at, b.y_m);
   b.height_m = at.height_m;
-  b.indentation_m = b.radius_m - at.height_m - b.slack_m;
+  b.indentation_m = b.radius_m - at.height_m - b.depth_offset_m;
   b.tip = b.indentation_m > 0.0 || b.is_held
               ? law.respond(indentation_of(b)).law
               : law::LawResponse{.status = law::LawStatus::kNoContact};

@@ -51,7 +51,7 @@ struct OrganSphere {
   bool is_held = false;   // bonded: it may pull, and nothing slips
   double friction_ratio = 0.0;
   double radius_m = 0.0;
-  double slack_m = 0.0;             // of the depth, without force
+  double depth_offset_m = 0.0;      // of the depth, without force
   SurfaceFrame at;                  // s
   Vec3 centre_m;                    // c
   double speed_mps = 0.0;           // pressing
@@ -103,7 +103,7 @@ inline Indentation indentation_of(const OrganSphere& b) RT_SAFE {
   return {.sphere = b.index,
           .place = b.at.place,
           .normal = b.at.normal,
-          .dent_m = b.indentation_m,
+          .indentation_m = b.indentation_m,
           .held = b.is_held,
           .speed_mps = b.speed_mps};
 }

@@ -42,7 +42,7 @@ class OrganContact {
   /// Depth beyond the law's range becomes slack; returns the depth that is left, m.
   virtual double cut_to_law_m(std::size_t sphere) RT_SAFE = 0;
   /// Its depth becomes smaller, and so it stays.
-  virtual void add_slack(std::size_t sphere, double depth_m) RT_SAFE = 0;
+  virtual void add_depth_offset(std::size_t sphere, double depth_m) RT_SAFE = 0;
 
   /// When all have moved: the forces of their depths.
   virtual void respond() RT_SAFE = 0;

@@ -57,11 +57,11 @@ Step RestContact::step(Sphere& sphere, const Vec3& moved_m) RT_SAFE {
   s.unpaid_m += s.proxy.lengthened_m();
   if (s.is_held) return Step::kTouches;
   const PressingSphere& pressing = pressing_[sphere.index];
-  if (sphere.lets_go && !(pressing.in.dent_m > 0.0)) return Step::kLeaves;
+  if (sphere.lets_go && !(pressing.in.indentation_m > 0.0)) return Step::kLeaves;
   // Slack takes up all of its depth: what it touches may be another part of the organ by now.
-  const bool is_all_slack = s.slack_m > 0.0 && !(pressing.depth_m > 0.0);
-  return s.proxy.site().distance_m < sphere.radius_m && !is_all_slack ? Step::kTouches
-                                                                      : Step::kLeaves;
+  const bool is_all_offset = s.depth_offset_m > 0.0 && !(pressing.depth_m > 0.0);
+  return s.proxy.site().distance_m < sphere.radius_m && !is_all_offset ? Step::kTouches
+                                                                       : Step::kLeaves;
 }
 
 // d and t of this tick; e follows d as a first guess.
@@ -80,14 +80,14 @@ void RestContact::move(const Sphere& sphere) RT_SAFE {
   } else {
     move_to_proxy(i);
     // d = r - phi - slack
-    s.slack_m = std::clamp(s.slack_m + s.unpaid_m, 0.0, std::max(s.reach_m, 0.0));
-    pressing.depth_m = s.reach_m - s.slack_m;
+    s.depth_offset_m = std::clamp(s.depth_offset_m + s.unpaid_m, 0.0, std::max(s.reach_m, 0.0));
+    pressing.depth_m = s.reach_m - s.depth_offset_m;
     if (pressing.response.law.status != law::LawStatus::kSaturated)
-      s.within_law_m = pressing.in.dent_m;
+      s.within_law_m = pressing.in.indentation_m;
   }
   s.unpaid_m = 0.0;
   shift_m_[i] = shift_m_[i] + s.axes.of(sphere.moved_m);
-  pressing.in.dent_m += pressing.depth_m - before_m;
+  pressing.in.indentation_m += pressing.depth_m - before_m;
 }
 
 // Where the proxy is. The axes turn with the normal, t and f with them: that takes no energy.
@@ -114,14 +114,14 @@ bool RestContact::must_let_go(Sphere& sphere) RT_SAFE {
 }
 
 double RestContact::cut_to_law_m(std::size_t i) RT_SAFE {
-  const double dent_m = pressing_[i].in.dent_m;
-  const double within_m = std::clamp(sphere_[i].within_law_m, 0.0, std::max(dent_m, 0.0));
-  add_slack(i, dent_m > 0.0 ? dent_m - within_m : pressing_[i].depth_m);
+  const double indentation_m = pressing_[i].in.indentation_m;
+  const double within_m = std::clamp(sphere_[i].within_law_m, 0.0, std::max(indentation_m, 0.0));
+  add_depth_offset(i, indentation_m > 0.0 ? indentation_m - within_m : pressing_[i].depth_m);
   return std::max(pressing_[i].depth_m, 0.0);
 }
 
 // d becomes smaller, and so it stays.
-void RestContact::add_slack(std::size_t i, double depth_m) RT_SAFE {
+void RestContact::add_depth_offset(std::size_t i, double depth_m) RT_SAFE {
   RestSphere& s = sphere_[i];
   PressingSphere& pressing = pressing_[i];
   if (!pressing.presses) return;
@@ -129,8 +129,8 @@ void RestContact::add_slack(std::size_t i, double depth_m) RT_SAFE {
     s.held_depth_m -= depth_m;
     pressing.depth_m -= depth_m;
   } else {
-    s.slack_m = std::clamp(s.slack_m + depth_m, 0.0, std::max(s.reach_m, 0.0));
-    pressing.depth_m = s.reach_m - s.slack_m;
+    s.depth_offset_m = std::clamp(s.depth_offset_m + depth_m, 0.0, std::max(s.reach_m, 0.0));
+    pressing.depth_m = s.reach_m - s.depth_offset_m;
   }
 }
 
@@ -180,8 +180,8 @@ void RestContact::couple_pair(std::size_t i, std::size_t j) RT_SAFE {
   shear_.couple(i, j, along.skin_m_per_N + along.lobe_m_per_N, sphere_[i].axes, sphere_[j].axes);
   const double c = coupling_m_per_N(along, sphere_[i].normal, sphere_[j].normal);
   coupling_[i][j] = coupling_[j][i] = c;
-  add_slack(i, std::max(0.0, -c * pressing_[j].response.law.force_N));
-  add_slack(j, std::max(0.0, -c * pressing_[i].response.law.force_N));
+  add_depth_offset(i, std::max(0.0, -c * pressing_[j].response.law.force_N));
+  add_depth_offset(j, std::max(0.0, -c * pressing_[i].response.law.force_N));
 }
 
 Indentation RestContact::indentation(std::size_t i) const RT_SAFE {
@@ -189,7 +189,7 @@ Indentation RestContact::indentation(std::size_t i) const RT_SAFE {
   return {.sphere = i,
           .place = s.place,
           .normal = s.normal,
-          .dent_m = pressing_[i].in.dent_m,
+          .indentation_m = pressing_[i].in.indentation_m,
           .held = s.is_held,
           .speed_mps = -dot(s.velocity_mps, s.normal)};
 }
@@ -215,12 +215,12 @@ void RestContact::keep_definite() RT_SAFE {
   double spared_J = 0.0;
   for (std::size_t i = 0; i < count(); ++i) {
     if (!pressing_[i].presses || sphere_[i].is_new) continue;
-    spared_m[i] = (1.0 - share) * sunk_m(coupling_, pressing(), i);
+    spared_m[i] = (1.0 - share) * coupled_m(coupling_, pressing(), i);
     spared_J += pressing_[i].response.law.force_N * spared_m[i];
   }
   // A pull beside a press: scaling C would give energy here.
   if (!(spared_J >= 0.0)) return;
-  for (std::size_t i = 0; i < count(); ++i) add_slack(i, spared_m[i]);
+  for (std::size_t i = 0; i < count(); ++i) add_depth_offset(i, spared_m[i]);
   for (auto& row : coupling_)
     for (double& m_per_N : row) m_per_N *= share;
 }
@@ -245,10 +245,10 @@ OrganForce RestContact::report(const Sphere& sphere, SphereContact& reported) co
   reported.normal = s.normal;
   reported.shift_m = s.axes.vector(t_m);
   reported.depth_m = pressing_[i].depth_m;
-  reported.dent_m = pressing_[i].in.dent_m;
-  reported.slack_m = s.slack_m;
+  reported.indentation_m = pressing_[i].in.indentation_m;
+  reported.depth_offset_m = s.depth_offset_m;
   reported.energy_J = site.law.energy_J +
-                      0.5 * site.law.force_N * sunk_m(coupling_, pressing(), i) +
+                      0.5 * site.law.force_N * coupled_m(coupling_, pressing(), i) +
                       0.5 * dot(f_N, t_m);
   Vec3 force_N = site.law.force_N * s.normal - s.axes.vector(f_N);
   // dU/ds belongs to a place that follows the tool; held tissue and a proxy that lags do not.

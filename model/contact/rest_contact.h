@@ -38,7 +38,7 @@ struct RestSphere {
   Proxy proxy;
   double unpaid_m = 0.0;  // of the depth, since the last tick: no movement led there
   double reach_m = 0.0;   // r - phi
-  double slack_m = 0.0;
+  double depth_offset_m = 0.0;
   double within_law_m = 0.0;  // e of the last tick within the range of the law
   // Frame of d and t
   Place place;
@@ -46,8 +46,8 @@ struct RestSphere {
   Axes axes;
   Vec3 held_centre_m;
   double held_depth_m = 0.0;
-  TangentGive tangent_give;  // of give_triangle
-  std::uint32_t give_triangle = kNoTriangle;
+  TangentCompliance tangent_compliance;  // of give_triangle
+  std::uint32_t compliance_triangle = kNoTriangle;
 };
 
 class RestContact final : public OrganContact {
@@ -61,7 +61,7 @@ class RestContact final : public OrganContact {
   void move(const Sphere& sphere) RT_SAFE override;
   bool must_let_go(Sphere& sphere) RT_SAFE override;
   double cut_to_law_m(std::size_t i) RT_SAFE override;
-  void add_slack(std::size_t i, double depth_m) RT_SAFE override;
+  void add_depth_offset(std::size_t i, double depth_m) RT_SAFE override;
   void respond() RT_SAFE override;
   double pull_N(std::size_t i) const RT_SAFE override;
   bool release(std::size_t i) RT_SAFE override;
@@ -82,8 +82,8 @@ class RestContact final : public OrganContact {
   Indentation indentation(std::size_t i) const RT_SAFE;
   void press() RT_SAFE;
   // rest_slide.cc
-  Tensor2 give_m_per_N(std::size_t i) const RT_SAFE;
-  TangentGive ask_tangent_give(std::size_t i, bool held) const RT_SAFE;
+  Tensor2 compliance_m_per_N(std::size_t i) const RT_SAFE;
+  TangentCompliance ask_tangent_compliance(std::size_t i, bool held) const RT_SAFE;
   void start_tangent_spring(std::size_t i) RT_SAFE;
   void drop_shift(std::size_t i) RT_SAFE;
   void stiffen() RT_SAFE;

@@ -10,10 +10,10 @@ namespace tact::model::contact {
 // A sphere that hangs in the dent of another has nothing to hold.
 bool RestContact::hold(std::size_t i) RT_SAFE {
   RestSphere& s = sphere_[i];
-  if (!(pressing_[i].in.dent_m > 0.0)) return false;
+  if (!(pressing_[i].in.indentation_m > 0.0)) return false;
   // The frame of this moment: the depth goes on from what it is, so gripping itself moves nothing.
   s.held_centre_m = s.centre_m;
-  s.give_triangle = kNoTriangle;  // held, it gives less
+  s.compliance_triangle = kNoTriangle;  // held, it gives less
   s.held_depth_m = pressing_[i].depth_m;
   s.is_held = is_held_anew_ = true;
   return true;
@@ -46,7 +46,7 @@ bool RestContact::release(std::size_t i) RT_SAFE {
   s.is_held = false;
   move_to_proxy(i);
   const auto affords = [&](double depth_m) RT_SAFE {
-    pressing.in.dent_m += depth_m - pressing.depth_m;
+    pressing.in.indentation_m += depth_m - pressing.depth_m;
     pressing.depth_m = depth_m;
     press();
     return energy_J_ <= held_J;
@@ -57,7 +57,7 @@ bool RestContact::release(std::size_t i) RT_SAFE {
     const double middle_m = 0.5 * (low_m + high_m);
     (affords(middle_m) ? low_m : high_m) = middle_m;
   }
-  s.slack_m = s.reach_m - low_m;
+  s.depth_offset_m = s.reach_m - low_m;
   if (!(low_m > 0.0)) scene_.law->leave(i);
   // Once more, as the last depth tried may be another: answers and dents become those of low_m.
   affords(low_m);

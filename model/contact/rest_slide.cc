@@ -41,32 +41,32 @@ Vec2 slipping_N(const Vec2& f_N, const Tensor2& stiffness_N_per_m, double cap_N)
 
 // By the contact radius of its own dent, sqrt(R d): CT-1 for a << R. A held patch is as wide as the
 // sphere.
-Tensor2 RestContact::give_m_per_N(std::size_t i) const RT_SAFE {
+Tensor2 RestContact::compliance_m_per_N(std::size_t i) const RT_SAFE {
   // Of the sphere, chosen: G of MC-5 grows without limit as a contact closes.
   constexpr double kMinRadius_ratio = 0.1;
   const double radius_m = scene_.spheres[i].radius_m;
-  if (sphere_[i].is_held) return sphere_[i].tangent_give.at(radius_m);
-  return sphere_[i].tangent_give.at(
-      std::clamp(std::sqrt(radius_m * std::max(pressing_[i].in.dent_m, 0.0)),
+  if (sphere_[i].is_held) return sphere_[i].tangent_compliance.at(radius_m);
+  return sphere_[i].tangent_compliance.at(
+      std::clamp(std::sqrt(radius_m * std::max(pressing_[i].in.indentation_m, 0.0)),
                  kMinRadius_ratio * radius_m, radius_m));
 }
 
-TangentGive RestContact::ask_tangent_give(std::size_t i, bool held) const RT_SAFE {
+TangentCompliance RestContact::ask_tangent_compliance(std::size_t i, bool held) const RT_SAFE {
   const double fixed_N_per_m = scene_.parameters.sliding_stiffness_N_per_m;
   if (!(fixed_N_per_m > 0.0))
-    return scene_.law->tangent_give(sphere_[i].place, held, sphere_[i].axes);
+    return scene_.law->tangent_compliance(sphere_[i].place, held, sphere_[i].axes);
   return {.rest_m_per_N = {.xx = 1.0 / fixed_N_per_m, .yy = 1.0 / fixed_N_per_m}};
 }
 
 // A sphere without force: any spring is free.
 void RestContact::start_tangent_spring(std::size_t i) RT_SAFE {
-  sphere_[i].give_triangle = sphere_[i].place.triangle;
+  sphere_[i].compliance_triangle = sphere_[i].place.triangle;
   // The least that this spring can become, held and as wide as the sphere,
   // bounds its couplings: they stay definite however it stiffens.
-  sphere_[i].tangent_give = ask_tangent_give(i, false);
+  sphere_[i].tangent_compliance = ask_tangent_compliance(i, false);
   const double least_m_per_N =
-      ask_tangent_give(i, true).at(scene_.spheres[i].radius_m).least_eigenvalue();
-  shear_.set_own(i, {at_least(give_m_per_N(i), least_m_per_N), least_m_per_N});
+      ask_tangent_compliance(i, true).at(scene_.spheres[i].radius_m).least_eigenvalue();
+  shear_.set_own(i, {at_least(compliance_m_per_N(i), least_m_per_N), least_m_per_N});
 }
 
 // Without it the others share the shift; it goes where they have dragged it.
@@ -90,16 +90,16 @@ void RestContact::stiffen() RT_SAFE {
   bool is_stiffer = false;
   for (std::size_t i = 0; i < count(); ++i) {
     if (!is_coupled_[i]) continue;
-    const OwnGive before = shear_.own(i);
+    const OwnCompliance before = shear_.own(i);
     double most_m_per_N = kStep_ratio * before.m_per_N.trace();
-    if (sphere_[i].give_triangle != sphere_[i].place.triangle) {
-      sphere_[i].give_triangle = sphere_[i].place.triangle;
-      sphere_[i].tangent_give = ask_tangent_give(i, sphere_[i].is_held);
+    if (sphere_[i].compliance_triangle != sphere_[i].place.triangle) {
+      sphere_[i].compliance_triangle = sphere_[i].place.triangle;
+      sphere_[i].tangent_compliance = ask_tangent_compliance(i, sphere_[i].is_held);
       most_m_per_N = std::numeric_limits<double>::infinity();
     }
-    const Tensor2 now_m_per_N = give_m_per_N(i);
+    const Tensor2 now_m_per_N = compliance_m_per_N(i);
     if (!(now_m_per_N.trace() < most_m_per_N)) continue;
-    const OwnGive own{at_least(now_m_per_N, before.least_m_per_N), before.least_m_per_N};
+    const OwnCompliance own{at_least(now_m_per_N, before.least_m_per_N), before.least_m_per_N};
     // MC-7: W falls by f . (G - G') f / 2, or the spring stays.
     const Vec2 force_N = shear_.force_N(shift_m_, i);
     const Vec2 more_m = own.m_per_N * force_N - before.m_per_N * force_N;

@@ -24,11 +24,11 @@
 namespace tact::model::contact {
 
 /// G now, and the least that it may become in any direction; 0: it takes no force.
-struct OwnGive {
+struct OwnCompliance {
   Tensor2 m_per_N;
   double least_m_per_N = 0.0;
 
-  friend constexpr bool operator==(const OwnGive&, const OwnGive&) = default;
+  friend constexpr bool operator==(const OwnCompliance&, const OwnCompliance&) = default;
 };
 
 class Shear {
@@ -36,14 +36,14 @@ class Shear {
   using Shifts = std::array<Vec2, kMaxSpheres>;
 
   /// Each of these counts from the next solve() on.
-  void set_own(std::size_t i, const OwnGive& own) RT_SAFE { own_[i] = own; }
+  void set_own(std::size_t i, const OwnCompliance& own) RT_SAFE { own_[i] = own; }
   void couple(std::size_t i, std::size_t j, double m_per_N, const Axes& of_i,
               const Axes& of_j) RT_SAFE;
   /// It does not press: no force, no coupling.
   void leave(std::size_t i) RT_SAFE;
   void solve() RT_SAFE;
 
-  const OwnGive& own(std::size_t i) const RT_SAFE { return own_[i]; }
+  const OwnCompliance& own(std::size_t i) const RT_SAFE { return own_[i]; }
   /// df_i / dt_i, N/m; 0: it does not press.
   Tensor2 own_N_per_m(std::size_t i) const RT_SAFE;
   /// f_i for displacements t, m.
@@ -61,7 +61,7 @@ class Shear {
   /// Rows of i.
   static Vec2 times(const Matrix& m, std::size_t i, const Shifts& v) RT_SAFE;
 
-  std::array<OwnGive, kMaxSpheres> own_{};
+  std::array<OwnCompliance, kMaxSpheres> own_{};
   Matrix coupling_m_per_N_{};   // c P, limited
   Matrix stiffness_N_per_m_{};  // (diag(G) + c P)^-1 of what takes force, 0 elsewhere
 };

@@ -14,7 +14,7 @@
 #include <cstddef>
 
 #include "model/contact/blade.h"
-#include "model/contact/dent_view.h"
+#include "model/contact/indentation_view.h"
 #include "model/contact/patch_shape.h"
 #include "model/contact/site.h"
 #include "model/contact/tangent.h"
@@ -39,7 +39,7 @@ struct SiteCoupling {
 };
 
 /// MC-5: G = c / a I + S, m/N, a the radius of the contact, m.
-struct TangentGive {
+struct TangentCompliance {
   double contact_m2_per_N = 0.0;  // c
   Tensor2 rest_m_per_N;           // S
 
@@ -50,7 +50,7 @@ struct TangentGive {
 };
 
 /// Everything here belongs to the loop's thread; what others may ask is DentView's.
-class SiteLaw : public DentView {
+class SiteLaw : public IndentationView {
  public:
   /// NaN gives zero force and kInvalid.
   virtual SiteResponse respond(const Indentation& in) RT_SAFE = 0;
@@ -76,7 +76,8 @@ class SiteLaw : public DentView {
   virtual double fade_ratio() const RT_SAFE { return 0.0; }
   /// MC-5: how far the site gives way along the surface under a unit force, in these axes. All 0:
   /// not known.
-  virtual TangentGive tangent_give(const Place& place, bool held, const Axes& axes) const RT_SAFE {
+  virtual TangentCompliance tangent_compliance(const Place& place, bool held,
+                                               const Axes& axes) const RT_SAFE {
     (void)place, (void)held, (void)axes;
     return {};
   }

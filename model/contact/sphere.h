@@ -27,13 +27,13 @@ enum class ContactState : std::uint8_t { kFree, kTouching, kHeld, kInside };
 struct SphereContact {
   ContactState state = ContactState::kFree;
   law::LawStatus law_status = law::LawStatus::kNoContact;
-  Place place;             // of surface_point_m
-  Vec3 surface_point_m{};  // nearest (touching) or held point of the undeformed surface
-  Vec3 normal{};           // outward, unit; free: of its last contact
-  Vec3 shift_m{};          // t
-  double depth_m = 0.0;    // d
-  double dent_m = 0.0;     // e
-  double slack_m = 0.0;
+  Place place;                 // of surface_point_m
+  Vec3 surface_point_m{};      // nearest (touching) or held point of the undeformed surface
+  Vec3 normal{};               // outward, unit; free: of its last contact
+  Vec3 shift_m{};              // t
+  double depth_m = 0.0;        // d
+  double indentation_m = 0.0;  // e
+  double depth_offset_m = 0.0;
   double energy_J = 0.0;  // its share of W
   Vec3 force_N{};         // on the tool; of a contact that has ended it fades
 };

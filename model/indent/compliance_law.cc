@@ -46,7 +46,7 @@ Result<ComplianceCurve> make_compliance_curve(const ComplianceCurveParameters& p
   ComplianceCurve curve;
   curve.tip_ = p.tip;
   // In this order: r is still 0, so exact() speaks of the tip alone. CT-8 ends at this dent of it.
-  const TipState last = curve.exact(kDeepestDent_ratio * p.tip.radius_m);
+  const TipState last = curve.exact(kDeepestIndentation_ratio * p.tip.radius_m);
   curve.regular_m_per_N_ = p.regular_m_per_N;
   curve.press_depth_m_ = p.working_depth_m;
   if (p.tip.large_strain)

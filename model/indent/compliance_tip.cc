@@ -25,11 +25,11 @@ void enlarge_strain(const ElasticTip& tip, double s, TipState& state) RT_SAFE {
   // CT-9  d(a/R)/dx, as t = a/R = tanh s and x = s t
   const double dt_dx = (1.0 - t * t) / (t + s * (1.0 - t * t));
   // Beyond the reach of the fit the terms in x stay as they are there; the one in a/R goes on.
-  const double y = std::fmin(x, kDeepestDent_ratio);
+  const double y = std::fmin(x, kDeepestIndentation_ratio);
   // CT-8  g = 1 - 0.1210 x + 0.0651 x^2 - 0.0259 x^3 + w (0.2559 a/R + 0.2525 x)
   const double g = 1.0 + y * (-0.1210 + y * (0.0651 - y * 0.0259)) + w * (0.2559 * t + 0.2525 * y);
   double dg_dx = w * 0.2559 * dt_dx;
-  if (x < kDeepestDent_ratio) dg_dx += -0.1210 + x * (0.1302 - x * 0.0777) + w * 0.2525;
+  if (x < kDeepestIndentation_ratio) dg_dx += -0.1210 + x * (0.1302 - x * 0.0777) + w * 0.2525;
   state.stiffness_N_per_m = g * state.stiffness_N_per_m + dg_dx * state.force_N / tip.radius_m;
   state.force_N *= g;
 }

@@ -59,7 +59,7 @@ struct TipState {
   double contact_radius_m = 0.0;
 };
 
-inline constexpr double kDeepestDent_ratio = 2.15;  // x, CT-8 is valid up to here
+inline constexpr double kDeepestIndentation_ratio = 2.15;  // x, CT-8 is valid up to here
 
 /// CT-1 to CT-3 at s >= 0, or CT-8 and CT-9, where x in g stops at kDeepestDent_ratio.
 TipState tip_state(const ElasticTip& tip, double s) RT_SAFE;

@@ -32,17 +32,17 @@ class SeriesLaw final : public Law {
 
  private:
   friend Result<SeriesLaw> make_series_law(const Law&, double, const Law&);
-  SeriesLaw(const Law& law, double give_m_per_N, const Law& shape);
-  double depth_of(double dent_m) const RT_SAFE;
-  double dent_at(double depth_m) const RT_SAFE;
+  SeriesLaw(const Law& law, double compliance_m_per_N, const Law& shape);
+  double depth_of(double indentation_m) const RT_SAFE;
+  double indentation_at(double depth_m) const RT_SAFE;
 
   const Law* law_;
   const Law* shape_;
-  double give_m_per_N_;
+  double compliance_m_per_N_;
   LawRange range_;
 };
 
 /// Both laws outlive it. An error where the give makes the pair unstable.
-Result<SeriesLaw> make_series_law(const Law& law, double give_m_per_N, const Law& shape);
+Result<SeriesLaw> make_series_law(const Law& law, double compliance_m_per_N, const Law& shape);
 
 }  // namespace tact::model::law

@@ -75,7 +75,7 @@ std::string hash_of_forces(const Scene& scene, const TissueLaw& law) {
         .place = {.triangle = static_cast<std::uint32_t>(triangle), .weight = {1.0, 0.0, 0.0}},
         .normal = organ.vertex_normal[organ.triangle[triangle][0]]};
     for (const double depth_m : kDepths_m) {
-      at.dent_m = depth_m;
+      at.indentation_m = depth_m;
       // Six digits: the last bits may differ between compilers,
       // a law that is another one differs before.
       hash.add(fmt::format("{:.6g}", site.respond(at).law.force_N));

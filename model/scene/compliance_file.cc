@@ -22,7 +22,7 @@ namespace {
 constexpr std::size_t kSidewaysFloats = 7;
 
 static_assert(std::endian::native == std::endian::little, "the file's bytes are the machine's");
-static_assert(sizeof(tissue::SidewaysGive) == kSidewaysFloats * sizeof(float));
+static_assert(sizeof(tissue::SidewaysCompliance) == kSidewaysFloats * sizeof(float));
 
 constexpr std::string_view kMagic = "TACTCOMP";
 constexpr std::uint32_t kVersion = 2;
@@ -79,7 +79,7 @@ bool all_finite(const tissue::ComplianceMap& map) {
   const auto finite = [](float v) { return std::isfinite(v); };
   return std::ranges::all_of(map.regular_times_E_per_m, finite) &&
          std::ranges::all_of(map.ring_times_E_per_m, finite) &&
-         std::ranges::all_of(map.sideways_times_E_per_m, [&](const tissue::SidewaysGive& s) {
+         std::ranges::all_of(map.sideways_times_E_per_m, [&](const tissue::SidewaysCompliance& s) {
            return finite(s.n1) && finite(s.n2) && finite(s.s1) && finite(s.s2) &&
                   std::ranges::all_of(s.axis, finite);
          });

@@ -121,9 +121,9 @@ TissueLawBuilder::Step TissueLawBuilder::add_spring_patch() {
   auto relaxation = make_relaxation(scene_.relaxation, parameters.tick_s);
   if (!relaxation) return blame(relaxation.error());
   parameters.relaxation = *relaxation;
-  const auto give_m_per_N = read_scene_give(scene_);
-  if (!give_m_per_N) return give_m_per_N.error();
-  parameters.tissue.give_m_per_N = *give_m_per_N;
+  const auto compliance_m_per_N = read_scene_compliance(scene_);
+  if (!compliance_m_per_N) return compliance_m_per_N.error();
+  parameters.tissue.compliance_m_per_N = *compliance_m_per_N;
   auto patch = make_spring_patch(scene_.organ_mesh.view(), parameters);
   if (!patch) return blame(patch.error());
   law_->range_ = {-parameters.working_depth_m, parameters.working_depth_m};

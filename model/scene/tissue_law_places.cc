@@ -10,7 +10,7 @@
 #include "model/scene/tissue_law_builder.h"
 #include "model/scene/tissue_map.h"
 #include "model/tissue/compliance_family.h"
-#include "model/tissue/dent_tilt.h"
+#include "model/tissue/indentation_tilt.h"
 #include "model/tissue/vertex_compliance.h"
 
 namespace tact::model::scene {
@@ -46,8 +46,8 @@ TissueLawBuilder::Step TissueLawBuilder::vary_by_place(const law::Law& curve) {
       (1.0 / kStiffestTip_ratio - 1.0) / law::stiffest_N_per_m(curve, range.pull_m, range.press_m);
   for (indent::ComplianceCurve& of_family : family->curve) {
     const indent::ComplianceCurve& place = keep(std::move(of_family));
-    const double give_m_per_N = std::max(place.regular_m_per_N(), least_m_per_N);
-    auto series = make_series_law(curve, give_m_per_N, place);
+    const double compliance_m_per_N = std::max(place.regular_m_per_N(), least_m_per_N);
+    auto series = make_series_law(curve, compliance_m_per_N, place);
     if (!series) return blame(series.error());
     auto table = tabulate(keep(std::move(*series)), scene_.table_knots);
     if (!table) return blame(table.error());
@@ -121,7 +121,7 @@ TissueLawBuilder::Step TissueLawBuilder::finish_field(const law::Law* shape) {
                                 .neighbours = neighbours(),
                                 .curve_ring_times_E_per_m = law_->curve_rings_times_E_per_m_,
                                 .damps = law_->damping_Ns_per_m_ > 0.0,
-                                .dent_shape = shape});
+                                .indentation_shape = shape});
   return std::nullopt;
 }
 
@@ -149,9 +149,9 @@ tissue::ElasticNeighbours TissueLawBuilder::neighbours() {
   const double widest_m =
       std::ranges::max(scene_.tool.spheres, {}, &contact::ProbeSphere::radius_m).radius_m;
   law_->tangent_times_E_per_m_ =
-      tissue::tangent_give(*map, scene_.organ_mesh.view().vertex_normal, widest_m);
+      tissue::tangent_compliance(*map, scene_.organ_mesh.view().vertex_normal, widest_m);
   out.tangent_times_E_per_m = law_->tangent_times_E_per_m_;
-  law_->tilt_times_E_per_m2_ = tissue::dent_tilt(*map, scene_.organ_mesh.view());
+  law_->tilt_times_E_per_m2_ = tissue::indentation_tilt(*map, scene_.organ_mesh.view());
   out.tilt_times_E_per_m2 = law_->tilt_times_E_per_m2_;
   if (law_->organ_) {
     law_->regular_times_E_per_m_ = std::move(map->regular_times_E_per_m);

@@ -67,7 +67,7 @@ Result<double> scene_tip_radius_m(const Scene& scene) {
   return spheres[0].radius_m;
 }
 
-Result<std::vector<float>> read_scene_give(const Scene& scene) {
+Result<std::vector<float>> read_scene_compliance(const Scene& scene) {
   std::vector<float> out;
   if (!scene.varies_by_place) return out;
   auto map = read_scene_map(scene);

@@ -19,7 +19,7 @@ Result<tissue::ComplianceMap> read_scene_map(const Scene& scene);
 Result<double> scene_tip_radius_m(const Scene& scene);
 
 /// r of each vertex, m/N; none where the law does not vary by place.
-Result<std::vector<float>> read_scene_give(const Scene& scene);
+Result<std::vector<float>> read_scene_compliance(const Scene& scene);
 
 /// The scene's organ under its tool's tip, which must be the same on every sphere; the scene's
 /// compliance.large_strain is not asked.

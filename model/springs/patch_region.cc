@@ -80,9 +80,9 @@ bool PatchRegion::holds(std::uint32_t triangle) const RT_SAFE {
 
 void PatchRegion::rest() RT_SAFE {
   for (std::size_t i = 0; i < count_; ++i) slot_of_[vertex_[i]] = kNoSlot;
-  for (std::size_t i = 0; i < lips_; ++i) kept_m_[lip_[i]] = {};
+  for (std::size_t i = 0; i < cut_edges_; ++i) kept_m_[lip_[i]] = {};
   count_ = springs_ = 0;
-  rest_energy_J_ = cut_energy_J_ = handover_debt_J_ = 0.0;
+  rest_energy_J_ = cut_energy_J_ = energy_deficit_J_ = 0.0;
 }
 
 // Ring by ring over the edges of the mesh, cut or not. The list of vertices is its own queue.
@@ -202,7 +202,7 @@ void PatchRegion::take_from_velocities(double energy_J) RT_SAFE {
   // Speeds scale as the root of energy; what is not there is debt.
   const double left = moving_J > energy_J ? std::sqrt(1.0 - energy_J / moving_J) : 0.0;
   for (std::size_t i = 0; i < count_; ++i) velocity_mps_[i] *= left;
-  if (energy_J > moving_J) handover_debt_J_ += energy_J - moving_J;
+  if (energy_J > moving_J) energy_deficit_J_ += energy_J - moving_J;
 }
 
 std::size_t PatchRegion::cut(const contact::BladeSweep& sweep) RT_SAFE {
@@ -244,7 +244,7 @@ bool PatchRegion::open(std::uint32_t edge) RT_SAFE {
     for (const std::uint32_t v : surface_.mesh.triangle[t]) {
       if (is_lip_[v] != 0) continue;
       is_lip_[v] = 1;
-      lip_[lips_++] = v;
+      lip_[cut_edges_++] = v;
     }
   }
   return true;

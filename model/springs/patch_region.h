@@ -57,7 +57,7 @@ class PatchRegion {
   double stored_energy_J() RT_SAFE;
   /// Energy of the springs in the region, as if none were cut, with all vertices at rest.
   double rest_energy_J() const RT_SAFE { return rest_energy_J_; }
-  double handover_debt_J() const RT_SAFE { return handover_debt_J_; }
+  double energy_deficit_J() const RT_SAFE { return energy_deficit_J_; }
 
   const PatchSurface& surface() const RT_SAFE { return surface_; }
   std::size_t capacity() const RT_SAFE { return position_m_.size(); }
@@ -71,7 +71,7 @@ class PatchRegion {
   std::span<const std::uint32_t> cut_triangles() const RT_SAFE {
     return {cut_triangle_.data(), cut_triangles_};
   }
-  std::span<const std::uint32_t> lips() const RT_SAFE { return {lip_.data(), lips_}; }
+  std::span<const std::uint32_t> cut_edges() const RT_SAFE { return {lip_.data(), cut_edges_}; }
   bool is_lip(std::uint32_t vertex) const RT_SAFE { return is_lip_[vertex] != 0; }
   std::size_t memory_bytes() const;
 
@@ -94,13 +94,13 @@ class PatchRegion {
   std::vector<Spring> spring_;
   std::vector<std::uint32_t> spring_edge_;
   std::size_t count_ = 0, springs_ = 0;
-  double rest_energy_J_ = 0.0, cut_energy_J_ = 0.0, handover_debt_J_ = 0.0;
+  double rest_energy_J_ = 0.0, cut_energy_J_ = 0.0, energy_deficit_J_ = 0.0;
   // of the whole mesh
   std::vector<std::uint32_t> slot_of_;
   std::vector<std::array<float, 3>> kept_m_;
   std::vector<std::uint8_t> is_lip_, edge_is_cut_, triangle_is_cut_;
   std::vector<std::uint32_t> cut_triangle_, lip_;
-  std::size_t cut_triangles_ = 0, lips_ = 0;
+  std::size_t cut_triangles_ = 0, cut_edges_ = 0;
 };
 
 }  // namespace tact::model::springs

@@ -46,7 +46,7 @@ void index_edges(PatchSurface& surface) {
 constexpr double kShortWaves = 1.2;
 
 /// Over all waves of one vertex of a net with this modulus.
-double give_m_per_N(double modulus_N_per_m, double anchor_N_per_m) {
+double compliance_m_per_N(double modulus_N_per_m, double anchor_N_per_m) {
   const double all_waves = 4.0 * std::numbers::pi * modulus_N_per_m;
   return kShortWaves * std::log1p(all_waves / anchor_N_per_m) / all_waves;
 }
@@ -58,12 +58,12 @@ double across_N_per_m(const PatchTissue& tissue) {
 }
 
 // MA-22  a_i = 4 pi M_n/(exp(4 pi M_n G_i/1.2) - 1),  M_n = sqrt(3) k_x; with the mean area
-double anchor_of_give_N_per_m(const PatchTissue& tissue, double more_m_per_N) {
+double anchor_of_compliance_N_per_m(const PatchTissue& tissue, double more_m_per_N) {
   // Without pretension M_n is 0 and MA-22 is 0/0: this is near enough to its limit.
   constexpr double kMinModulus_N_per_m = 1e-6;
   const double modulus =
       std::max(std::numbers::sqrt3 * across_N_per_m(tissue), kMinModulus_N_per_m);
-  const double mean_m_per_N = give_m_per_N(modulus, tissue.body_stiffness_N_per_m);
+  const double mean_m_per_N = compliance_m_per_N(modulus, tissue.body_stiffness_N_per_m);
   const double give = std::max(mean_m_per_N + more_m_per_N, mean_m_per_N / contact::kStiffestPlace);
   const double all_waves = 4.0 * std::numbers::pi * modulus;
   return all_waves / std::expm1(all_waves * give / kShortWaves);
@@ -84,11 +84,11 @@ std::optional<std::uint32_t> crowded_vertex(const contact::SurfaceView& mesh) {
 }
 
 // MA-21. kLattice: moduli of a net of equal triangles.
-double sideways_give_m_per_N(const PatchTissue& tissue, double anchor_N_per_m) {
+double sideways_compliance_m_per_N(const PatchTissue& tissue, double anchor_N_per_m) {
   constexpr double kLattice = 0.25 * std::numbers::sqrt3;
   const double k = tissue.surface_stiffness_N_per_m, across = across_N_per_m(tissue);
-  return 0.5 * (give_m_per_N(kLattice * (3.0 * k + across), anchor_N_per_m) +
-                give_m_per_N(kLattice * (k + 3.0 * across), anchor_N_per_m));
+  return 0.5 * (compliance_m_per_N(kLattice * (3.0 * k + across), anchor_N_per_m) +
+                compliance_m_per_N(kLattice * (k + 3.0 * across), anchor_N_per_m));
 }
 
 PatchSurface make_patch_surface(const contact::SurfaceView& mesh, const PatchTissue& tissue) {
@@ -108,13 +108,13 @@ PatchSurface make_patch_surface(const contact::SurfaceView& mesh, const PatchTis
   const double per_m2 = static_cast<double>(n) / sum_m2;
   for (std::size_t v = 0; v < n; ++v)
     out.anchor_N_per_m[v] *=
-        per_m2 * (tissue.give_m_per_N.empty()
+        per_m2 * (tissue.compliance_m_per_N.empty()
                       ? tissue.body_stiffness_N_per_m
-                      : anchor_of_give_N_per_m(tissue, double{tissue.give_m_per_N[v]}));
-  out.tissue.give_m_per_N = {};  // it need not outlive this
+                      : anchor_of_compliance_N_per_m(tissue, double{tissue.compliance_m_per_N[v]}));
+  out.tissue.compliance_m_per_N = {};  // it need not outlive this
   out.sideways_m_per_N.reserve(n);
   for (const double anchor : out.anchor_N_per_m)
-    out.sideways_m_per_N.push_back(sideways_give_m_per_N(tissue, anchor));
+    out.sideways_m_per_N.push_back(sideways_compliance_m_per_N(tissue, anchor));
   out.load_N.assign(n, Vec3{});
   for (const PatchEdge& e : out.edge) {
     const double tension_N = tissue.surface_stiffness_N_per_m * (e.length_m - out.rest_length_m(e));

@@ -33,12 +33,12 @@ struct PatchEdge {
 
 /// What the springs of a whole surface are made of.
 struct PatchTissue {
-  double surface_stiffness_N_per_m = 0.0;  // k, of an edge
-  double body_stiffness_N_per_m = 0.0;     // a_mean, of a vertex of mean area
-  double damping_time_s = 0.0;             // tau
-  double body_damping_time_s = 0.0;        // tau_b
-  double pretension_ratio = 0.0;           // p
-  std::span<const float> give_m_per_N{};   // r of each vertex; or empty
+  double surface_stiffness_N_per_m = 0.0;       // k, of an edge
+  double body_stiffness_N_per_m = 0.0;          // a_mean, of a vertex of mean area
+  double damping_time_s = 0.0;                  // tau
+  double body_damping_time_s = 0.0;             // tau_b
+  double pretension_ratio = 0.0;                // p
+  std::span<const float> compliance_m_per_N{};  // r of each vertex; or empty
 };
 
 struct PatchSurface {
@@ -61,7 +61,7 @@ struct PatchSurface {
 };
 
 /// MA-21: how far a unit force along the surface moves its vertex, with all others free.
-double sideways_give_m_per_N(const PatchTissue& tissue, double anchor_N_per_m);
+double sideways_compliance_m_per_N(const PatchTissue& tissue, double anchor_N_per_m);
 
 /// The mesh outlives the surface. Of a vertex with too many edges, its number.
 std::optional<std::uint32_t> crowded_vertex(const contact::SurfaceView& mesh);

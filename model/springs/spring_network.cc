@@ -104,7 +104,7 @@ void add_probes(const SpringNetwork& network, std::span<const Vec3> x, std::span
                 std::span<Vec3> f) RT_SAFE {
   for (const ProbeSpring& probe : network.probe) {
     if (probe.stiffness_N_per_m == 0.0) continue;
-    const double push_N = probe_force_N(probe, dent_m(probe, x, network.node.rest_m));
+    const double push_N = probe_force_N(probe, indentation_m(probe, x, network.node.rest_m));
     if (push_N == 0.0) continue;
     double rate_mps = 0.0;
     for (std::size_t c = 0; c < 3; ++c)
@@ -120,8 +120,8 @@ void add_probes(const SpringNetwork& network, std::span<const Vec3> x, std::span
 
 }  // namespace
 
-double dent_m(const ProbeSpring& probe, std::span<const Vec3> position_m,
-              std::span<const Vec3> rest_m) RT_SAFE {
+double indentation_m(const ProbeSpring& probe, std::span<const Vec3> position_m,
+                     std::span<const Vec3> rest_m) RT_SAFE {
   double w = 0.0;
   for (std::size_t c = 0; c < 3; ++c) {
     const std::uint32_t i = probe.node[c];
@@ -130,8 +130,8 @@ double dent_m(const ProbeSpring& probe, std::span<const Vec3> position_m,
   return w;
 }
 
-double probe_force_N(const ProbeSpring& probe, double dent_m) RT_SAFE {
-  const double f = probe.stiffness_N_per_m * (probe.depth_m - dent_m);
+double probe_force_N(const ProbeSpring& probe, double indentation_m) RT_SAFE {
+  const double f = probe.stiffness_N_per_m * (probe.depth_m - indentation_m);
   return probe.held || f > 0.0 ? f : 0.0;
 }
 

@@ -26,7 +26,7 @@
 #include <span>
 #include <vector>
 
-#include "model/contact/dent_view.h"
+#include "model/contact/indentation_view.h"
 #include "model/springs/integrators.h"
 #include "model/types.h"
 
@@ -68,10 +68,10 @@ struct SpringNetwork {
 };
 
 /// w of a probe at these positions.
-double dent_m(const ProbeSpring& probe, std::span<const Vec3> position_m,
-              std::span<const Vec3> rest_m) RT_SAFE;
+double indentation_m(const ProbeSpring& probe, std::span<const Vec3> position_m,
+                     std::span<const Vec3> rest_m) RT_SAFE;
 /// Force of the virtual spring on the tool at a dent w.
-double probe_force_N(const ProbeSpring& probe, double dent_m) RT_SAFE;
+double probe_force_N(const ProbeSpring& probe, double indentation_m) RT_SAFE;
 
 /// MA-1 for every node, into force_N; returns the energy stored in springs, anchors and loads.
 double forces(const SpringNetwork& network, std::span<const Vec3> position_m,

@@ -16,7 +16,8 @@ namespace {
 // What moved by less than a micrometre is not seen. Lips get half of
 // the room at most, or an old cut would hide the contact.
 constexpr double kShownMove_m = 1e-6;
-constexpr double kLostDents = 10.0;  // a dent of so many working depths is no tissue any more
+constexpr double kLostIndentations =
+    10.0;  // a dent of so many working depths is no tissue any more
 constexpr std::size_t kShownLips = contact::kMaxShapeNodes / 2;
 
 const char* parameter_error(const SpringPatchParameters& p) {
@@ -46,11 +47,12 @@ const char* parameter_error(const SpringPatchParameters& p) {
 
 // F_s = -F grad w;  grad w = n x (sum of w_i (edge opposite i)) / (2 area)
 Vec3 slope_N(const contact::SurfaceView& mesh, const contact::TriangleCorners& corner,
-             const std::array<double, 3>& dent_m, double force_N) RT_SAFE {
+             const std::array<double, 3>& indentation_m, double force_N) RT_SAFE {
   const Vec3 &a = mesh.vertex_m[corner[0]], &b = mesh.vertex_m[corner[1]],
              &c = mesh.vertex_m[corner[2]];
   const Vec3 twice_area = cross(b - a, c - a);
-  const Vec3 turn = dent_m[0] * (c - b) + dent_m[1] * (a - c) + dent_m[2] * (b - a);
+  const Vec3 turn =
+      indentation_m[0] * (c - b) + indentation_m[1] * (a - c) + indentation_m[2] * (b - a);
   return (-force_N / dot(twice_area, twice_area)) * cross(twice_area, turn);
 }
 
@@ -105,7 +107,7 @@ Result<std::unique_ptr<SpringPatch>> make_spring_patch(const contact::SurfaceVie
   SpringPatchParameters fitted = p;
   fitted.nodes = std::min(p.nodes, surface.vertex_m.size());
   // Read by now: the span need not outlive this.
-  fitted.tissue.give_m_per_N = {};
+  fitted.tissue.compliance_m_per_N = {};
   return std::unique_ptr<SpringPatch>(new SpringPatch(std::move(springs), fitted));
 }
 
@@ -127,23 +129,23 @@ contact::SiteResponse SpringPatch::respond(const contact::Indentation& in) RT_SA
   Touch& sphere_contact = contact_[in.sphere];
   sphere_contact = {};
   const contact::SurfaceView& mesh = region_.surface().mesh;
-  if (!std::isfinite(in.dent_m) || !is_a_place(in.place, mesh))
+  if (!std::isfinite(in.indentation_m) || !is_a_place(in.place, mesh))
     return {.law = {.status = law::LawStatus::kInvalid}};
-  if (in.dent_m <= 0.0 && !in.held) return {.law = {.status = law::LawStatus::kNoContact}};
+  if (in.indentation_m <= 0.0 && !in.held) return {.law = {.status = law::LawStatus::kNoContact}};
   const double limit_m = parameters_.working_depth_m;
-  const double depth_m = std::clamp(in.dent_m, -limit_m, limit_m);
+  const double depth_m = std::clamp(in.indentation_m, -limit_m, limit_m);
   sphere_contact = {.active = true, .held = in.held, .depth_m = depth_m, .place = in.place};
   if (broke_) return {.law = {.status = law::LawStatus::kSingular}};
 
   const contact::TriangleCorners& corner = mesh.triangle[in.place.triangle];
-  std::array<double, 3> dent{};
+  std::array<double, 3> indentation{};
   double w_m = 0.0;
   for (std::size_t c = 0; c < 3; ++c) {
-    dent[c] = -dot(mesh.vertex_normal[corner[c]], region_.moved_m(corner[c]));
-    w_m += in.place.weight[c] * dent[c];
+    indentation[c] = -dot(mesh.vertex_normal[corner[c]], region_.moved_m(corner[c]));
+    w_m += in.place.weight[c] * indentation[c];
   }
   const double q = parameters_.coupling_stiffness_N_per_m;
-  if (!(std::abs(w_m) <= kLostDents * limit_m)) {
+  if (!(std::abs(w_m) <= kLostIndentations * limit_m)) {
     give_up();
     return {.law = {.status = law::LawStatus::kSingular}};
   }
@@ -153,25 +155,25 @@ contact::SiteResponse SpringPatch::respond(const contact::Indentation& in) RT_SA
                                     .stiffness_N_per_m = stretch_m != 0.0 ? q : 0.0,
                                     .energy_J = 0.5 * q * stretch_m * stretch_m + network_energy_J_,
                                     .status = law::LawStatus::kOk}};
-  if (depth_m != in.dent_m) {
-    out.law.energy_J += out.law.force_N * (in.dent_m - depth_m);
+  if (depth_m != in.indentation_m) {
+    out.law.energy_J += out.law.force_N * (in.indentation_m - depth_m);
     out.law.stiffness_N_per_m = 0.0;
     out.law.status = law::LawStatus::kSaturated;
   }
-  out.slope_N = slope_N(mesh, corner, dent, out.law.force_N);
+  out.slope_N = slope_N(mesh, corner, indentation, out.law.force_N);
   return out;
 }
 
 // 1 / q + that of the place: linear over each triangle.
-contact::TangentGive SpringPatch::tangent_give(const contact::Place& place, bool,
-                                               const contact::Axes&) const RT_SAFE {
+contact::TangentCompliance SpringPatch::tangent_compliance(const contact::Place& place, bool,
+                                                           const contact::Axes&) const RT_SAFE {
   const PatchSurface& surface = region_.surface();
   if (!is_a_place(place, surface.mesh)) return {};
-  double give_m_per_N = 1.0 / parameters_.coupling_stiffness_N_per_m;
+  double compliance_m_per_N = 1.0 / parameters_.coupling_stiffness_N_per_m;
   for (std::size_t c = 0; c < 3; ++c)
-    give_m_per_N +=
+    compliance_m_per_N +=
         place.weight[c] * surface.sideways_m_per_N[surface.mesh.triangle[place.triangle][c]];
-  return {.rest_m_per_N = {.xx = give_m_per_N, .yy = give_m_per_N}};
+  return {.rest_m_per_N = {.xx = compliance_m_per_N, .yy = compliance_m_per_N}};
 }
 
 // A triangle near the rim, or out of the region, gathers anew, once for each triangle.
@@ -250,7 +252,7 @@ double SpringPatch::stored_energy_J() RT_SAFE {
   double energy_J = region_.stored_energy_J() - region_.rest_energy_J();
   for (const ProbeSpring& probe : network.probe) {
     const double f =
-        probe_force_N(probe, dent_m(probe, network.node.position_m, network.node.rest_m));
+        probe_force_N(probe, indentation_m(probe, network.node.position_m, network.node.rest_m));
     energy_J += 0.5 * f * f / probe.stiffness_N_per_m;
   }
   return energy_J;
@@ -270,9 +272,9 @@ bool SpringPatch::shape(contact::PatchShape& out) RT_SAFE {
                                             static_cast<float>(moved_m.y),
                                             static_cast<float>(moved_m.z)};
   };
-  const std::span<const std::uint32_t> lips = region_.lips();
-  const std::size_t newest = lips.size() - std::min(lips.size(), kShownLips);
-  for (const std::uint32_t v : lips.subspan(newest)) show(v);
+  const std::span<const std::uint32_t> cut_edges = region_.cut_edges();
+  const std::size_t newest = cut_edges.size() - std::min(cut_edges.size(), kShownLips);
+  for (const std::uint32_t v : cut_edges.subspan(newest)) show(v);
   for (const std::uint32_t v : region_.vertices())
     if (out.node_count < contact::kMaxShapeNodes && (newest > 0 || !region_.is_lip(v))) show(v);
   const std::span<const std::uint32_t> cut = region_.cut_triangles();

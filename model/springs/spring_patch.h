@@ -52,8 +52,8 @@ struct SpringPatchParameters {
 class SpringPatch final : public contact::SiteLaw {
  public:
   contact::SiteResponse respond(const contact::Indentation& in) RT_SAFE override;
-  contact::TangentGive tangent_give(const contact::Place& place, bool held,
-                                    const contact::Axes& axes) const RT_SAFE override;
+  contact::TangentCompliance tangent_compliance(const contact::Place& place, bool held,
+                                                const contact::Axes& axes) const RT_SAFE override;
   void leave(std::size_t sphere) RT_SAFE override;
   void cut(const contact::BladeSweep& sweep) RT_SAFE override { region_.cut(sweep); }
   void advance() RT_SAFE override;

@@ -160,8 +160,9 @@ void SpringStepper::linearise(const SpringNetwork& network, double step_s) RT_SA
   for (std::size_t p = 0; p < network.probe.size() && p < probe_pushes_.size(); ++p) {
     const ProbeSpring& probe = network.probe[p];
     // Decided once a step: the matrix must stay the same for all iterations.
-    probe_pushes_[p] = probe.stiffness_N_per_m > 0.0 &&
-                       probe_force_N(probe, dent_m(probe, node.position_m, node.rest_m)) != 0.0;
+    probe_pushes_[p] =
+        probe.stiffness_N_per_m > 0.0 &&
+        probe_force_N(probe, indentation_m(probe, node.position_m, node.rest_m)) != 0.0;
     if (!probe_pushes_[p]) continue;
     const double q = h * probe.damping_Ns_per_m + h * h * probe.stiffness_N_per_m;
     for (std::size_t c = 0; c < 3; ++c)
@@ -195,10 +196,10 @@ void SpringStepper::apply(const SpringNetwork& network, double step_s, std::span
   for (std::size_t p = 0; p < network.probe.size() && p < probe_pushes_.size(); ++p) {
     if (!probe_pushes_[p]) continue;
     const ProbeSpring& probe = network.probe[p];
-    double dent = 0.0;
+    double indentation = 0.0;
     for (std::size_t c = 0; c < 3; ++c)
-      dent += probe.weight[c] * dot(probe.push[c], in[probe.node[c]]);
-    const double q = (h * probe.damping_Ns_per_m + h * h * probe.stiffness_N_per_m) * dent;
+      indentation += probe.weight[c] * dot(probe.push[c], in[probe.node[c]]);
+    const double q = (h * probe.damping_Ns_per_m + h * h * probe.stiffness_N_per_m) * indentation;
     for (std::size_t c = 0; c < 3; ++c) out[probe.node[c]] += q * probe.weight[c] * probe.push[c];
   }
   for (std::size_t i = 0; i < in.size(); ++i)

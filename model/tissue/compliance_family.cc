@@ -31,7 +31,7 @@ Give give_of(const ComplianceMap& map, const indent::ElasticTip& tip) {
       return static_cast<double>(times_E_per_m) / tip.youngs_modulus_Pa;
     };
     const double r = scaled(map.regular_times_E_per_m[v]);
-    const SidewaysGive& s = map.sideways_times_E_per_m[v];
+    const SidewaysCompliance& s = map.sideways_times_E_per_m[v];
     // n^2 / (c_side + s), where s, too, is limited: errors of the map may not turn its sign.
     const auto kept = [&](float n, float own) {
       return scaled(n) * scaled(n) / std::max(side + scaled(own), side / contact::kStiffestPlace);
@@ -106,15 +106,16 @@ Scale scale_of(const Give& give, double disc_m_per_N, std::size_t curves) {
 
 }  // namespace
 
-std::vector<TangentTensors> tangent_give(const ComplianceMap& map,
-                                         std::span<const Vec3> vertex_normal, double tip_radius_m) {
+std::vector<TangentTensors> tangent_compliance(const ComplianceMap& map,
+                                               std::span<const Vec3> vertex_normal,
+                                               double tip_radius_m) {
   const indent::ElasticTip unit{
       .youngs_modulus_Pa = 1.0, .poisson_ratio = map.poisson_ratio, .radius_m = tip_radius_m};
   const double disc = 1.0 / unit.pulled_stiffness_N_per_m();
   const double side = 1.0 / unit.sideways_stiffness_N_per_m();
   std::vector<TangentTensors> out;
   for (std::size_t v = 0; v < map.vertices(); ++v) {
-    const SidewaysGive& g = map.sideways_times_E_per_m[v];
+    const SidewaysCompliance& g = map.sideways_times_E_per_m[v];
     const Vec3 a1 = vector_of(g.axis), a2 = cross(vertex_normal[v], a1);
     const auto no_stiffer = [side](float s) {
       return std::max(static_cast<double>(s), (1.0 / contact::kStiffestPlace - 1.0) * side);

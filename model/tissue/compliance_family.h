@@ -56,8 +56,9 @@ struct ComplianceFamilyParameters {
 ///
 /// so limited that no direction is more than kStiffestPlace times as stiff as on a half-space. The
 /// normals are those of the surface that the map was made of.
-std::vector<TangentTensors> tangent_give(const ComplianceMap& map,
-                                         std::span<const Vec3> vertex_normal, double tip_radius_m);
+std::vector<TangentTensors> tangent_compliance(const ComplianceMap& map,
+                                               std::span<const Vec3> vertex_normal,
+                                               double tip_radius_m);
 
 Result<ComplianceFamily> make_compliance_family(const ComplianceMap& map,
                                                 const ComplianceFamilyParameters& parameters);

@@ -24,7 +24,7 @@
 namespace tact::model::tissue {
 
 /// Terms of the regular compliance times E, 1/m, beside r: n normal, 1 and 2 tangential axes.
-struct SidewaysGive {
+struct SidewaysCompliance {
   float n1 = 0.0F, n2 = 0.0F;                   // normal motion of a sideways force
   float s1 = 0.0F, s2 = 0.0F;                   // sideways motion along the same axis
   std::array<float, 3> axis{1.0F, 0.0F, 0.0F};  // 1, unit, in the mesh's own frame; 2 = n x 1
@@ -34,11 +34,11 @@ struct ComplianceMap {
   double poisson_ratio = 0.0;   // nu
   double patch_radius_m = 0.0;  // a0
   double ring_pitch_m = 0.0;
-  std::size_t rings = 0;                               // N, 1 .. kMaxComplianceRings
-  Vec3 fixed_min_m{}, fixed_max_m{};                   // held box, in the mesh's own frame
-  std::string mesh_hash;                               // surface_hash() of the organ, 16 hex digits
-  std::vector<float> regular_times_E_per_m{};          // r E, n vertices
-  std::vector<SidewaysGive> sideways_times_E_per_m{};  // n
+  std::size_t rings = 0;                       // N, 1 .. kMaxComplianceRings
+  Vec3 fixed_min_m{}, fixed_max_m{};           // held box, in the mesh's own frame
+  std::string mesh_hash;                       // surface_hash() of the organ, 16 hex digits
+  std::vector<float> regular_times_E_per_m{};  // r E, n vertices
+  std::vector<SidewaysCompliance> sideways_times_E_per_m{};  // n
   std::vector<float> ring_times_E_per_m{};  // g_j E of vertex v at [v N + j - 1], j = 1 .. N
 
   std::size_t vertices() const { return regular_times_E_per_m.size(); }

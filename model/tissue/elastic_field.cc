@@ -78,7 +78,7 @@ ElasticField::Part ElasticField::part_at(const contact::Place& place,
 
 // Where nothing varies, the place does not matter.
 bool ElasticField::is_known(const contact::Indentation& in) const RT_SAFE {
-  return in.sphere < contact::kMaxSpheres && std::isfinite(in.dent_m) &&
+  return in.sphere < contact::kMaxSpheres && std::isfinite(in.indentation_m) &&
          (parts_.curves.size() < 2 || is_a_place(in.place, parts_.surface));
 }
 
@@ -87,10 +87,10 @@ contact::SiteResponse ElasticField::respond(const contact::Indentation& in) RT_S
   const law::Relaxation& relaxation = parts_.relaxation;
   law::RelaxationState& next = next_[in.sphere];
   // From now_, not from next_: asked again in the same tick, the last answer counts.
-  if (relaxation.terms() > 0) next = relaxation.after(now_[in.sphere], in.dent_m, in.held);
+  if (relaxation.terms() > 0) next = relaxation.after(now_[in.sphere], in.indentation_m, in.held);
   contact::SiteResponse sum{};
   for (std::size_t i = 0; i <= relaxation.terms(); ++i) {
-    const double depth_m = i == 0 ? in.dent_m : next.stretch_m[i - 1];
+    const double depth_m = i == 0 ? in.indentation_m : next.stretch_m[i - 1];
     const Part part = part_at(in.place, depth_m);
     // RX-4: q of this tick, for the next one.
     if (i > 0) next.flow_ratio[i - 1] = law::flow_ratio(depth_m, part.law);
@@ -107,11 +107,11 @@ contact::SiteResponse ElasticField::respond(const contact::Indentation& in) RT_S
 // b is blended as the energy is.
 double ElasticField::resistance_N(const contact::Indentation& in, double force_N) const RT_SAFE {
   if (!parts_.damps || !is_known(in)) return 0.0;
-  const Blend blend = blend_at(in.place, in.dent_m);
-  double b_Ns_per_m = parts_.curves[blend.low]->damping_Ns_per_m(in.dent_m);
+  const Blend blend = blend_at(in.place, in.indentation_m);
+  double b_Ns_per_m = parts_.curves[blend.low]->damping_Ns_per_m(in.indentation_m);
   if (parts_.curves.size() > 1)
-    b_Ns_per_m +=
-        blend.fraction * (parts_.curves[blend.low + 1]->damping_Ns_per_m(in.dent_m) - b_Ns_per_m);
+    b_Ns_per_m += blend.fraction *
+                  (parts_.curves[blend.low + 1]->damping_Ns_per_m(in.indentation_m) - b_Ns_per_m);
   return law::resistance_N(b_Ns_per_m, in.speed_mps, force_N, in.held);
 }
 
@@ -166,13 +166,13 @@ double ElasticField::stiffest_N_per_m(const contact::Place& place, bool held) co
   return held ? std::max(at(0.0), at(-1.0)) : at(0.0);
 }
 
-contact::TangentGive ElasticField::tangent_give(const contact::Place& place, bool held,
-                                                const contact::Axes& axes) const RT_SAFE {
+contact::TangentCompliance ElasticField::tangent_compliance(
+    const contact::Place& place, bool held, const contact::Axes& axes) const RT_SAFE {
   const ElasticNeighbours& near = parts_.neighbours;
   if (!(near.contact_modulus_Pa > 0.0)) return {};
   const double nu = near.poisson_ratio;
   // MC-5  G = c/a I + S,  c = (2 - nu)/(8 mu),  mu = E* (1 - nu)/2
-  contact::TangentGive give{
+  contact::TangentCompliance give{
       .contact_m2_per_N = (2.0 - nu) / (4.0 * (1.0 - nu) * near.contact_modulus_Pa),
       .rest_m_per_N = {}};
   if (near.tangent_times_E_per_m.empty() || !is_a_place(place, parts_.surface)) return give;
@@ -192,16 +192,16 @@ std::size_t ElasticField::profile(const contact::Indentation& in,
                                   std::span<double> ring_m) const RT_SAFE {
   if (!is_known(in)) return 0;
   // The curves are springs without a shape (LW-4).
-  if (parts_.dent_shape != nullptr) {
-    const std::size_t rings = parts_.dent_shape->profile(in.dent_m, ring_m);
+  if (parts_.indentation_shape != nullptr) {
+    const std::size_t rings = parts_.indentation_shape->profile(in.indentation_m, ring_m);
     add_organ(in, ring_m.first(rings));
     return rings;
   }
-  const Blend blend = blend_at(in.place, in.dent_m);
-  const std::size_t count = parts_.curves[blend.low]->profile(in.dent_m, ring_m);
+  const Blend blend = blend_at(in.place, in.indentation_m);
+  const std::size_t count = parts_.curves[blend.low]->profile(in.indentation_m, ring_m);
   if (parts_.curves.size() < 2) return count;
   std::array<double, kMaxProfile> stiff_m{};
-  parts_.curves[blend.low + 1]->profile(in.dent_m, stiff_m);
+  parts_.curves[blend.low + 1]->profile(in.indentation_m, stiff_m);
   for (std::size_t j = 0; j < std::min({count, ring_m.size(), kMaxProfile}); ++j)
     ring_m[j] += blend.fraction * (stiff_m[j] - ring_m[j]);
   report_own_rings(in, ring_m.first(count));
@@ -214,13 +214,13 @@ void ElasticField::add_organ(const contact::Indentation& in,
                              std::span<double> ring_m) const RT_SAFE {
   const ElasticNeighbours& near = parts_.neighbours;
   if (near.regular_times_E_per_m.empty() || ring_m.empty()) return;
-  const double force_N = parts_.curves[0]->respond(in.dent_m).force_N;
+  const double force_N = parts_.curves[0]->respond(in.indentation_m).force_N;
   const contact::TriangleCorners& corner = parts_.surface.triangle[in.place.triangle];
   double regular_m_per_N = 0.0;
   for (std::size_t i = 0; i < 3; ++i)
     regular_m_per_N += in.place.weight[i] / near.youngs_modulus_Pa *
                        static_cast<double>(near.regular_times_E_per_m[corner[i]]);
-  const double sign = in.dent_m < 0.0 ? -1.0 : 1.0;
+  const double sign = in.indentation_m < 0.0 ? -1.0 : 1.0;
   ring_m[0] += force_N * regular_m_per_N;
   for (std::size_t j = 1; j < ring_m.size(); ++j) {
     const double more_m =
@@ -236,9 +236,9 @@ void ElasticField::report_own_rings(const contact::Indentation& in,
                                     std::span<double> ring_m) const RT_SAFE {
   const ElasticNeighbours& near = parts_.neighbours;
   if (parts_.curve_ring_times_E_per_m.empty() || near.rings == 0 || ring_m.empty()) return;
-  const Blend blend = blend_at(in.place, in.dent_m);
-  const double force_N = part_at(in.place, in.dent_m).law.force_N;
-  const double sign = in.dent_m < 0.0 ? -1.0 : 1.0;
+  const Blend blend = blend_at(in.place, in.indentation_m);
+  const double force_N = part_at(in.place, in.indentation_m).law.force_N;
+  const double sign = in.indentation_m < 0.0 ? -1.0 : 1.0;
   for (std::size_t j = 1; j < std::min(ring_m.size(), near.rings + 1); ++j) {
     const auto of_curve = [&](std::size_t k) RT_SAFE {
       return static_cast<double>(parts_.curve_ring_times_E_per_m[k * near.rings + j - 1]);
@@ -255,7 +255,7 @@ void ElasticField::report_own_rings(const contact::Indentation& in,
 Vec3 ElasticField::tilt(const contact::Indentation& in) const RT_SAFE {
   const ElasticNeighbours& near = parts_.neighbours;
   if (near.tilt_times_E_per_m2.empty() || !is_known(in)) return {};
-  const double force_N = part_at(in.place, in.dent_m).law.force_N;
+  const double force_N = part_at(in.place, in.indentation_m).law.force_N;
   const contact::TriangleCorners& corner = parts_.surface.triangle[in.place.triangle];
   Vec3 sum;
   for (std::size_t i = 0; i < 3; ++i)

@@ -60,8 +60,9 @@ struct ElasticFieldParts {
   ElasticNeighbours neighbours = {};
   /// g_j E of curve k at [k rings + j - 1], as its profile has it; empty: it has none of a map.
   std::span<const float> curve_ring_times_E_per_m{};
-  bool damps = false;                    // a curve depends on speed
-  const law::Law* dent_shape = nullptr;  // of the dent, where the curves are springs that have none
+  bool damps = false;  // a curve depends on speed
+  const law::Law* indentation_shape =
+      nullptr;  // of the dent, where the curves are springs that have none
 };
 
 class ElasticField final : public contact::SiteLaw {
@@ -74,8 +75,8 @@ class ElasticField final : public contact::SiteLaw {
                                  double distance_m) const RT_SAFE override;
   double stiffest_N_per_m(const contact::Place& place, bool held) const RT_SAFE override;
   double fade_ratio() const RT_SAFE override;
-  contact::TangentGive tangent_give(const contact::Place& place, bool held,
-                                    const contact::Axes& axes) const RT_SAFE override;
+  contact::TangentCompliance tangent_compliance(const contact::Place& place, bool held,
+                                                const contact::Axes& axes) const RT_SAFE override;
   void leave(std::size_t sphere) RT_SAFE override { now_[sphere] = next_[sphere] = {}; }
   void advance() RT_SAFE override {
     if (parts_.relaxation.terms() > 0) now_ = next_;
@@ -84,8 +85,8 @@ class ElasticField final : public contact::SiteLaw {
                       std::span<double> ring_m) const RT_SAFE override;
   Vec3 tilt(const contact::Indentation& in) const RT_SAFE override;
   double ring_pitch_m() const RT_SAFE override {
-    return parts_.dent_shape != nullptr ? parts_.dent_shape->ring_pitch_m()
-                                        : parts_.curves[0]->ring_pitch_m();
+    return parts_.indentation_shape != nullptr ? parts_.indentation_shape->ring_pitch_m()
+                                               : parts_.curves[0]->ring_pitch_m();
   }
 
  private:

@@ -19,7 +19,7 @@ using Six = std::array<double, 6>;  // xx yy zz yz zx xy
 // r n n' + n1 (n a' + a n') + n2 (n b' + b n') + s1 a a' + s2 b b', times E; a, b the map's axes.
 Six tensor_of(const ComplianceMap& map, const Vec3& n, std::size_t v,
               const VertexComplianceParameters& p) {
-  const SidewaysGive& g = map.sideways_times_E_per_m[v];
+  const SidewaysCompliance& g = map.sideways_times_E_per_m[v];
   const Vec3 axis{static_cast<double>(g.axis[0]), static_cast<double>(g.axis[1]),
                   static_cast<double>(g.axis[2])};
   const Vec3 a = normalized(tangential(axis, n)), b = cross(n, a);

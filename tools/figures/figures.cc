@@ -9,8 +9,8 @@ using report::CellKind;
 using report::Table;
 
 std::vector<Figure> all_figures() {
-  return {rhombus_units(), disc_layers(),  skin_rings(),   skin_dent(),    skin_press(),
-          euler_methods(), alpha_search(), alpha_curves(), step_methods(), step_sizes()};
+  return {rhombus_units(), disc_layers(),  skin_rings(),   near_field_indentation(), skin_press(),
+          euler_methods(), alpha_search(), alpha_curves(), step_methods(),           step_sizes()};
 }
 
 Table numbers_of(const std::vector<Figure>& figures) {

@@ -30,16 +30,16 @@ struct Figure {
   report::Picture picture;
 };
 
-Figure rhombus_units();  // [1] figs. 5 to 7
-Figure disc_layers();    // [2] fig. 3 and its worked example
-Figure skin_rings();     // [3] fig. 5
-Figure skin_dent();      // [3] fig. 6
-Figure skin_press();     // [3] fig. 8
-Figure euler_methods();  // [4] fig. 2
-Figure alpha_search();   // [4] fig. 4
-Figure alpha_curves();   // [4] fig. 5
-Figure step_methods();   // [4] fig. 7
-Figure step_sizes();     // [4] fig. 8
+Figure rhombus_units();           // [1] figs. 5 to 7
+Figure disc_layers();             // [2] fig. 3 and its worked example
+Figure skin_rings();              // [3] fig. 5
+Figure near_field_indentation();  // [3] fig. 6
+Figure skin_press();              // [3] fig. 8
+Figure euler_methods();           // [4] fig. 2
+Figure alpha_search();            // [4] fig. 4
+Figure alpha_curves();            // [4] fig. 5
+Figure step_methods();            // [4] fig. 7
+Figure step_sizes();              // [4] fig. 8
 
 std::vector<Figure> all_figures();
 

@@ -67,7 +67,7 @@ plot 3.3 lc rgb '#999999' dt 3 title 'most that its device gives', \
 )gp"}};
 }
 
-Figure skin_dent() {
+Figure near_field_indentation() {
   constexpr std::array kStrain{0.05, 0.1, 0.2, 0.4};  // ours: the copy lists none
   std::array<printed::PaperShape, kStrain.size()> shape;
   for (std::size_t k = 0; k < kStrain.size(); ++k)

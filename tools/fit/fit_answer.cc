@@ -24,7 +24,7 @@ constexpr int kRestTicks = 25;       // the force stands still for so long
 constexpr double kRestRatio = 1e-6;  // a tick, of the force
 
 Indentation detect_contact(const FitSite& site, const FitSample& sample) {
-  Indentation in{.dent_m = sample.depth_m, .held = sample.depth_m < 0.0};
+  Indentation in{.indentation_m = sample.depth_m, .held = sample.depth_m < 0.0};
   if (site.at) in.place = site.at->place, in.normal = site.at->normal;
   return in;
 }
@@ -159,7 +159,7 @@ Result<std::vector<FitAnswer>> answers_of(const model::scene::Scene& scene,
       } else {
         std::array<double, kMaxRings> own{};
         const std::size_t rings =
-            springs != nullptr ? springs->profile(in.dent_m, own) : law.profile(in, own);
+            springs != nullptr ? springs->profile(in.indentation_m, own) : law.profile(in, own);
         const double pitch_m = springs != nullptr ? springs->ring_pitch_m() : law.ring_pitch_m();
         read_profile({own.data(), std::min(rings, kMaxRings)}, pitch_m, data.ring_radius_m,
                      answer.ring_m);

@@ -58,7 +58,7 @@ json group_results(const json& one_case) {
     at_m[i] = {number(inputs.at("x_m").at(i)), number(inputs.at("y_m").at(i)), 0.0};
     sphere[i] = {.presses = true,
                  .depth_m = depth_m,
-                 .in = {.sphere = i, .normal = {0, 0, 1}, .dent_m = depth_m},
+                 .in = {.sphere = i, .normal = {0, 0, 1}, .indentation_m = depth_m},
                  .response = {}};
   }
   auto c = coupling_of(tissue, {sphere.data(), n}, at_m);

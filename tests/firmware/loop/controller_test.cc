@@ -18,7 +18,7 @@ constexpr double kBall_m = 0.004;
 class PuppetLaw final : public model::contact::SiteLaw {
  public:
   model::contact::SiteResponse respond(const model::contact::Indentation& in) RT_SAFE override {
-    return {.law = {.force_N = 200.0 * in.dent_m,
+    return {.law = {.force_N = 200.0 * in.indentation_m,
                     .status = is_beyond ? model::law::LawStatus::kSaturated
                                         : model::law::LawStatus::kOk}};
   }

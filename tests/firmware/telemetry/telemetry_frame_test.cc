@@ -25,7 +25,9 @@ class LeaningLaw final : public model::contact::SiteLaw {
   void advance() RT_SAFE override {}
   std::size_t profile(const Indentation&, std::span<double>) const RT_SAFE override { return 1; }
   double ring_pitch_m() const RT_SAFE override { return 0.002; }
-  Vec3 tilt(const Indentation& in) const RT_SAFE override { return in.dent_m * Vec3{10, -20, 30}; }
+  Vec3 tilt(const Indentation& in) const RT_SAFE override {
+    return in.indentation_m * Vec3{10, -20, 30};
+  }
 };
 
 TEST(TelemetryFrame, CarriesHowTheDentOfATouchedSiteLeans) {
@@ -34,7 +36,7 @@ TEST(TelemetryFrame, CarriesHowTheDentOfATouchedSiteLeans) {
   FrameBuilder builder(law, *shapes, false);
   std::array<model::contact::SphereContact, 2> contacts;
   contacts[0].state = ContactState::kTouching;
-  for (auto& sphere_contact : contacts) sphere_contact.dent_m = 0.004;
+  for (auto& sphere_contact : contacts) sphere_contact.indentation_m = 0.004;
   loop::TickRecord record;
   record.contacts.assign(contacts);
   builder.add(record);
@@ -51,7 +53,7 @@ TEST(TelemetryFrame, CarriesLossesOfContactAndASphereInsideWithoutADent) {
   FrameBuilder builder(law, *shapes, false);
   std::array<model::contact::SphereContact, 1> contacts;
   contacts[0].state = ContactState::kInside;
-  contacts[0].dent_m = 0.004;
+  contacts[0].indentation_m = 0.004;
   loop::TickRecord record;
   record.contacts.assign(contacts);
   record.output.contact_losses = 7;

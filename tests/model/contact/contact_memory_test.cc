@@ -144,7 +144,7 @@ TEST(ContactMemory, LettingGoOverStifferTissueNeverAddsEnergy) {
     EXPECT_EQ(contact.contacts()[0].state, ContactState::kTouching);
     EXPECT_LE(open.energy_J, held.energy_J - shift_J + 1e-12);
     EXPECT_GT(open.energy_J, 0.98 * (held.energy_J - shift_J)) << "nor takes what it need not";
-    EXPECT_GT(contact.contacts()[0].slack_m, 1_mm);
+    EXPECT_GT(contact.contacts()[0].depth_offset_m, 1_mm);
     // what was taken up is paid back only by withdrawing
     EXPECT_LE(render_force(contact, aside_m, 0.0, 10).energy_J, open.energy_J + 1e-12);
   }

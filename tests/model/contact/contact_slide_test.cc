@@ -28,7 +28,7 @@ class Slide : public testing::Test {
   static double stiffness_N_per_m(double radius_m) {
     return 8.0 * kShear_Pa * radius_m / (2.0 - kNu);
   }
-  double dent_m() const { return contact.contacts()[0].dent_m; }
+  double indentation_m() const { return contact.contacts()[0].indentation_m; }
   double along_J() const {
     const SphereContact& sphere_contact = contact.contacts()[0];
     return 0.5 * norm(tangential(sphere_contact.force_N, sphere_contact.normal)) *
@@ -49,7 +49,7 @@ class Slide : public testing::Test {
 
 TEST_F(Slide, ATouchingSphereIsHeldBackByTheContactThatItMakes) {
   press(-1_mm, 2_mm);
-  const double own = stiffness_N_per_m(std::sqrt(kRadius_m * dent_m()));
+  const double own = stiffness_N_per_m(std::sqrt(kRadius_m * indentation_m()));
   const double rendered_N = -render_at({0.5_mm, 0, -2_mm}).force_N.x;
   EXPECT_NEAR(rendered_N, own * 0.5_mm, 0.01 * own * 0.5_mm) << "in steps of 1 %";
 }
@@ -98,7 +98,8 @@ class Grained final : public SiteLaw {
   explicit Grained(double turn_rad) : turn_rad_(turn_rad) {}
 
   SiteResponse respond(const Indentation& in) RT_SAFE override { return tissue_.field.respond(in); }
-  TangentGive tangent_give(const Place& place, bool, const Axes& axes) const RT_SAFE override {
+  TangentCompliance tangent_compliance(const Place& place, bool,
+                                       const Axes& axes) const RT_SAFE override {
     const double angle_rad = turn_rad_ * place.triangle;
     const Vec2 grain = axes.of({std::cos(angle_rad), std::sin(angle_rad), 0.0});
     constexpr double kAlong = 0.08, kAcross = 0.02, kMore = kAlong - kAcross;  // m/N

@@ -30,7 +30,7 @@ struct Group {
       sphere.push_back(
           {.presses = true,
            .depth_m = depth_m[i],
-           .in = {.sphere = i, .normal = {0, 0, 1}, .dent_m = depth_m[i], .held = held},
+           .in = {.sphere = i, .normal = {0, 0, 1}, .indentation_m = depth_m[i], .held = held},
            .response = {}});
     for (std::size_t i = 0; i < at_m.size(); ++i)
       for (std::size_t j = 0; j < at_m.size(); ++j)
@@ -39,7 +39,7 @@ struct Group {
   }
   double force_N(std::size_t i) const { return sphere[i].response.law.force_N; }
   double miss_m(std::size_t i) const {
-    return sphere[i].depth_m - sunk_m(c, sphere, i) - sphere[i].in.dent_m;
+    return sphere[i].depth_m - coupled_m(c, sphere, i) - sphere[i].in.indentation_m;
   }
 };
 
@@ -62,8 +62,9 @@ TEST(Coupling, HalfSpacePairSharesItsTissue) {
   double low_N = 0.0, high_N = 1.0;
   for (int i = 0; i < 60; ++i) {
     const double f_N = 0.5 * (low_N + high_N);
-    const double dent_m = 5_mm - f_N / (std::numbers::pi * half.tip.contact_modulus_Pa() * 8_mm);
-    (half.curve.respond(dent_m).force_N > f_N ? low_N : high_N) = f_N;
+    const double indentation_m =
+        5_mm - f_N / (std::numbers::pi * half.tip.contact_modulus_Pa() * 8_mm);
+    (half.curve.respond(indentation_m).force_N > f_N ? low_N : high_N) = f_N;
   }
   EXPECT_NEAR(pair.force_N(0), low_N, 1e-7 * low_N);
   EXPECT_EQ(pair.force_N(0), pair.force_N(1));
@@ -79,7 +80,7 @@ TEST(Coupling, SolvesEveryGroupFromAnyGuess) {
     std::vector<double> depth_m(n);
     for (double& d : depth_m) d = depth(random);
     Group group(half.field, random_places(random, n), depth_m, k % 3 == 0);
-    for (PressingSphere& s : group.sphere) s.in.dent_m = depth(random);
+    for (PressingSphere& s : group.sphere) s.in.indentation_m = depth(random);
     press_together(half.field, group.c, group.sphere);
     for (std::size_t i = 0; i < n; ++i) ASSERT_NEAR(group.miss_m(i), 0.0, 1e-10) << k;
   }
@@ -89,7 +90,7 @@ TEST(Coupling, ASphereInTheDentOfAnotherIsNotTouchedAndNeverPulls) {
   HalfSpace half;
   Group pair(half.field, {{0, 0, 0}, {8_mm, 0, 0}}, {10_mm, 0.5_mm});
   press_together(half.field, pair.c, pair.sphere);
-  EXPECT_LT(pair.sphere[1].in.dent_m, 0.0);
+  EXPECT_LT(pair.sphere[1].in.indentation_m, 0.0);
   EXPECT_EQ(pair.force_N(1), 0.0);
   EXPECT_EQ(pair.force_N(0), half.curve.respond(10_mm).force_N);
 }
@@ -132,7 +133,7 @@ TEST(Coupling, ALobeBendsAlongOneAxisBetweenNormalsThatStraddleIt) {
 TEST(Coupling, NoneLeavesEachSphereItsOwnDepthToTheBit) {
   HalfSpace half;
   Group one(half.field, {{0, 0, 0}}, {3.3_mm});
-  one.sphere[0].in.dent_m = 1_mm;
+  one.sphere[0].in.indentation_m = 1_mm;
   press_together(half.field, one.c, one.sphere);
   EXPECT_EQ(one.force_N(0), half.curve.respond(3.3_mm).force_N);
 }

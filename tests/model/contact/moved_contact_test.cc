@@ -161,7 +161,7 @@ TEST(MovedContact, BeginsWithoutTheDepthThatNoWayExplains) {
   moved.begin(sphere, site, 0.5_mm);
   moved.move(sphere);
   moved.respond();
-  EXPECT_NEAR(moved.find(0)->slack_m, 2.5_mm, 1e-6);
+  EXPECT_NEAR(moved.find(0)->depth_offset_m, 2.5_mm, 1e-6);
   EXPECT_NEAR(moved.find(0)->force_N.z, body.tip.respond(0.5_mm).force_N, 1e-6);
 }
 

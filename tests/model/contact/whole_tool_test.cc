@@ -222,7 +222,7 @@ TEST(WholeTool, APinchedLobeIsDraggedTheSameWayOnBothSides) {
   const double c = bench.tissue.field.coupling(top, below, 24_mm).skin_m_per_N;
   const Axes of_top = axes_of(top.normal),
              of_below = axes_of(below.normal, {{Vec3{0.6, 0.8, 0}, Vec3{}}});
-  const OwnGive own{.m_per_N = {1.0 / 20.0, 0.0, 1.0 / 20.0}, .least_m_per_N = 1.0 / 20.0};
+  const OwnCompliance own{.m_per_N = {1.0 / 20.0, 0.0, 1.0 / 20.0}, .least_m_per_N = 1.0 / 20.0};
   Shear shear;
   shear.set_own(0, own);
   shear.set_own(1, own);

@@ -108,7 +108,7 @@ TEST(Condensation, IsTheSolutionOfItsOwnLoads) {
   EXPECT_NEAR(static_cast<double>(map->regular_times_E_per_m[v]), r, 1e-6 * scale);
   const double side = hertz_tangential_m_per_N({1.0, 0.45}, 0.02);
   // Turned back from the axes that the map gives: here x and y are tangential.
-  const tissue::SidewaysGive& s = map->sideways_times_E_per_m[v];
+  const tissue::SidewaysCompliance& s = map->sideways_times_E_per_m[v];
   const double ax = static_cast<double>(s.axis[0]), ay = static_cast<double>(s.axis[1]);
   const double found_xx = static_cast<double>(s.s1) * ax * ax + static_cast<double>(s.s2) * ay * ay;
   const double found_xy = static_cast<double>(s.s1 - s.s2) * ax * ay;

@@ -133,7 +133,7 @@ TEST(ComplianceLaw, AtLargeStrainThePressEndsWhereTheTipIsTooDeepToBeKnown) {
     const double end_m = curve.range().press_m;
     const TipState last = curve.exact(end_m);
     EXPECT_LT(end_m, 10_mm);
-    EXPECT_NEAR(last.depth_m, kDeepestDent_ratio * 4_mm, 1e-12);
+    EXPECT_NEAR(last.depth_m, kDeepestIndentation_ratio * 4_mm, 1e-12);
     EXPECT_EQ(curve.respond(end_m).status, law::LawStatus::kOk);
     const law::LawResponse beyond = curve.respond(end_m + 1_mm);
     EXPECT_EQ(beyond.status, law::LawStatus::kSaturated);

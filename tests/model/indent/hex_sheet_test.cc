@@ -65,8 +65,8 @@ TEST(HexSheet, MatchesTheTableOfItsDefaults) {
   EXPECT_NEAR(skin.respond(8_mm).force_N, 3.20, 0.005);
   std::vector<double> ring_m(32);
   ASSERT_EQ(skin.profile(5_mm, ring_m), 16u);
-  const double dent_mm[] = {5.0, 2.46, 1.38, 0.78, 0.45};
-  for (std::size_t j = 0; j < 5; ++j) EXPECT_NEAR(1e3 * ring_m[j], dent_mm[j], 0.005);
+  const double indentation_mm[] = {5.0, 2.46, 1.38, 0.78, 0.45};
+  for (std::size_t j = 0; j < 5; ++j) EXPECT_NEAR(1e3 * ring_m[j], indentation_mm[j], 0.005);
 }
 
 TEST(HexSheet, OneRingIsPenAndPaper) {

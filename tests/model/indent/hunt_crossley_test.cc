@@ -29,8 +29,8 @@ TEST(HuntCrossley, KeepsTheLawContractWhateverIsPutAroundIt) {
     tests::check_law_contract(law);
     tests::check_law_contract(
         *law::make_linear_pull(law, {.stiffness_N_per_m = 60, .limit_m = 10_mm}));
-    for (const double give_m_per_N : {-0.003, 0.03}) {
-      const law::SeriesLaw series = *law::make_series_law(law, give_m_per_N, law);
+    for (const double compliance_m_per_N : {-0.003, 0.03}) {
+      const law::SeriesLaw series = *law::make_series_law(law, compliance_m_per_N, law);
       tests::check_damping_takes_energy(series);
       tests::check_damping_takes_energy(*law::tabulate(series, 65));
     }
@@ -68,10 +68,11 @@ TEST(HuntCrossley, LetsGoInsteadOfStickingAndTouchesWithoutAJump) {
 
 TEST(HuntCrossley, OrganInSeriesTakesItsShareOfTheSpeed) {
   const HuntCrossley law = make();
-  const double give_m_per_N = 0.03;
-  const law::SeriesLaw series = *law::make_series_law(law, give_m_per_N, law);
+  const double compliance_m_per_N = 0.03;
+  const law::SeriesLaw series = *law::make_series_law(law, compliance_m_per_N, law);
   // SL-4 at a dent of 3 mm
-  const double share = 1.0 / (1.0 + give_m_per_N * 31.25), depth_m = 3_mm + give_m_per_N * 0.0625;
+  const double share = 1.0 / (1.0 + compliance_m_per_N * 31.25),
+               depth_m = 3_mm + compliance_m_per_N * 0.0625;
   EXPECT_NEAR(series.damping_Ns_per_m(depth_m), 0.125 * share * share, 1e-12);
   EXPECT_NEAR(law::tabulate(series, 65)->damping_Ns_per_m(depth_m), 0.125 * share * share, 1e-4);
 }

@@ -71,7 +71,7 @@ struct Rendered {
                .relaxation = relaxation}),
         held(is_held) {}
   double force_N(double depth_m) {
-    response = field.respond({.dent_m = depth_m, .held = held}).law;
+    response = field.respond({.indentation_m = depth_m, .held = held}).law;
     field.advance();
     return response.force_N;
   }
@@ -237,7 +237,7 @@ TEST(Relaxation, AskedTwiceInATickRemembersTheLastAnswerOnly) {
   const PowerLaw law(1.5);
   Rendered once(law), twice(law);
   for (int i = 1; i <= 10; ++i) {
-    twice.field.respond({.dent_m = 9e-3});
+    twice.field.respond({.indentation_m = 9e-3});
     EXPECT_EQ(once.force_N(i * 1e-3), twice.force_N(i * 1e-3));
   }
 }

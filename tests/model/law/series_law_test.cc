@@ -17,7 +17,7 @@ namespace tact::model::law::series_law_test {
 
 constexpr std::array kRings{0.01, 0.005};
 
-indent::ComplianceCurve place(double give_m_per_N, double m = 1.0, double kg = 1.0,
+indent::ComplianceCurve place(double compliance_m_per_N, double m = 1.0, double kg = 1.0,
                               double s = 1.0) {
   const double give = s * s / kg;
   const std::array rings{kRings[0] * give, kRings[1] * give};
@@ -25,7 +25,7 @@ indent::ComplianceCurve place(double give_m_per_N, double m = 1.0, double kg = 1
       indent::make_compliance_curve({.tip = {.youngs_modulus_Pa = 5000.0 * kg / (m * s * s),
                                              .poisson_ratio = 0.45,
                                              .radius_m = 4_mm * m},
-                                     .regular_m_per_N = give_m_per_N * give,
+                                     .regular_m_per_N = compliance_m_per_N * give,
                                      .working_depth_m = 12_mm * m,
                                      .ring_pitch_m = 2_mm * m,
                                      .ring_m_per_N = rings,
@@ -36,15 +36,17 @@ indent::ComplianceCurve place(double give_m_per_N, double m = 1.0, double kg = 1
 
 /// The tip's own dent, pressed and pulled, in series with a give.
 struct Pair {
-  Pair(double give_m_per_N, double m = 1.0, double kg = 1.0, double s = 1.0)
-      : tip(place(0.0, m, kg, s)), series(*make_series_law(tip, give_m_per_N * s * s / kg, tip)) {}
+  Pair(double compliance_m_per_N, double m = 1.0, double kg = 1.0, double s = 1.0)
+      : tip(place(0.0, m, kg, s)),
+        series(*make_series_law(tip, compliance_m_per_N * s * s / kg, tip)) {}
   indent::ComplianceCurve tip;
   SeriesLaw series;
 };
 
 class PairLaw final : public Law {
  public:
-  PairLaw(double give_m_per_N, double m, double kg, double s) : pair_(give_m_per_N, m, kg, s) {}
+  PairLaw(double compliance_m_per_N, double m, double kg, double s)
+      : pair_(compliance_m_per_N, m, kg, s) {}
   LawResponse respond(double d) const RT_SAFE override { return pair_.series.respond(d); }
   LawRange range() const RT_SAFE override { return pair_.series.range(); }
   std::size_t profile(double d, std::span<double> u) const RT_SAFE override {
@@ -65,8 +67,8 @@ TEST(SeriesLaw, KeepsTheLawContractWhereTheOrganGivesAndWhereItIsHeld) {
                                    .growth = 2.0,
                                    .units = 10});
   const TabulatedLaw table = *tabulate(chain, kMaxKnots);
-  for (const double give_m_per_N : {0.03, 0.0, -0.003})
-    tests::check_law_contract(*make_series_law(table, give_m_per_N, table));
+  for (const double compliance_m_per_N : {0.03, 0.0, -0.003})
+    tests::check_law_contract(*make_series_law(table, compliance_m_per_N, table));
 }
 
 TEST(SeriesLaw, HasConsistentDimensions) {
@@ -75,9 +77,9 @@ TEST(SeriesLaw, HasConsistentDimensions) {
 }
 
 TEST(SeriesLaw, IsTheComplianceLawWhereTheTipIsItsTip) {
-  for (const double give_m_per_N : {0.03, -0.005}) {
-    const Pair pair(give_m_per_N);
-    const indent::ComplianceCurve whole = place(give_m_per_N);
+  for (const double compliance_m_per_N : {0.03, -0.005}) {
+    const Pair pair(compliance_m_per_N);
+    const indent::ComplianceCurve whole = place(compliance_m_per_N);
     for (const double depth_m : {-8_mm, -1_mm, 0.5_mm, 2_mm, 6_mm}) {
       const LawResponse a = pair.series.respond(depth_m), b = whole.respond(depth_m);
       EXPECT_NEAR(a.force_N / b.force_N, 1.0, 1e-4) << depth_m;
@@ -102,8 +104,8 @@ TEST(SeriesLaw, RefusesAPlaceThatIsStifferThanItsLaw) {
   const indent::ComplianceCurve tip = place(0.0);
   const double most_N_per_m = stiffest_N_per_m(tip, -12_mm, 12_mm);
   EXPECT_TRUE(make_series_law(tip, -0.99 / most_N_per_m, tip));
-  for (const double give_m_per_N : {-1.01 / most_N_per_m, std::nan(""), HUGE_VAL}) {
-    const auto refused = make_series_law(tip, give_m_per_N, tip);
+  for (const double compliance_m_per_N : {-1.01 / most_N_per_m, std::nan(""), HUGE_VAL}) {
+    const auto refused = make_series_law(tip, compliance_m_per_N, tip);
     ASSERT_FALSE(refused);
     EXPECT_NE(refused.error().sentence.find("allowed: finite and above"), std::string::npos);
   }

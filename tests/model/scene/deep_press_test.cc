@@ -95,7 +95,7 @@ Rendered render_force(const contact::ContactScene& scene, const Push& push,
   const auto ticks = static_cast<int>((kDeep_m + kBefore_m) / (push.speed_mps * kTick_s));
   Rendered rendered;
   bool has_come_out = false;  // on another side: what it feels from there on is another contact
-  double depth_before_m = 0.0, slack_before_m = 0.0, sphere_before_N = 0.0;
+  double depth_before_m = 0.0, depth_offset_before_m = 0.0, sphere_before_N = 0.0;
   Vec3 before_m, force_before_N;
   for (int i = 0; i <= 2 * ticks; ++i) {
     const double t_s = (i <= ticks ? i : 2 * ticks - i) * kTick_s;
@@ -113,17 +113,18 @@ Rendered render_force(const contact::ContactScene& scene, const Push& push,
     has_come_out = has_come_out || (rendered.most_depth_m > 0.0 &&
                                     is_outside(scene, tool.position_m + scene.spheres[0].offset_m,
                                                scene.spheres[0].radius_m));
-    const double depth_m = sphere_contact.depth_m + sphere_contact.slack_m,
+    const double depth_m = sphere_contact.depth_m + sphere_contact.depth_offset_m,
                  sphere_N = norm(sphere_contact.force_N);
     constexpr double kRounding_N = 1e-9;
-    const bool is_another =
-        sphere_contact.slack_m > slack_before_m;  // contact, or what it touches jumped
+    const bool is_another = sphere_contact.depth_offset_m >
+                            depth_offset_before_m;  // contact, or what it touches jumped
     if (!has_come_out && !is_another && depth_m > depth_before_m &&
         sphere_N < sphere_before_N - kRounding_N)
       ++rendered.falls;
     if (!has_come_out && i <= ticks && dot(sphere_contact.force_N, push.along) > kRounding_N)
       rendered.is_drawn_in = true;
-    depth_before_m = depth_m, slack_before_m = sphere_contact.slack_m, sphere_before_N = sphere_N;
+    depth_before_m = depth_m, depth_offset_before_m = sphere_contact.depth_offset_m,
+    sphere_before_N = sphere_N;
   }
   return rendered;
 }

@@ -61,7 +61,7 @@ class BrokenLaw : public contact::SiteLaw {
   double spring_N_per_m = kSpring_N_per_m;
 
   contact::SiteResponse respond(const contact::Indentation& in) RT_SAFE override {
-    const double d_m = std::max(in.dent_m, 0.0), beyond_m = std::max(d_m - 2_mm, 0.0);
+    const double d_m = std::max(in.indentation_m, 0.0), beyond_m = std::max(d_m - 2_mm, 0.0);
     double force_N = spring_N_per_m * d_m - draws_N_per_m * beyond_m;
     double energy_J = 0.5 * spring_N_per_m * d_m * d_m - 0.5 * draws_N_per_m * beyond_m * beyond_m;
     if (d_m > snap_at_m) {

@@ -41,13 +41,13 @@ TEST(Sideways, StiffnessIsTheFiniteElementsAlongBothDirectionsWithin15Percent) {
     const std::array<double, 3> v = one.at("along");
     const contact::Axes axes = contact::axes_of(scene->organ_mesh.vertex_normal[vertex],
                                                 {{Vec3{v[0], v[1], v[2]}, Vec3{}}});
-    const contact::Tensor2 give_m_per_N =
+    const contact::Tensor2 compliance_m_per_N =
         (*tissue)
             ->law()
             .site_law()
-            .tangent_give(place_of(scene->organ_mesh, vertex), one.at("held"), axes)
+            .tangent_compliance(place_of(scene->organ_mesh, vertex), one.at("held"), axes)
             .at(one.at("contact_radius_m"));
-    const double ratio = 1.0 / give_m_per_N.xx / one.at("stiffness_N_per_m").get<double>();
+    const double ratio = 1.0 / compliance_m_per_N.xx / one.at("stiffness_N_per_m").get<double>();
     EXPECT_NEAR(ratio, 1.0, 0.15) << one;
     worst = std::max(worst, std::abs(ratio - 1.0));
   }
@@ -77,15 +77,15 @@ TEST(Sideways, EveryShippedSceneTakesItsStiffnessFromItsTissue) {
     const auto tissue = make_tissue(*scene);
     ASSERT_EQ(tests::sentence_of(tissue), "");
     const std::uint32_t vertex = vertex_near(scene->organ_mesh, scene->hand_site_m);
-    const double give_m_per_N =
+    const double compliance_m_per_N =
         (*tissue)
             ->law()
             .site_law()
-            .tangent_give(place_of(scene->organ_mesh, vertex), true,
-                          contact::axes_of(scene->organ_mesh.vertex_normal[vertex]))
+            .tangent_compliance(place_of(scene->organ_mesh, vertex), true,
+                                contact::axes_of(scene->organ_mesh.vertex_normal[vertex]))
             .at(scene->tool.spheres[0].radius_m)
             .xx;
-    EXPECT_NEAR(1.0 / give_m_per_N, want.held_N_per_m, 0.5) << want.scene;
+    EXPECT_NEAR(1.0 / compliance_m_per_N, want.held_N_per_m, 0.5) << want.scene;
   }
 }
 

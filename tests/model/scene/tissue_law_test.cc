@@ -63,7 +63,7 @@ TEST(TissueLaw, SpringsInARowAreDrawnAsTheDentOfAHalfSpace) {
   constexpr double kDepth_m = 0.003, kRadius_m = 0.0065;  // of the fingertip
   const auto law = made(shipped("heart"));
   std::array<double, 32> ring_m{};
-  const std::size_t rings = law->site_law().profile({.dent_m = kDepth_m}, ring_m);
+  const std::size_t rings = law->site_law().profile({.indentation_m = kDepth_m}, ring_m);
   double sum_m2 = 0.0;
   std::size_t count = 0;
   for (std::size_t j = 0; j + 1 < rings; ++j, ++count) {
@@ -102,7 +102,7 @@ TEST(TissueLaw, WhatVariesIsInSeriesWithTheGiveOfEachVertex) {
               same = shipped("liver", {"varies_by_place=false"});
   const auto family = read_scene_family(varied, false);
   ASSERT_TRUE(family) << family.error().sentence;
-  const auto give_m_per_N = [&](float kappa) {
+  const auto compliance_m_per_N = [&](float kappa) {
     return family->curve[static_cast<std::size_t>(kappa)].regular_m_per_N();
   };
   const auto law = made(varied), tip = made(same);
@@ -115,10 +115,11 @@ TEST(TissueLaw, WhatVariesIsInSeriesWithTheGiveOfEachVertex) {
       const float kappa = (depth_m < 0.0 ? family->pull_coordinate : family->press_coordinate)[v];
       // between two curves energies are blended: CF-2 says how near that is to the place's own
       if (std::abs(kappa - std::floor(kappa)) > 0.002F || kappa < 1.0F || kappa > 13.0F) continue;
-      const contact::Indentation in{.place = {t, {1, 0, 0}}, .dent_m = depth_m, .held = true};
+      const contact::Indentation in{
+          .place = {t, {1, 0, 0}}, .indentation_m = depth_m, .held = true};
       const double force_N = law->site_law().respond(in).law.force_N;
-      const double dent_m = depth_m - give_m_per_N(kappa) * force_N;
-      const double tip_N = tip->curve()->respond(dent_m).force_N;
+      const double indentation_m = depth_m - compliance_m_per_N(kappa) * force_N;
+      const double tip_N = tip->curve()->respond(indentation_m).force_N;
       ASSERT_NEAR(force_N, tip_N, 2e-3 * std::abs(tip_N)) << t << " at " << depth_m;
       if (depth_m == 0.006)
         least_N = std::min(least_N, force_N), most_N = std::max(most_N, force_N);
@@ -155,7 +156,7 @@ TEST(TissueLaw, OneChainUnderTheWholeTipOrMoreTheDeeperItSinks) {
 
 TEST(TissueLaw, LargeStrainSoftensTheComplianceLaw) {
   EXPECT_TRUE(ComplianceSettings{}.large_strain) << "where the scene does not say";
-  const contact::Indentation in{.place = {97, {1, 0, 0}}, .dent_m = 0.003};
+  const contact::Indentation in{.place = {97, {1, 0, 0}}, .indentation_m = 0.003};
   const auto force_N = [&](const Overrides& overrides, LawKind kind) {
     const Scene liver = shipped("liver", overrides);
     return made(liver, kind)->site_law().respond(in).law.force_N;
@@ -186,7 +187,8 @@ TEST(TissueLaw, OnlyHuntAndCrossleyResistSpeedAndLessWhereTheOrganGives) {
   EXPECT_LE(law->damping_Ns_per_m(), 1.0001 * 0.1 * 0.537);
   double least_s_per_m = 1.0, most_s_per_m = 0.0;
   for (std::uint32_t t = 0; t < liver.organ_mesh.triangle.size(); t += 7) {
-    const contact::Indentation in{.place = {t, {1, 0, 0}}, .dent_m = 0.005, .speed_mps = 0.05};
+    const contact::Indentation in{
+        .place = {t, {1, 0, 0}}, .indentation_m = 0.005, .speed_mps = 0.05};
     const double force_N = law->site_law().respond(in).law.force_N;
     const double lambda = law->site_law().resistance_N(in, force_N) / (0.05 * force_N);
     least_s_per_m = std::min(least_s_per_m, lambda), most_s_per_m = std::max(most_s_per_m, lambda);
@@ -205,7 +207,7 @@ TEST(TissueLaw, SlopeAlongTheSurfaceIsThatOfTheEnergy) {
     int compared = 0;
     for (std::uint32_t t = 5; t < mesh.triangle.size(); t += 311) {
       const auto at = [&](double a, double b) {
-        return law->site_law().respond({.place = {t, {1.0 - a - b, a, b}}, .dent_m = 0.005});
+        return law->site_law().respond({.place = {t, {1.0 - a - b, a, b}}, .indentation_m = 0.005});
       };
       const contact::TriangleCorners& corner = mesh.triangle[t];
       const double e = 1e-3;

@@ -62,8 +62,11 @@ class PressedPatch {
   model::contact::SiteResponse ask(const model::Vec3& at_m, double depth_m, bool held) {
     const model::contact::Site site =
         follow(mesh_.view(), triangle_, at_m + model::Vec3{0, 0, 0.01});
-    return patch_->respond(
-        {.sphere = 0, .place = site.place, .normal = {0, 0, 1}, .dent_m = depth_m, .held = held});
+    return patch_->respond({.sphere = 0,
+                            .place = site.place,
+                            .normal = {0, 0, 1},
+                            .indentation_m = depth_m,
+                            .held = held});
   }
 
   model::mesh::SurfaceMesh mesh_;

@@ -117,11 +117,11 @@ void expect_passive(double stride_m, bool held, std::uint32_t seed) {
     pressed.advance();
     most_J = std::fmax(most_J, pressed.work_J());
     const double kept_J = patch.stored_energy_J() + patch.kinetic_energy_J();
-    ASSERT_LE(kept_J, pressed.work_J() + patch.region().handover_debt_J() + error_J)
+    ASSERT_LE(kept_J, pressed.work_J() + patch.region().energy_deficit_J() + error_J)
         << seed << ", tick " << i;
   }
   EXPECT_GT(most_J, 1e-3);
-  EXPECT_LT(patch.region().handover_debt_J(), 1e-4 * most_J);
+  EXPECT_LT(patch.region().energy_deficit_J(), 1e-4 * most_J);
 }
 
 TEST(PatchMemory, PassiveOverRandomStrokes) {
@@ -174,7 +174,7 @@ TEST(PatchMemory, CuttingOnlyRemovesEnergyAndThenTheLipsCreepApart) {
   const auto energy_J = [&patch] { return patch.stored_energy_J() + patch.kinetic_energy_J(); };
   const auto gap_m = [&patch] {
     double sum_m = 0.0;
-    for (const std::uint32_t v : patch.region().lips())
+    for (const std::uint32_t v : patch.region().cut_edges())
       sum_m += std::abs(patch.region().moved_m(v).y);
     return sum_m;
   };
@@ -200,8 +200,8 @@ TEST(PatchMemory, WhoLeavesForgetsAndTheToolGainsNothing) {
     pressed.advance();
   }
   SpringPatch& patch = pressed.patch();
-  EXPECT_GT(pressed.work_J() + patch.region().handover_debt_J(), patch.stored_energy_J());
-  EXPECT_LT(patch.region().handover_debt_J(), 0.1 * pressed.work_J());
+  EXPECT_GT(pressed.work_J() + patch.region().energy_deficit_J(), patch.stored_energy_J());
+  EXPECT_LT(patch.region().energy_deficit_J(), 0.1 * pressed.work_J());
   patch.leave(0);
   for (int i = 0; i < 6000; ++i) patch.advance();
   EXPECT_LT(patch.stored_energy_J(), 1e-9) << "let go, it comes back";
@@ -220,7 +220,7 @@ TEST(PatchMemory, ASceneThatFadesMakesAPatchThatFades) {
   std::vector<double> force_N;
   for (int i = 0; i < 300; ++i) {
     force_N.push_back(
-        law.respond({.place = {420, {0.3, 0.3, 0.4}}, .dent_m = kShallow_m}).law.force_N);
+        law.respond({.place = {420, {0.3, 0.3, 0.4}}, .indentation_m = kShallow_m}).law.force_N);
     law.advance();
   }
   scene.relaxation.clear();
@@ -229,7 +229,7 @@ TEST(PatchMemory, ASceneThatFadesMakesAPatchThatFades) {
   for (int i = 0; i < 300; ++i) {
     elastic_N = (*elastic)
                     ->site_law()
-                    .respond({.place = {420, {0.3, 0.3, 0.4}}, .dent_m = kShallow_m})
+                    .respond({.place = {420, {0.3, 0.3, 0.4}}, .indentation_m = kShallow_m})
                     .law.force_N;
     (*elastic)->site_law().advance();
   }
@@ -249,7 +249,7 @@ TEST(PatchMemory, LeavesTheHeapAlone) {
   SpringPatch& patch = pressed.patch();
   const tests::NoAlloc guard;
   for (std::uint32_t i = 0; i < 200; ++i) {
-    patch.respond({.place = {200 + 2 * i, {0.3, 0.3, 0.4}}, .dent_m = 0.002});
+    patch.respond({.place = {200 + 2 * i, {0.3, 0.3, 0.4}}, .indentation_m = 0.002});
     patch.cut({{-0.05, 0, -0.01}, {-0.05, 0, 0.01}, {0.05, 0, -0.01}, {0.05, 0, 0.01}});
     patch.advance();
   }

@@ -91,9 +91,9 @@ TEST(PatchRegion, GatheringMakesNoEnergyBeyondItsDebt) {
     }
     for (const std::uint32_t next : {426u, 436u, 420u, 440u}) {
       triangle[0] = next;
-      const double before_J = energy_J(), owed_J = region.handover_debt_J();
+      const double before_J = energy_J(), owed_J = region.energy_deficit_J();
       region.gather(triangle);
-      EXPECT_LE(energy_J(), before_J + region.handover_debt_J() - owed_J + 1e-15);
+      EXPECT_LE(energy_J(), before_J + region.energy_deficit_J() - owed_J + 1e-15);
     }
   }
 }
@@ -108,12 +108,12 @@ TEST(PatchRegion, AStayingVertexKeepsItsDent) {
   }
   const PatchRegion& region = pressed.patch().region();
   const std::uint32_t touched = region.vertices()[0];
-  const Vec3 dent_m = region.moved_m(touched);
+  const Vec3 indentation_m = region.moved_m(touched);
   pressed.move_to(0.012, 0.0, 1e-6);
   pressed.advance();
   EXPECT_NE(region.vertices()[0], touched) << "gathered anew";
   ASSERT_NE(region.slot_of(touched), kNoSlot);
-  EXPECT_NEAR(norm(region.moved_m(touched) - dent_m), 0.0, 0.1 * norm(dent_m));
+  EXPECT_NEAR(norm(region.moved_m(touched) - indentation_m), 0.0, 0.1 * norm(indentation_m));
 }
 
 TEST(PatchRegion, ALeavingVertexReturnsToRest) {
@@ -153,7 +153,7 @@ TEST(PatchRegion, HandingOverNeverGivesTheToolEnergy) {
             pressed.advance();
           }
         }
-        const double debt_J = pressed.patch().region().handover_debt_J();
+        const double debt_J = pressed.patch().region().energy_deficit_J();
         EXPECT_GT(pressed.work_J(), -1e-9) << nodes << " nodes, " << stretch << ", " << speed_m;
         EXPECT_GT(least_J, -1e-9);
         // 40 nodes are three rings: the rim stands in the dent

@@ -30,7 +30,7 @@ mesh::SurfaceMesh make_net(double edge_m) {
 }
 
 /// How far 1 mN moves the middle vertex of the whole net along itself, per N.
-double give_of_the_net_m_per_N(const PatchSurface& surface, const Vec3& force_N) {
+double compliance_of_the_net_m_per_N(const PatchSurface& surface, const Vec3& force_N) {
   const std::size_t n = surface.mesh.vertex_m.size(), middle = n / 2;
   const std::vector<Vec3> rest(surface.mesh.vertex_m.begin(), surface.mesh.vertex_m.end());
   std::vector<Vec3> at = rest, velocity(n), load = surface.load_N;
@@ -57,7 +57,7 @@ TEST(PatchSurface, GivesWaySidewaysAsItsNetDoes) {
           .surface_stiffness_N_per_m = 20.0, .body_stiffness_N_per_m = a, .pretension_ratio = p};
       const PatchSurface surface = make_patch_surface(mesh.view(), tissue);
       const std::size_t middle = mesh.vertex_m.size() / 2;
-      const double want = give_of_the_net_m_per_N(surface, {0.0004, 0.0003, 0.0});
+      const double want = compliance_of_the_net_m_per_N(surface, {0.0004, 0.0003, 0.0});
       EXPECT_NEAR(surface.sideways_m_per_N[middle], want, 0.1 * want) << p << ", " << a;
     }
   }
@@ -69,11 +69,13 @@ TEST(PatchSurface, AnchorsGiveWayByTheirPlace) {
   PatchTissue tissue{
       .surface_stiffness_N_per_m = 20.0, .body_stiffness_N_per_m = 4.0, .pretension_ratio = 0.4};
   const Vec3 press_N{0.0, 0.0, -0.0001};
-  const double mean = give_of_the_net_m_per_N(make_patch_surface(mesh.view(), tissue), press_N);
+  const double mean =
+      compliance_of_the_net_m_per_N(make_patch_surface(mesh.view(), tissue), press_N);
   for (const float more : {-0.006F, 0.006F, 0.012F}) {
     const std::vector<float> give(n, more);
-    tissue.give_m_per_N = give;
-    const double now = give_of_the_net_m_per_N(make_patch_surface(mesh.view(), tissue), press_N);
+    tissue.compliance_m_per_N = give;
+    const double now =
+        compliance_of_the_net_m_per_N(make_patch_surface(mesh.view(), tissue), press_N);
     EXPECT_NEAR(now - mean, double{more}, 0.15 * std::abs(double{more})) << more;
   }
 }

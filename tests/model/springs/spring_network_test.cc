@@ -32,7 +32,7 @@ TEST(SpringNetwork, MatchesPenAndPaper) {
       .node = {0, 1, 2}, .weight = {0.5, 0.25, 0.25}, .depth_m = 0.004, .stiffness_N_per_m = 300.0};
   probe.push.fill({0, 0, -1});
   net.position_m[0].z = -0.002;
-  EXPECT_NEAR(dent_m(probe, net.position_m, net.rest_m), 0.001, 1e-15);
+  EXPECT_NEAR(indentation_m(probe, net.position_m, net.rest_m), 0.001, 1e-15);
   EXPECT_NEAR(probe_force_N(probe, 0.001), 0.9, 1e-12);
   EXPECT_EQ(probe_force_N(probe, 0.005), 0.0) << "it never pulls";
   probe.held = true;

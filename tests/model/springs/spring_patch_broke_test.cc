@@ -34,7 +34,7 @@ TEST(SpringPatchBroke, GivesNoForceUntilEverySphereHasLeft) {
     PressedPatch pressed(p);
     SpringPatch& patch = pressed.patch();
     const contact::Indentation beside{
-        .sphere = 1, .place = {500, {0.3, 0.3, 0.4}}, .dent_m = 0.001};
+        .sphere = 1, .place = {500, {0.3, 0.3, 0.4}}, .indentation_m = 0.001};
     for (int i = 0; i < 100; ++i) {
       EXPECT_EQ(pressed.move_to(0.001, 0.002, 0.003).law.status, law::LawStatus::kOk);
       patch.respond(beside);

@@ -111,19 +111,19 @@ TEST(SpringPatchCut, StaysOpenWhenTheToolGoesElsewhere) {
   pressed.patch().cut(stroke(-0.0101, 0.0099, 0.0024));
   settle(pressed, 1e-6);
   std::vector<Vec3> open_m;
-  const std::vector<std::uint32_t> lips(pressed.patch().region().lips().begin(),
-                                        pressed.patch().region().lips().end());
-  open_m.reserve(lips.size());
-  for (const std::uint32_t v : lips) open_m.push_back(pressed.patch().region().moved_m(v));
+  const std::vector<std::uint32_t> cut_edges(pressed.patch().region().cut_edges().begin(),
+                                             pressed.patch().region().cut_edges().end());
+  open_m.reserve(cut_edges.size());
+  for (const std::uint32_t v : cut_edges) open_m.push_back(pressed.patch().region().moved_m(v));
   for (int i = 0; i <= 400; ++i) {
     pressed.move_to(0.0001 * i, -0.0001 * i, 1e-6);
     pressed.advance();
   }
   std::size_t left = 0;
-  for (std::size_t i = 0; i < lips.size(); ++i) {
-    if (pressed.patch().region().slot_of(lips[i]) != kNoSlot) continue;
+  for (std::size_t i = 0; i < cut_edges.size(); ++i) {
+    if (pressed.patch().region().slot_of(cut_edges[i]) != kNoSlot) continue;
     ++left;
-    const Vec3 now_m = pressed.patch().region().moved_m(lips[i]);
+    const Vec3 now_m = pressed.patch().region().moved_m(cut_edges[i]);
     if (norm(open_m[i]) < 1e-4) continue;
     EXPECT_GT(dot(now_m, open_m[i]), 0.5 * dot(open_m[i], open_m[i])) << "lip " << i;
   }
@@ -131,9 +131,10 @@ TEST(SpringPatchCut, StaysOpenWhenTheToolGoesElsewhere) {
   contact::PatchShape shape;
   EXPECT_TRUE(pressed.patch().shape(shape));
   const auto last = shape.vertex.begin() + shape.node_count;
-  for (std::size_t i = 0; i < lips.size(); ++i) {
+  for (std::size_t i = 0; i < cut_edges.size(); ++i) {
     if (norm(open_m[i]) < 1e-4) continue;
-    EXPECT_NE(std::find(shape.vertex.begin(), last, lips[i]), last) << "the viewer knows each lip";
+    EXPECT_NE(std::find(shape.vertex.begin(), last, cut_edges[i]), last)
+        << "the viewer knows each lip";
   }
 }
 
@@ -142,7 +143,7 @@ TEST(SpringPatchCut, TellsEveryCutInAMovingWindow) {
   p.nodes = 1000;
   p.node_mass_kg = 0.02;
   PressedPatch pressed(p, 60);
-  pressed.patch().respond({.place = {3600, {0.3, 0.3, 0.4}}, .dent_m = 0.001});
+  pressed.patch().respond({.place = {3600, {0.3, 0.3, 0.4}}, .indentation_m = 0.001});
   pressed.advance();
   for (const double y : {-0.0054, -0.0021, 0.0012, 0.0045})
     pressed.patch().cut(stroke(-0.02, 0.02, y));
@@ -164,7 +165,7 @@ TEST(SpringPatchCut, AFullListCutsNoMore) {
   p.nodes = 1024;
   p.node_mass_kg = 0.05;
   PressedPatch pressed(p, 40);
-  pressed.patch().respond({.place = {1640, {0.3, 0.3, 0.4}}, .dent_m = 0.001});
+  pressed.patch().respond({.place = {1640, {0.3, 0.3, 0.4}}, .indentation_m = 0.001});
   pressed.advance();
   for (int i = 0; i < 80; ++i) pressed.patch().cut(stroke(-0.06, 0.06, -0.0498 + 0.00125 * i));
   EXPECT_LE(pressed.patch().region().cut_triangles().size(), kMaxCutTriangles);

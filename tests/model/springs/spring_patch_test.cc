@@ -164,12 +164,12 @@ TEST(SpringPatch, RefusesWhatIsNoNumberAndGoesOn) {
     patch.advance();
     return r.law.status == law::LawStatus::kInvalid && r.law.force_N == 0.0 && r.slope_N == Vec3{};
   };
-  EXPECT_TRUE(refused({.place = good, .dent_m = kNaN}));
-  EXPECT_TRUE(refused({.place = good, .dent_m = std::numeric_limits<double>::infinity()}));
-  EXPECT_TRUE(refused({.place = {}, .dent_m = 0.001}));
-  EXPECT_TRUE(refused({.place = {420, {kNaN, 0.5, 0.5}}, .dent_m = 0.001}));
-  EXPECT_TRUE(refused({.sphere = contact::kMaxSpheres, .place = good, .dent_m = 0.001}));
-  const contact::SiteResponse r = patch.respond({.place = good, .dent_m = 0.001});
+  EXPECT_TRUE(refused({.place = good, .indentation_m = kNaN}));
+  EXPECT_TRUE(refused({.place = good, .indentation_m = std::numeric_limits<double>::infinity()}));
+  EXPECT_TRUE(refused({.place = {}, .indentation_m = 0.001}));
+  EXPECT_TRUE(refused({.place = {420, {kNaN, 0.5, 0.5}}, .indentation_m = 0.001}));
+  EXPECT_TRUE(refused({.sphere = contact::kMaxSpheres, .place = good, .indentation_m = 0.001}));
+  const contact::SiteResponse r = patch.respond({.place = good, .indentation_m = 0.001});
   EXPECT_EQ(r.law.status, law::LawStatus::kOk);
   EXPECT_TRUE(std::isfinite(r.law.force_N));
 }
@@ -184,7 +184,8 @@ TEST(SpringPatch, FourSpheresPressAtOnce) {
     for (std::uint32_t s = 0; s < 4; ++s)
       force_N[s] =
           pressed.patch()
-              .respond({.sphere = s, .place = {300 + 40 * s, {0.3, 0.3, 0.4}}, .dent_m = 0.002})
+              .respond(
+                  {.sphere = s, .place = {300 + 40 * s, {0.3, 0.3, 0.4}}, .indentation_m = 0.002})
               .law.force_N;
     pressed.advance();
   }
@@ -214,7 +215,7 @@ TEST(SpringPatch, TouchesAsManyNodesOnALargeMeshAsOnASmallOne) {
     p.node_mass_kg = 0.01;
     PressedPatch pressed(p, cells);
     const contact::Place middle{cells * cells + cells, {0.3, 0.3, 0.4}};
-    pressed.patch().respond({.place = middle, .dent_m = 0.001});
+    pressed.patch().respond({.place = middle, .indentation_m = 0.001});
     pressed.advance();
     nodes.insert(pressed.patch().region().vertices().size());
     springs.insert(pressed.patch().region().spring_count());
@@ -232,7 +233,7 @@ TEST(SpringPatch, LeavesTheHeapAlone) {
   const tests::NoAlloc guard;
   for (std::uint32_t i = 0; i < 300; ++i) {
     const contact::Place place{200 + 2 * i, {0.3, 0.3, 0.4}};
-    patch.respond({.place = place, .dent_m = 0.002});
+    patch.respond({.place = place, .indentation_m = 0.002});
     patch.cut({{-0.05, 0.0, -0.01}, {-0.05, 0.0, 0.01}, {0.05, 0.0, -0.01}, {0.05, 0.0, 0.01}});
     patch.advance();
     patch.shape(shape);

@@ -104,7 +104,7 @@ TEST(ComplianceFamily, AHeldPatchIsStifferSidewaysThanOneThatMaySink) {
   ComplianceMap map = lobe();
   map.sideways_times_E_per_m[190].axis = {0.0F, 1.0F, 0.0F};
   const std::vector<Vec3> up(200, Vec3{0.0, 0.0, 1.0});
-  const TangentTensors give = tangent_give(map, up, 4_mm).at(190);
+  const TangentTensors give = tangent_compliance(map, up, 4_mm).at(190);
   EXPECT_EQ(give.touching, (Mat3{{Vec3{10.0, 0.0, 0.0}, Vec3{0.0, 40.0, 0.0}, Vec3{}}}));
   EXPECT_NEAR(give.held.row[0].x, 10.0, 1e-4);
   EXPECT_NEAR(give.held.row[1].y, 40.0 - 900.0 / (disc + 100.0), 1e-4);
@@ -116,7 +116,7 @@ TEST(ComplianceFamily, AlongTheSurfaceNoPlaceIsMoreThanThreeTimesAsStiffAsAHalfS
   ComplianceMap map = lobe();
   map.sideways_times_E_per_m[7] = {.n1 = 500.0F, .n2 = 90.0F, .s1 = -1e4F, .s2 = 5.0F};
   const std::vector<Vec3> up(200, Vec3{0.0, 0.0, 1.0});
-  const TangentTensors give = tangent_give(map, up, 4_mm).at(7);
+  const TangentTensors give = tangent_compliance(map, up, 4_mm).at(7);
   for (const Mat3& s : {give.touching, give.held}) {
     const contact::Tensor2 whole{half_space + s.row[0].x, s.row[0].y, half_space + s.row[1].y};
     EXPECT_GE(whole.least_eigenvalue(), half_space / contact::kStiffestPlace - 1e-4);
@@ -153,7 +153,8 @@ TEST(ComplianceFamily, TheHeldSideIsLimitedAndCounted) {
 TEST(ComplianceFamily, AnOrganThatIsTheSameEverywhereWorksToo) {
   ComplianceMap map = lobe();
   std::fill(map.regular_times_E_per_m.begin(), map.regular_times_E_per_m.end(), 0.0F);
-  std::fill(map.sideways_times_E_per_m.begin(), map.sideways_times_E_per_m.end(), SidewaysGive{});
+  std::fill(map.sideways_times_E_per_m.begin(), map.sideways_times_E_per_m.end(),
+            SidewaysCompliance{});
   const ComplianceFamily family = make(map);
   const double a_N = family.curve.front().respond(5_mm).force_N;
   EXPECT_NEAR(family.curve.back().respond(5_mm).force_N / a_N, 1.0, 1e-6);

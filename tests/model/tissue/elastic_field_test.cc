@@ -74,7 +74,7 @@ TEST(ElasticField, BlendsNeighbouringLawsByTheCoordinateOfThePlace) {
                       .surface = plate.view(),
                       .relaxation = {}});
   const contact::Indentation in{.place = {.triangle = 3, .weight = {0.2, 0.3, 0.5}},
-                                .dent_m = 2e-3};
+                                .indentation_m = 2e-3};
   const contact::SiteResponse r = field.respond(in);
   EXPECT_NEAR(r.law.force_N, (0.75 * 100.0 + 0.25 * 200.0) * 2e-3, 1e-12);
   EXPECT_NEAR(r.law.stiffness_N_per_m, 125.0, 1e-9);
@@ -95,7 +95,8 @@ TEST(ElasticField, CoordinatesAtBothEndsGiveTheOutermostLaws) {
                         .pull_coordinate = {},
                         .surface = plate.view(),
                         .relaxation = {}});
-    const auto r = field.respond({.place = {.triangle = 0, .weight = {1, 0, 0}}, .dent_m = 1e-3});
+    const auto r =
+        field.respond({.place = {.triangle = 0, .weight = {1, 0, 0}}, .indentation_m = 1e-3});
     EXPECT_NEAR(r.law.force_N, end == 0.0f ? 0.05 : 0.2, 1e-9);
   }
 }
@@ -181,11 +182,11 @@ TEST(ElasticField, NotANumberGivesZeroForceAndNoMemory) {
                       .pull_coordinate = {},
                       .surface = {},
                       .relaxation = {}});
-  const auto bad = field.respond({.dent_m = std::nan("")});
+  const auto bad = field.respond({.indentation_m = std::nan("")});
   EXPECT_EQ(bad.law.status, law::LawStatus::kInvalid);
   EXPECT_EQ(bad.law.force_N, 0.0);
   field.advance();
-  EXPECT_NEAR(field.respond({.dent_m = 1e-3}).law.force_N, 0.1, 1e-12);
+  EXPECT_NEAR(field.respond({.indentation_m = 1e-3}).law.force_N, 0.1, 1e-12);
 }
 
 TEST(ElasticField, APlaceThatTheSurfaceDoesNotHaveGivesZeroForce) {
@@ -193,11 +194,12 @@ TEST(ElasticField, APlaceThatTheSurfaceDoesNotHaveGivesZeroForce) {
   const double nan = std::nan("");
   const auto triangles = static_cast<std::uint32_t>(bench.mesh.triangle.size());
   for (const contact::Indentation& in :
-       {contact::Indentation{.place = {}, .dent_m = 1e-3},
-        contact::Indentation{.place = {triangles, {0.3, 0.3, 0.4}}, .dent_m = 1e-3},
-        contact::Indentation{.place = {0, {nan, 0.5, 0.5}}, .dent_m = 1e-3},
-        contact::Indentation{
-            .sphere = contact::kMaxSpheres, .place = {0, {0.3, 0.3, 0.4}}, .dent_m = 1e-3}}) {
+       {contact::Indentation{.place = {}, .indentation_m = 1e-3},
+        contact::Indentation{.place = {triangles, {0.3, 0.3, 0.4}}, .indentation_m = 1e-3},
+        contact::Indentation{.place = {0, {nan, 0.5, 0.5}}, .indentation_m = 1e-3},
+        contact::Indentation{.sphere = contact::kMaxSpheres,
+                             .place = {0, {0.3, 0.3, 0.4}},
+                             .indentation_m = 1e-3}}) {
     const contact::SiteResponse r = bench.field.respond(in);
     EXPECT_EQ(r.law.status, law::LawStatus::kInvalid);
     EXPECT_EQ(r.law.force_N, 0.0);
@@ -212,7 +214,7 @@ TEST(ElasticField, DoesNotTouchTheHeap) {
   const tests::NoAlloc guard;
   for (std::uint32_t t = 0; t < 50; ++t)
     (void)bench.field.respond(
-        {.place = {.triangle = t, .weight = {0.3, 0.3, 0.4}}, .dent_m = 1e-3});
+        {.place = {.triangle = t, .weight = {0.3, 0.3, 0.4}}, .indentation_m = 1e-3});
   EXPECT_EQ(guard.calls(), 0u);
 }
 

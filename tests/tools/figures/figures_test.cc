@@ -83,10 +83,10 @@ TEST(Figures, CurvesPassThroughTheNumbersOfTheirLaws) {
 }
 
 TEST(Figures, TheFirstStrainMakesTheDentDeeperAtEveryRing) {
-  const Figure dent = skin_dent();
+  const Figure indentation = near_field_indentation();
   for (std::size_t ring = 0; ring < 25; ++ring)
-    EXPECT_LT(number(dent, ring, "strain_01_mm"), number(dent, ring, "strain_02_mm"));
-  EXPECT_EQ(number(dent, 25, "strain_02_mm"), 0.0);
+    EXPECT_LT(number(indentation, ring, "strain_01_mm"), number(indentation, ring, "strain_02_mm"));
+  EXPECT_EQ(number(indentation, 25, "strain_02_mm"), 0.0);
 }
 
 TEST(FiguresProgram, WritesTablesAndPicturesAndPrintsTheNumbers) {

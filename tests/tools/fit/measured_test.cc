@@ -93,9 +93,9 @@ TEST(Measured, ALiverThatCreepsAsPublishedRelaxesInShorterTimes) {
     const double at_1_N = force_N(relaxation->after(now, 1.0, true));
     now = relaxation->after(now, (1.0 - at_0_N) / (at_1_N - at_0_N), true);
     const double t_s = tick_s * tick;
-    const double dent_m = 2.0 + (a - p) * (p - b) / (p * (q - p)) * std::exp(-p * t_s) +
-                          (a - q) * (q - b) / (q * (p - q)) * std::exp(-q * t_s);
-    ASSERT_NEAR(now.depth_m, dent_m, 0.005) << t_s;
+    const double indentation_m = 2.0 + (a - p) * (p - b) / (p * (q - p)) * std::exp(-p * t_s) +
+                                 (a - q) * (q - b) / (q * (p - q)) * std::exp(-q * t_s);
+    ASSERT_NEAR(now.depth_m, indentation_m, 0.005) << t_s;
   }
 }
 
@@ -115,8 +115,8 @@ TEST(Measured, NoSphereOfTheTruthCubeReachesItsStiffnessOnAHalfSpace) {
   EXPECT_NEAR(tip.stiffest_press_N_per_m(), 517.0, 1.0);  // CT-3 with a = R: 2 E* R
   EXPECT_NEAR(tip.stiffest_press_N_per_m() / 798.0, 0.65, 0.005);
   EXPECT_NEAR(798.0 / (2.0 * tip.contact_modulus_Pa()), 0.0196, 5e-5);  // a flat punch that would
-  EXPECT_LT(0.22 * 0.080 / tip.radius_m, model::indent::kDeepestDent_ratio);
-  EXPECT_GT(0.36 * 0.080 / tip.radius_m, model::indent::kDeepestDent_ratio);
+  EXPECT_LT(0.22 * 0.080 / tip.radius_m, model::indent::kDeepestIndentation_ratio);
+  EXPECT_GT(0.36 * 0.080 / tip.radius_m, model::indent::kDeepestIndentation_ratio);
 }
 
 }  // namespace tact::tools::fit::measured_test

@@ -43,7 +43,7 @@ TEST(TipContact, TakesTheGiveOfTheOrganFromOneSolve) {
   const TipContact tip(kTissue, kRadius_m, {}, kPitch_m);
   const double give = 0.02;  // m/N
   const double force_N = tip.force_N(2.5e-3), depth_m = tip.depth_m(2.5e-3) + give * force_N;
-  EXPECT_NEAR(tip.give_m_per_N(depth_m, force_N), give, 1e-9);
+  EXPECT_NEAR(tip.compliance_m_per_N(depth_m, force_N), give, 1e-9);
   EXPECT_NEAR(tip.radius_m(depth_m, give), 2.5e-3, 1e-9);
   EXPECT_LT(tip.radius_m(7e-3, give), tip.radius_m(7e-3, 0.0)) << "what gives way is touched less";
 }

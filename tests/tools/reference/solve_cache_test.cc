@@ -191,7 +191,7 @@ TEST(SolveCache, APressWithoutARadiusIsSolvedCoarselyFirst) {
                           {.depth_m = 5e-3, .force_N = probe_N, .profile_m = {}}));
   const TipContact tip(organ.material, 5e-3, {}, 1e-3);  // the block's top is flat
   Indentation pressed = kPress;
-  pressed.contact_radius_m = tip.radius_m(1e-3, tip.give_m_per_N(5e-3, probe_N));
+  pressed.contact_radius_m = tip.radius_m(1e-3, tip.compliance_m_per_N(5e-3, probe_N));
   EXPECT_LT(pressed.contact_radius_m, 0.99 * sphere_contact_radius_m(5e-3, 1e-3));
   ASSERT_FALSE(cache.keep(cache_key(organ, pressed, "s"),
                           {.depth_m = 1e-3, .force_N = 42.0, .profile_m = {}}));

@@ -31,11 +31,11 @@ Vec3 point_of(const SurfaceView& surface, const Place& place) {
 /// Mean over the ring at radius k * pitch_m, k = 0, 1, ..., of a field that is linear over each
 /// triangle (dent_m: one entry a vertex).
 void ring_means(const SurfaceView& surface, const Indentation& in, double pitch_m,
-                std::span<const double> dent_m, std::span<double> ring_m) {
+                std::span<const double> indentation_m, std::span<double> ring_m) {
   const Vec3 centre = point_of(surface, in.place);
   double middle_m = 0.0;
   for (std::size_t c = 0; c < 3; ++c)
-    middle_m += in.place.weight[c] * dent_m[surface.triangle[in.place.triangle][c]];
+    middle_m += in.place.weight[c] * indentation_m[surface.triangle[in.place.triangle][c]];
   ground_truth::RingMeans means(static_cast<int>(ring_m.size()), pitch_m, middle_m);
   for (const model::contact::TriangleCorners& corner : surface.triangle) {
     std::array<Vec3, 3> p{};
@@ -43,7 +43,7 @@ void ring_means(const SurfaceView& surface, const Indentation& in, double pitch_
     for (std::size_t c = 0; c < 3; ++c) {
       p[c] = surface.vertex_m[corner[c]];
       rho[c] = norm(p[c] - centre);
-      value[c] = dent_m[corner[c]];
+      value[c] = indentation_m[corner[c]];
     }
     const Vec3 outward = normalized(cross(p[1] - p[0], p[2] - p[0]));
     // The other side of a thin lobe is no ring around the site.
@@ -56,7 +56,9 @@ void ring_means(const SurfaceView& surface, const Indentation& in, double pitch_
 
 Subject::Subject(std::unique_ptr<model::scene::Scene> scene,
                  std::unique_ptr<model::scene::TissueLaw> law)
-    : scene_(std::move(scene)), law_(std::move(law)), dent_m_(scene_->organ_mesh.vertex_m.size()) {}
+    : scene_(std::move(scene)),
+      law_(std::move(law)),
+      indentation_m_(scene_->organ_mesh.vertex_m.size()) {}
 
 double Subject::tick(const Indentation& in) {
   const double force_N = law_->site_law().respond(in).law.force_N;
@@ -73,8 +75,8 @@ void Subject::release() {
 
 void Subject::shape(const Indentation& in, double pitch_m, std::span<double> ring_m) {
   if (is_stepped()) {
-    fill_dents(in.normal);
-    ring_means(scene_->organ_mesh.view(), in, pitch_m, dent_m_, ring_m);
+    fill_indentations(in.normal);
+    ring_means(scene_->organ_mesh.view(), in, pitch_m, indentation_m_, ring_m);
     return;
   }
   std::array<double, kMaxRings> own{};
@@ -90,13 +92,13 @@ void Subject::shape(const Indentation& in, double pitch_m, std::span<double> rin
   }
 }
 
-void Subject::fill_dents(const Vec3& normal) {
-  std::fill(dent_m_.begin(), dent_m_.end(), 0.0);
+void Subject::fill_indentations(const Vec3& normal) {
+  std::fill(indentation_m_.begin(), indentation_m_.end(), 0.0);
   if (!law_->site_law().shape(shape_)) return;
   for (std::uint32_t i = 0; i < shape_.node_count; ++i) {
     const auto& [x, y, z] = shape_.displacement_m[i];
     const Vec3 moved_m{static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
-    dent_m_[shape_.vertex[i]] = -dot(moved_m, normal);
+    indentation_m_[shape_.vertex[i]] = -dot(moved_m, normal);
   }
 }
 
@@ -107,9 +109,9 @@ void Subject::wait_for_rest() {
   for (int i = 0; i < kRestTicks; ++i) {
     law_->site_law().advance();
     if (i % kLookEvery != 0) continue;
-    fill_dents({0.0, 0.0, 1.0});
+    fill_indentations({0.0, 0.0, 1.0});
     double sum_m = 0.0;
-    for (const double d_m : dent_m_) sum_m += std::abs(d_m);
+    for (const double d_m : indentation_m_) sum_m += std::abs(d_m);
     if (i > 0 && std::abs(sum_m - before_m) < kRestSpeed_m) return;
     before_m = sum_m;
   }

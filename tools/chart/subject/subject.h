@@ -29,13 +29,13 @@ class Subject {
   std::size_t memory_bytes() const { return law_->memory_bytes(); }
 
  private:
-  void fill_dents(const model::Vec3& normal);
+  void fill_indentations(const model::Vec3& normal);
   void wait_for_rest();
 
   std::unique_ptr<model::scene::Scene> scene_;
   std::unique_ptr<model::scene::TissueLaw> law_;
   model::contact::PatchShape shape_{};
-  std::vector<double> dent_m_;  // of each vertex
+  std::vector<double> indentation_m_;  // of each vertex
 };
 
 /// A law of the scene with these sizes; it keeps its own copy of the scene.

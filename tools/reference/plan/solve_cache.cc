@@ -207,7 +207,7 @@ model::Result<ground_truth::ReferenceCase> solve_once(const Organ& organ, const 
   const TipContact tip(organ.material, what.tool_radius_m, std::move(*fall_m), pitch_m);
   Indentation pressed = what;
   pressed.contact_radius_m =
-      tip.radius_m(what.depth_m, tip.give_m_per_N(probe.depth_m, first->force_N));
+      tip.radius_m(what.depth_m, tip.compliance_m_per_N(probe.depth_m, first->force_N));
   return solve_or_find(organ, pressed, solver, cache);
 }
 

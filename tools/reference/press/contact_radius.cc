@@ -66,16 +66,16 @@ double TipContact::force_N(double a) const {
   return 2.0 * modulus_Pa_ * a * a * sum * step;
 }
 
-double TipContact::give_m_per_N(double solved_depth_m, double solved_force_N) const {
+double TipContact::compliance_m_per_N(double solved_depth_m, double solved_force_N) const {
   const double a =
       root(kWidest * sphere_radius_m_, [&](double at) { return force_N(at) - solved_force_N; });
   // d = d0(a) + c F
   return (solved_depth_m - depth_m(a)) / solved_force_N;
 }
 
-double TipContact::radius_m(double wanted_m, double give_m_per_N) const {
+double TipContact::radius_m(double wanted_m, double compliance_m_per_N) const {
   return root(kWidest * sphere_radius_m_,
-              [&](double a) { return depth_m(a) + give_m_per_N * force_N(a) - wanted_m; });
+              [&](double a) { return depth_m(a) + compliance_m_per_N * force_N(a) - wanted_m; });
 }
 
 model::Result<std::vector<double>> surface_fall_m(const model::mesh::SurfaceMesh& surface,

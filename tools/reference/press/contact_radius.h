@@ -29,9 +29,9 @@ class TipContact {
   double force_N(double contact_radius_m) const;  // F
 
   /// c, of a solve that found this force at this depth; m/N.
-  double give_m_per_N(double solved_depth_m, double solved_force_N) const;
+  double compliance_m_per_N(double solved_depth_m, double solved_force_N) const;
   /// a at this depth when the organ gives way by c.
-  double radius_m(double depth_m, double give_m_per_N) const;
+  double radius_m(double depth_m, double compliance_m_per_N) const;
 
  private:
   double gap_slope(double rho_m) const;  // g'

@@ -22,8 +22,10 @@ class RenderedTissue {
   /// One tick of 1 ms at this depth, in the middle of the plate; a pull holds the tissue.
   model::law::LawResponse tick(double depth_m) {
     if (!site_) return law_->respond(depth_m);
-    const model::contact::SiteResponse now = site_->respond(
-        {.place = kMiddle, .normal = {0.0, 0.0, 1.0}, .dent_m = depth_m, .held = depth_m < 0.0});
+    const model::contact::SiteResponse now = site_->respond({.place = kMiddle,
+                                                             .normal = {0.0, 0.0, 1.0},
+                                                             .indentation_m = depth_m,
+                                                             .held = depth_m < 0.0});
     site_->advance();
     return now.law;
   }

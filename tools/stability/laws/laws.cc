@@ -103,14 +103,14 @@ constexpr model::indent::HexSheetParameters kSheet{.ring_pitch_m = 2e-3,
 
 /// Liver under a 4 mm tip, at a place that gives a little more than a half-space.
 model::Result<model::indent::ComplianceCurve> compliance() {
-  constexpr double kGive_m_per_N = 2e-3;
+  constexpr double kCompliance_m_per_N = 2e-3;
   constexpr std::size_t kRings = 12;
   std::array<double, kRings> ring{};
   for (std::size_t j = 0; j < kRings; ++j)
-    ring[j] = kGive_m_per_N * (1.0 - static_cast<double>(j + 1) / kRings);
+    ring[j] = kCompliance_m_per_N * (1.0 - static_cast<double>(j + 1) / kRings);
   return model::indent::make_compliance_curve(
       {.tip = {.youngs_modulus_Pa = 5000.0, .poisson_ratio = 0.45, .radius_m = 4e-3},
-       .regular_m_per_N = kGive_m_per_N,
+       .regular_m_per_N = kCompliance_m_per_N,
        .working_depth_m = 0.01,
        .ring_pitch_m = 2.5e-3,
        .ring_m_per_N = ring,

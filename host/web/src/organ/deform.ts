@@ -6,7 +6,7 @@
 //
 //     n, s   normal and tangential shift at the site     rho  distance from the site in its tangent plane
 //     u      profile (profile.ts)                        w    u / u_0, the same shape
-//     tilt   the organ sinks more towards a free lobe (model/tissue/dent_tilt.h); p  the site
+//     tilt   the organ sinks more towards a free lobe (model/tissue/indentation_tilt.h); p  the site
 //     taper  1 near the site and 0 a reach away
 //     fade   1 near the tangent plane and 0 a reach away or on skin that looks the other way, so that
 //            the far side of the organ stays where it is

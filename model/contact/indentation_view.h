@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// dent_view.h - what a dented tissue looks like, for telemetry.
+// indentation_view.h - what a dented tissue looks like, for telemetry.
 //
 // Any thread may ask, while the loop's thread drives the same tissue as a SiteLaw (site_law.h):
 // nothing here reads what SiteLaw::respond or advance writes.
@@ -21,14 +21,14 @@ struct Indentation {
   Place place{};
   Vec3 normal{};  // outward, unit, at the place
   // e: the depth, less what the other spheres press down here; below 0 only while held
-  double dent_m = 0.0;
+  double indentation_m = 0.0;
   bool held = false;
   double speed_mps = 0.0;  // of the sphere's depth, pressing positive
 };
 
-class DentView {
+class IndentationView {
  public:
-  virtual ~DentView() = default;
+  virtual ~IndentationView() = default;
   /// Radial displacement profile as in Law::profile; 0: the law tells its shape otherwise
   /// (SiteLaw::shape).
   virtual std::size_t profile(const Indentation& in, std::span<double> ring_m) const RT_SAFE = 0;

@@ -15,7 +15,7 @@
 #include "model/scene/tissue.h"
 #include "tests/support/sentence.h"
 
-namespace tact::model::scene::drawn_dent_test {
+namespace tact::model::scene::drawn_indentation_test {
 
 using nlohmann::json;
 
@@ -62,7 +62,7 @@ double smoothstep(double low, double high, double x) {
   return s * s * (3.0 - 2.0 * s);
 }
 
-class DrawnDent : public ::testing::Test {
+class DrawnIndentation : public ::testing::Test {
  protected:
   void load(std::vector<std::string> settings) {
     settings.push_back("contact.friction_ratio=0");
@@ -82,11 +82,11 @@ class DrawnDent : public ::testing::Test {
   }
 
   /// What host/web/src/organ/deform.ts adds to a vertex for one site.
-  Vec3 dent_m(const contact::SphereContact& sphere_contact, std::uint32_t vertex) const {
-    if (!(sphere_contact.dent_m > 0.0)) return {};
+  Vec3 indentation_m(const contact::SphereContact& sphere_contact, std::uint32_t vertex) const {
+    if (!(sphere_contact.indentation_m > 0.0)) return {};
     const contact::Indentation in{.place = sphere_contact.place,
                                   .normal = sphere_contact.normal,
-                                  .dent_m = sphere_contact.dent_m};
+                                  .indentation_m = sphere_contact.indentation_m};
     const Curve curve = curve_of(in);
     const Vec3 from_m = scene_.organ_mesh.vertex_m[vertex] - sphere_contact.surface_point_m;
     const double height_m = dot(from_m, sphere_contact.normal);
@@ -125,7 +125,7 @@ class DrawnDent : public ::testing::Test {
       const std::uint32_t vertex = place["skin"][i];
       double one_m = -pressed["skin_m"][i].get<double>();
       for (const auto& sphere_contact : contact.contacts())
-        one_m += dot(dent_m(sphere_contact, vertex), direction);
+        one_m += dot(indentation_m(sphere_contact, vertex), direction);
       sum_m2 += one_m * one_m;
       const Vec3 from_m = scene_.organ_mesh.vertex_m[vertex] - scene_.organ.position_m -
                           vector_of(place["point_m"]);
@@ -151,7 +151,7 @@ class DrawnDent : public ::testing::Test {
 // At the hand's own site and at a rim that no stroke presses: vertex by vertex, and in the mean
 // around the tool. The organ sinks less towards its held side than towards a free lobe; without
 // SiteLaw::tilt single vertices miss by 16 %.
-TEST_F(DrawnDent, OfBothJawsIsThatOfFiniteElementsAroundTheTool) {
+TEST_F(DrawnIndentation, OfBothJawsIsThatOfFiniteElementsAroundTheTool) {
   const json truth = reference("liver_tool_skin.json");
   for (const char* law : {"rhombus", "compliance"}) {
     load({"law=\"" + std::string(law) + "\"", "compliance.large_strain=false"});
@@ -165,7 +165,7 @@ TEST_F(DrawnDent, OfBothJawsIsThatOfFiniteElementsAroundTheTool) {
   }
 }
 
-TEST_F(DrawnDent, OfOneSphereIsThatOfFiniteElementsAtEachSite) {
+TEST_F(DrawnIndentation, OfOneSphereIsThatOfFiniteElementsAtEachSite) {
   const json truth = reference("liver.json");
   const double pitch_m = truth["ring_pitch_m"];
   for (const char* law : {"rhombus", "compliance"}) {
@@ -183,8 +183,8 @@ TEST_F(DrawnDent, OfOneSphereIsThatOfFiniteElementsAtEachSite) {
               at.triangle = t;
               at.weight = {k == 0 ? 1.0 : 0.0, k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0};
             }
-        const Curve curve =
-            curve_of({.place = at, .normal = -vector_of(site["direction"]), .dent_m = depth_m});
+        const Curve curve = curve_of(
+            {.place = at, .normal = -vector_of(site["direction"]), .indentation_m = depth_m});
         double sum_m2 = 0.0;
         const json& known_m = pressed["profile_m"];
         for (std::size_t j = 0; j < known_m.size(); ++j) {
@@ -198,4 +198,4 @@ TEST_F(DrawnDent, OfOneSphereIsThatOfFiniteElementsAtEachSite) {
   }
 }
 
-}  // namespace tact::model::scene::drawn_dent_test
+}  // namespace tact::model::scene::drawn_indentation_test

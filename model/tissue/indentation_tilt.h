@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// dent_tilt.h - how the dent of a site leans: an organ sinks more towards a free lobe than towards
+// indentation_tilt.h - how the dent of a site leans: an organ sinks more towards a free lobe than towards
 // the side where it is held.
 //
 //     CF-5   u(x) = u(rho) + T(rho) F t . (x - s)
@@ -26,6 +26,6 @@ inline constexpr double kTiltReach_m = 0.02;
 
 /// t E of each vertex, 1/m^2, in the axes of the surface. Each vertex is held against those of a
 /// slab of twice kTiltReach_m around it.
-std::vector<Vec3> dent_tilt(const ComplianceMap& map, const contact::SurfaceView& surface);
+std::vector<Vec3> indentation_tilt(const ComplianceMap& map, const contact::SurfaceView& surface);
 
 }  // namespace tact::model::tissue

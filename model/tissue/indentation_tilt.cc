@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "model/tissue/dent_tilt.h"
+#include "model/tissue/indentation_tilt.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +24,7 @@ struct Moments {
 
 }  // namespace
 
-std::vector<Vec3> dent_tilt(const ComplianceMap& map, const contact::SurfaceView& surface) {
+std::vector<Vec3> indentation_tilt(const ComplianceMap& map, const contact::SurfaceView& surface) {
   std::vector<Vec3> out(map.vertices());
   // Sorted along x, a slab of skin moves over the organ: no vertex is held against all others.
   const auto x_m = [&](std::size_t v) { return surface.vertex_m[v].x; };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "model/tissue/dent_tilt.h"
+#include "model/tissue/indentation_tilt.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include "model/units.h"
 #include "tests/support/shapes.h"
 
-namespace tact::model::tissue::dent_tilt_test {
+namespace tact::model::tissue::indentation_tilt_test {
 
 /// r E = 40 + 300 x - 100 y, x and y in m; what looks down is as stiff as it can be.
 ComplianceMap sloping_map(const mesh::SurfaceMesh& skin) {
@@ -22,16 +22,16 @@ ComplianceMap sloping_map(const mesh::SurfaceMesh& skin) {
   return map;
 }
 
-TEST(DentTilt, IsHalfTheSlopeOfTheGive) {
+TEST(IndentationTilt, IsHalfTheSlopeOfTheGive) {
   const mesh::SurfaceMesh plate = tests::make_plate(100_mm, 20);
-  for (const Vec3& t : dent_tilt(sloping_map(plate), plate.view())) {
+  for (const Vec3& t : indentation_tilt(sloping_map(plate), plate.view())) {
     EXPECT_NEAR(t.x, 150.0, 1e-3);
     EXPECT_NEAR(t.y, -50.0, 1e-3);
     EXPECT_NEAR(t.z, 0.0, 1e-9);
   }
 }
 
-TEST(DentTilt, IsOfAllSkinWithinItsReachAndOfNoOther) {
+TEST(IndentationTilt, IsOfAllSkinWithinItsReachAndOfNoOther) {
   const mesh::SurfaceMesh plate = tests::make_plate(100_mm, 20);
   const auto nearest = [&](const Vec3& to_m) {
     const auto away_m = [&](const Vec3& at_m) { return norm(at_m - to_m); };
@@ -43,7 +43,7 @@ TEST(DentTilt, IsOfAllSkinWithinItsReachAndOfNoOther) {
     for (const double away_m : {15_mm, 25_mm}) {
       ComplianceMap map = sloping_map(plate);
       map.regular_times_E_per_m[nearest(plate.vertex_m[middle] + away_m * way)] += 100.0F;
-      const Vec3 more = dent_tilt(map, plate.view())[middle] - Vec3{150.0, -50.0, 0.0};
+      const Vec3 more = indentation_tilt(map, plate.view())[middle] - Vec3{150.0, -50.0, 0.0};
       if (away_m < kTiltReach_m)
         EXPECT_GT(dot(more, way), 10.0);
       else
@@ -51,7 +51,7 @@ TEST(DentTilt, IsOfAllSkinWithinItsReachAndOfNoOther) {
     }
 }
 
-TEST(DentTilt, DoesNotLookThroughALobe) {
+TEST(IndentationTilt, DoesNotLookThroughALobe) {
   // The far side, 10 mm below, is another lobe's for all that its vertices are near.
   mesh::SurfaceMesh lobe = tests::make_plate(100_mm, 20);
   const std::size_t upper = lobe.vertex_m.size();
@@ -60,17 +60,17 @@ TEST(DentTilt, DoesNotLookThroughALobe) {
     lobe.vertex_m.push_back(lobe.vertex_m[v] - Vec3{0, 0, 10_mm});
     lobe.vertex_normal.push_back({0, 0, -1});
   }
-  const auto tilt = dent_tilt(sloping_map(lobe), lobe.view());
+  const auto tilt = indentation_tilt(sloping_map(lobe), lobe.view());
   for (std::size_t v = 0; v < upper; ++v) EXPECT_NEAR(tilt[v].x, 150.0, 1e-3);
 }
 
-TEST(DentTilt, OfSkinThatIsALineIsNone) {
+TEST(IndentationTilt, OfSkinThatIsALineIsNone) {
   mesh::SurfaceMesh line;
   for (int i = 0; i < 5; ++i) {
     line.vertex_m.push_back({i * 1_mm, 0, 0});
     line.vertex_normal.push_back({0, 0, 1});
   }
-  for (const Vec3& t : dent_tilt(sloping_map(line), line.view())) EXPECT_EQ(t, Vec3{});
+  for (const Vec3& t : indentation_tilt(sloping_map(line), line.view())) EXPECT_EQ(t, Vec3{});
 }
 
-}  // namespace tact::model::tissue::dent_tilt_test
+}  // namespace tact::model::tissue::indentation_tilt_test
