@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "hal/last_words.h"
+#include "hal/shutdown_frames.h"
 #include "model/device_at_tool.h"
 #include "model/fault.h"
 #include "model/types.h"
@@ -93,7 +93,7 @@ class Device {
 
   /// What takes the force away after this process has died. None for a
   /// simulated device, and for one whose handle no other process can use.
-  virtual std::optional<LastWords> last_words() { return std::nullopt; }
+  virtual std::optional<ShutdownFrames> shutdown_frames() { return std::nullopt; }
 
   // The loop's thread, once a tick and in this order.
 
@@ -132,7 +132,7 @@ class Device {
   // When the loop has ended.
 
   /// What it counted since it was opened, as frames that are nobody's.
-  virtual std::vector<DeviceCount> tally() const { return {}; }
+  virtual std::vector<DeviceCount> counters() const { return {}; }
 
   /// Zero force and power off; may block. Safe to call twice, and at any time after opening.
   virtual void stop() = 0;

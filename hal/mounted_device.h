@@ -23,7 +23,7 @@ class MountedDevice final : public Device {
 
   DeviceInfo info() const override { return mounted(device_->info(), mounting_); }
   std::span<const int> loop_calls() const override { return device_->loop_calls(); }
-  std::optional<LastWords> last_words() override { return device_->last_words(); }
+  std::optional<ShutdownFrames> shutdown_frames() override { return device_->shutdown_frames(); }
   [[nodiscard]] Fault read(Sample& sample, std::int64_t now_ns) RT_SAFE override;
   bool ready() const RT_SAFE override { return device_->ready(); }
   void permit(bool powered) RT_SAFE override { device_->permit(powered); }
@@ -32,7 +32,7 @@ class MountedDevice final : public Device {
   void shift_tool(const Vec3& shift_m) RT_SAFE override { device_->shift_tool(shift_m); }
   void between_ticks(double elapsed_s) RT_SAFE override { device_->between_ticks(elapsed_s); }
   std::string trouble() const override { return device_->trouble(); }
-  std::vector<DeviceCount> tally() const override { return device_->tally(); }
+  std::vector<DeviceCount> counters() const override { return device_->counters(); }
   void stop() override { device_->stop(); }
   std::string why_not_off() const override { return device_->why_not_off(); }
 

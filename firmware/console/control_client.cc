@@ -20,15 +20,15 @@ using model::Error;
 using model::Result;
 
 // Chosen: a tactd that runs answers at once.
-constexpr timeval kPatience{.tv_sec = 5, .tv_usec = 0};
+constexpr timeval kTimeout{.tv_sec = 5, .tv_usec = 0};
 
 /// A connected socket; -1: nobody listens there, or not one who may be believed.
 int connect_to(const std::string& path) {
   const auto address = model::io::socket_address(path);
   const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
   if (!address || fd < 0) return fd < 0 ? fd : (close(fd), -1);
-  setsockopt(fd, SOL_SOCKET, SO_RCVTIMEO, &kPatience, sizeof kPatience);
-  setsockopt(fd, SOL_SOCKET, SO_SNDTIMEO, &kPatience, sizeof kPatience);
+  setsockopt(fd, SOL_SOCKET, SO_RCVTIMEO, &kTimeout, sizeof kTimeout);
+  setsockopt(fd, SOL_SOCKET, SO_SNDTIMEO, &kTimeout, sizeof kTimeout);
   // Root may ask anybody's; others believe only their own user and root.
   const bool good = connect(fd, model::io::plain(*address), sizeof *address) == 0 &&
                     (geteuid() == 0 || model::io::has_trusted_peer(fd));

@@ -56,7 +56,7 @@ bool is_hung_up(const pollfd& file) { return (file.revents & (POLLHUP | POLLERR 
 
 }  // namespace
 
-model::Result<std::unique_ptr<Guardian>> Guardian::start(const hal::LastWords& words,
+model::Result<std::unique_ptr<Guardian>> Guardian::start(const hal::ShutdownFrames& words,
                                                          const GuardianSettings& settings) {
   const std::string program = settings.program.empty() ? beside_this_program() : settings.program;
   auto lifeline = Lifeline::make();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // guardian.h - tactd's side of the process that zeroes the device when tactd has died.
 //
-//     start      the program tact-guardian beside this one gets last words, descriptor, lifeline
+//     start      the program tact-guardian beside this one gets shutdown frames, descriptor, lifeline
 //     tact-guard a thread of tactd that holds the lifeline (lifeline.h) for its whole life, and
 //                hears at once when the guardian ends
 //     destructor lets go, after the device is off: the guardian ends and has sent nothing
@@ -18,7 +18,7 @@
 #include <thread>
 
 #include "firmware/guardian/lifeline.h"
-#include "hal/last_words.h"
+#include "hal/shutdown_frames.h"
 #include "model/result.h"
 
 namespace tact::firmware::guardian {
@@ -31,7 +31,7 @@ struct GuardianSettings {
 class Guardian {
  public:
   /// Ready when it returns. The device must stay open as long as the guardian.
-  static model::Result<std::unique_ptr<Guardian>> start(const hal::LastWords& words,
+  static model::Result<std::unique_ptr<Guardian>> start(const hal::ShutdownFrames& words,
                                                         const GuardianSettings& settings);
   ~Guardian();
   Guardian(const Guardian&) = delete;

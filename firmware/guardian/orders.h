@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "hal/last_words.h"
+#include "hal/shutdown_frames.h"
 
 namespace tact::firmware::guardian {
 
@@ -16,7 +16,7 @@ inline constexpr const char* kProgram = "tact-guardian";
 
 struct Orders {
   std::uint64_t magic = 0x7461'6374'6775'6132;
-  hal::LastWords words;       // its fd is the one that comes with the datagram
+  hal::ShutdownFrames words;  // its fd is the one that comes with the datagram
   std::int32_t priority = 0;  // SCHED_FIFO
   std::int32_t process = 0;   // whose end it waits for
 };

@@ -13,10 +13,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::int64_t kPatience_ns = 3'000'000'000;  // more than any device's stop may take
+constexpr std::int64_t kTimeout_ns = 3'000'000'000;  // more than any device's stop may take
 // Chosen: the device gets 2 s to stop, and the process ends within 6 s whatever hangs.
 constexpr auto kDeviceStop = 2000ms, kLook = 10ms;
-constexpr unsigned kLastWords_s = 6;
+constexpr unsigned kShutdownFrames_s = 6;
 
 }  // namespace
 
@@ -52,7 +52,7 @@ bool LoopExecutor::hangs() {
   const std::int64_t now_ns = loop::MonotonicClock().now_ns();
   // The patience begins when the request is seen, whoever made it.
   if (asked_ns_ == 0) asked_ns_ = now_ns;
-  return now_ns - asked_ns_ > kPatience_ns;
+  return now_ns - asked_ns_ > kTimeout_ns;
 }
 
 void LoopExecutor::join() {
@@ -61,11 +61,11 @@ void LoopExecutor::join() {
 
 // The device may hang in a call, so its stop may hang, too, and so may the disk: SIGALRM ends both.
 // To the guardian this end is a death: it zeroes the device once more.
-void LoopExecutor::leave_behind(int status, const std::function<void()>& last_words) {
+void LoopExecutor::leave_behind(int status, const std::function<void()>& shutdown_frames) {
   // The lines first: whatever hangs below, the power is on its way off.
   guarded_.lines.drop();
   std::signal(SIGALRM, [](int) { _exit(1); });
-  alarm(kLastWords_s);
+  alarm(kShutdownFrames_s);
   std::atomic<bool> stopped{false};
   std::thread([&] {
     guarded_.device.stop();
@@ -73,7 +73,7 @@ void LoopExecutor::leave_behind(int status, const std::function<void()>& last_wo
   }).detach();
   for (auto waited = 0ms; !stopped.load() && waited < kDeviceStop; waited += kLook)
     std::this_thread::sleep_for(kLook);
-  last_words();
+  shutdown_frames();
   // No destructors: one of them would wait for the loop's thread.
   _exit(status);
 }

@@ -55,10 +55,10 @@ class LoopExecutor {
   bool hangs();
   /// After ended().
   void join();
-  /// After hangs(): lines low, zero force if the device still answers, the last words, and out
+  /// After hangs(): lines low, zero force if the device still answers, the shutdown frames, and out
   /// within 6 s. The kernel closes what is open; drives with a watchdog let go when they hear
   /// nothing.
-  [[noreturn]] void leave_behind(int status, const std::function<void()>& last_words);
+  [[noreturn]] void leave_behind(int status, const std::function<void()>& shutdown_frames);
   /// Of all turns together, after join().
   const ThreadCosts& costs() const { return costs_; }
 

@@ -75,8 +75,8 @@ Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsS
 
 Result<std::unique_ptr<guardian::Guardian>> start_guardian(hal::Device& device,
                                                            const pc::RtSettings& rt) {
-  const auto words = device.last_words();
-  // Simulated, or its vendor's handle cannot be shared (hal/last_words.h).
+  const auto words = device.shutdown_frames();
+  // Simulated, or its vendor's handle cannot be shared (hal/shutdown_frames.h).
   if (!words) return std::unique_ptr<guardian::Guardian>();
   return guardian::Guardian::start(*words, {.priority = rt.priority + 1, .program = {}});
 }

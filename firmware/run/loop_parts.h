@@ -33,8 +33,9 @@ struct PartsSetup {
 struct LoopParts {
   std::unique_ptr<model::scene::Tissue> tissue;
   std::unique_ptr<hal::SafetyLines> lines;
-  std::unique_ptr<guardian::Guardian> guardian;  // outlives the device; null: it has no last words
-  hal::registry::OpenDevice device;              // off when the parts go, whatever ended them
+  std::unique_ptr<guardian::Guardian>
+      guardian;                      // outlives the device; null: it has no shutdown frames
+  hal::registry::OpenDevice device;  // off when the parts go, whatever ended them
   admission::StiffnessMargin stiffness;
   std::optional<admission::TimeMargin> time;
   std::optional<admission::PressCheck> presses;
@@ -47,7 +48,7 @@ struct LoopParts {
 /// Opens the device of the scene and checks that the law may be felt on it.
 model::Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsSetup& setup);
 
-/// The process that zeroes this device if its program dies; null: the device has no last words.
+/// The process that zeroes this device if its program dies; null: the device has no shutdown frames.
 model::Result<std::unique_ptr<guardian::Guardian>> start_guardian(hal::Device& device,
                                                                   const pc::RtSettings& rt);
 

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "firmware/console/operator_desk.h"
+#include "firmware/console/request_handler.h"
 #include "firmware/console/say.h"
 #include "firmware/console/service_manager.h"
 #include "firmware/loop/grid.h"
@@ -210,7 +210,7 @@ void Session::serve_operator(LoopExecutor& executor) {
   console::OperatorView view(*parts_.device, *parts_.lines, requests_.arm_at_start.load(),
                              scene_.path);
   const auto control = console::open_control(scene_.path, view);
-  console::OperatorDesk desk(
+  console::RequestHandler request_handler(
       *operator_, requests_, view, [this] { return telemetry_->newest_frame(); }, control.get());
   console::ServiceManager service;
   const auto report_news = [&] {
@@ -222,7 +222,7 @@ void Session::serve_operator(LoopExecutor& executor) {
   while (!executor.ended()) {
     const std::int64_t now_ns = monotonic_clock_.now_ns();
     const std::int64_t until_ns = loop::next_half_way_ns(now_ns + kStatusPeriod_ns, period_ns());
-    desk.obey(until_ns - now_ns);
+    request_handler.obey(until_ns - now_ns);
     service.report({now_ns, view.why_not_arm().empty(), loop_->progress().ticks(), view.status()});
     report_news();
     if (!executor.hangs()) continue;
@@ -277,7 +277,7 @@ RunFacts Session::collect_facts(model::Fault fault, const std::string& trouble) 
           .simulated_time = options_.free_run,
           .shortfalls = real_time_.shortfalls(),
           .costs = costs_,
-          .device_counts = parts_.device->tally(),
+          .device_counts = parts_.device->counters(),
           .dropped_records = parts_.ring->dropped(),
           .dropped_frames = telemetry_->dropped_frames(),
           .state = last_state(),

@@ -96,8 +96,8 @@ class CanDevice final : public Device {
     bus_->send();
   }
 
-  std::optional<LastWords> last_words() override {
-    LastWords words{.fd = bus_->socket().fd()};
+  std::optional<ShutdownFrames> shutdown_frames() override {
+    ShutdownFrames words{.fd = bus_->socket().fd()};
     bool more = true;
     for (int step = 0; more; ++step) {
       more = drives_.push_stop(loop_, step);
@@ -117,10 +117,10 @@ class CanDevice final : public Device {
     return fmt::format("{}: {}", can_arm_name(cause.axis, settings_.can), words(cause));
   }
 
-  std::vector<DeviceCount> tally() const override {
+  std::vector<DeviceCount> counters() const override {
     const CanBusCounts& bus = bus_->counts();
-    std::vector<DeviceCount> all{{"strays", strays_}};
-    for (const DeviceCount& one : drives_.tally()) all.push_back(one);
+    std::vector<DeviceCount> all{{"strays", unknown_frames_}};
+    for (const DeviceCount& one : drives_.counters()) all.push_back(one);
     all.insert(all.end(), {{"missed_cycles", bus.missed_cycles},
                            {"error_frames", bus.error_frames},
                            {"unreadable", bus.unreadable},
@@ -145,7 +145,7 @@ class CanDevice final : public Device {
     const int node = drives_.node_of(frame);
     std::size_t i = 0;
     while (i < 3 && loop_.axes[i].node != node) ++i;
-    if (i == 3 || !drives_.take(loop_, i, frame, arrival_ns)) ++strays_;
+    if (i == 3 || !drives_.take(loop_, i, frame, arrival_ns)) ++unknown_frames_;
   }
 
   void watch() RT_SAFE {
@@ -251,7 +251,7 @@ class CanDevice final : public Device {
   bool permitted_ = false;
   int fault_batches_ = 0;  // sent since the fault
   std::uint64_t sequence_ = 0;
-  std::uint64_t strays_ = 0;  // frames of nodes or kinds that are not ours
+  std::uint64_t unknown_frames_ = 0;  // frames of nodes or kinds that are not ours
 };
 
 }  // namespace

@@ -135,14 +135,14 @@ class BasicCanDrives {
   /// What goes on after those, tick by tick, so that drives without a fault note none.
   virtual void push_after_fault(Loop& loop) RT_SAFE { (void)loop; }
   /// For good: the frames of step 0, 1, ..; false: the last ones. Zero torque comes first. They are
-  /// the same at any time, as somebody else may have to send them (hal/last_words.h).
+  /// the same at any time, as somebody else may have to send them (hal/shutdown_frames.h).
   virtual bool push_stop(Loop& loop, int step) = 0;
   /// After those, so that drives do not miss a host that has left.
   virtual void push_leave(Loop& loop) { (void)loop; }
   /// What a cause of their own means, with the remedy. Any thread.
   virtual std::string words(const FaultCause& cause) const = 0;
   /// What they counted.
-  virtual std::vector<DeviceCount> tally() const = 0;
+  virtual std::vector<DeviceCount> counters() const = 0;
 };
 
 /// Drives that are up, and what opening them told.

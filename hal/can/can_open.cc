@@ -119,8 +119,8 @@ Result<CanLink> read_can_link(const std::string& name) {
     return refused(name, "no netlink socket", errno,
                    "a unit or sandbox around tactd must allow AF_NETLINK, as tactd@.service does");
   };
-  const timeval patience{.tv_sec = kReplyTimeout_ms / 1000, .tv_usec = 0};
-  setsockopt(file.get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+  const timeval timeout{.tv_sec = kReplyTimeout_ms / 1000, .tv_usec = 0};
+  setsockopt(file.get(), SOL_SOCKET, SO_RCVTIMEO, &timeout, sizeof timeout);
   std::array<std::uint8_t, kNetlinkHeader_bytes + kNetlinkLinkHeader_bytes> request{};
   put_unsigned(request, 0, 4, request.size());
   put_unsigned(request, 4, 2, RTM_GETLINK);

@@ -126,7 +126,7 @@ class Cia402s final : public can::CanDrives {
     return words_of_cia402_cause(cause);
   }
 
-  std::vector<DeviceCount> tally() const override { return {{"old", old_}, {"extra", extra_}}; }
+  std::vector<DeviceCount> counters() const override { return {{"old", old_}, {"extra", extra_}}; }
 
  private:
   struct Axis {

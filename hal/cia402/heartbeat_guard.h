@@ -22,7 +22,7 @@ namespace tact::hal::cia402 {
 
 class HeartbeatGuard {
  public:
-  static constexpr int kPatience_ticks = 200;
+  static constexpr int kTimeout_ticks = 200;
 
   /// The drive watches and has said so: tactd is the only one that may drive it.
   bool on() const RT_SAFE { return known_ && on_; }
@@ -37,7 +37,7 @@ class HeartbeatGuard {
     known_ = false;
     asked_ = wanted && (!open || refuses_off_);
     clears_ = wanted && !asked_;
-    waiting_ticks_ = kPatience_ticks;
+    waiting_ticks_ = kTimeout_ticks;
     const std::uint32_t value = host_watch(can, asked_ ? can.host_timeout_ms : std::uint16_t{0});
     return canopen_sdo_download(node, {.index = 0x1016, .sub = 1, .value = value, .size = 4});
   }

@@ -221,11 +221,11 @@ std::string FalconDevice::trouble() const {
   return in_words(trouble_.load(std::memory_order_relaxed));
 }
 
-std::optional<LastWords> FalconDevice::last_words() {
-  const std::array<LastWords::Bytes, 1> zero{encode(kLastCommand)};
-  LastWords words{.carrier = LastWords::Carrier::kUsbBulk,
-                  .endpoint = kFalconEndpointOut,
-                  .fd = pipe_->descriptor()};
+std::optional<ShutdownFrames> FalconDevice::shutdown_frames() {
+  const std::array<ShutdownFrames::Bytes, 1> zero{encode(kLastCommand)};
+  ShutdownFrames words{.carrier = ShutdownFrames::Carrier::kUsbBulk,
+                       .endpoint = kFalconEndpointOut,
+                       .fd = pipe_->descriptor()};
   bool fits = words.fd >= 0;
   for (int i = 0; i < kLastCommands && fits; ++i) fits = words.add_step(zero);
   return fits ? std::optional(words) : std::nullopt;

@@ -41,7 +41,7 @@ class FalconDevice final : public Device {
   [[nodiscard]] Fault write(const Wrench& wrench) RT_SAFE override;
   std::span<const int> loop_calls() const override { return pipe_->loop_calls(); }
   std::string trouble() const override;
-  std::optional<LastWords> last_words() override;
+  std::optional<ShutdownFrames> shutdown_frames() override;
   void stop() override;
 
   /// What the last write sent; for calibration.

@@ -149,7 +149,7 @@ class Moteuses final : public can::CanFdDrives {
     return {};
   }
 
-  std::vector<DeviceCount> tally() const override {
+  std::vector<DeviceCount> counters() const override {
     return {{"old", old_}, {"extra", extra_}, {"incomplete", incomplete_}, {"limited", limited_}};
   }
 

@@ -156,7 +156,7 @@ class Odrives final : public can::CanDrives {
     return {};
   }
 
-  std::vector<DeviceCount> tally() const override {
+  std::vector<DeviceCount> counters() const override {
     const auto count = [this](OdriveNews news) { return news_[static_cast<std::size_t>(news)]; };
     return {{"old", count(OdriveNews::kOld)},
             {"stale", count(OdriveNews::kStale)},

@@ -23,7 +23,7 @@ using model::Vec3;
 using vendor_sdk::LibraryPose;
 
 constexpr unsigned short kHighestPriority = 0xFFFF;  // of the scheduler's callbacks
-constexpr int kPatience_ms = 1000;                   // until it is calibrated
+constexpr int kTimeout_ms = 1000;                    // until it is calibrated
 
 /// Of a matrix by columns, the axes of the stylus along those of the device. The handle is +z of
 /// the stylus and +z of the tool. x of the tool is -y of the stylus, y is x, so that an upright
@@ -69,7 +69,7 @@ model::Result<std::shared_ptr<PhantomWorker>> PhantomWorker::start(const Phantom
 }
 
 std::optional<Error> PhantomWorker::wait_until_calibrated() {
-  for (int i = 0; i < kPatience_ms && !calibrated_ && first_trouble().fault == Fault::kNone; ++i)
+  for (int i = 0; i < kTimeout_ms && !calibrated_ && first_trouble().fault == Fault::kNone; ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   if (calibrated_ && first_trouble().fault == Fault::kNone) return std::nullopt;
   // False: the library hangs, with its forces off, and the device stays open until tactd ends.

@@ -109,10 +109,10 @@ void LibraryWorker::thread_ends() {
   if (--running_ == 0 && given_up_.exchange(false)) --hanging;
 }
 
-bool LibraryWorker::stop(std::chrono::milliseconds patience) {
+bool LibraryWorker::stop(std::chrono::milliseconds timeout) {
   quit_ = true;
   // No join: a library that hangs must not keep tactd from ending.
-  for (auto waited = 0ms; waited < patience && running_ > 0; waited += 1ms)
+  for (auto waited = 0ms; waited < timeout && running_ > 0; waited += 1ms)
     std::this_thread::sleep_for(1ms);
   if (running_ > 0) {
     ++hanging;

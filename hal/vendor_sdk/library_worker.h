@@ -74,7 +74,7 @@ class LibraryWorker {
   /// Ends the threads, zeroes the force and closes the device; false when the library did not
   /// return within `patience`: then it is not closed, its last force may stay, and the process,
   /// while the library hangs, ends without the destructors that would wait for it. Once.
-  [[nodiscard]] bool stop(std::chrono::milliseconds patience = std::chrono::seconds(2));
+  [[nodiscard]] bool stop(std::chrono::milliseconds timeout = std::chrono::seconds(2));
 
  protected:
   /// For a loop of this rate.

@@ -30,7 +30,7 @@ void notice_vanishing(tcp::socket& socket) {
 }
 
 IgtlSession::IgtlSession(tcp::socket socket, SessionEvents events)
-    : socket_(std::move(socket)), patience_(socket_.get_executor()), events_(std::move(events)) {}
+    : socket_(std::move(socket)), timeout_(socket_.get_executor()), events_(std::move(events)) {}
 
 void IgtlSession::start() {
   Code ignored;
@@ -43,7 +43,7 @@ void IgtlSession::start() {
 void IgtlSession::stop() {
   Code ignored;
   ended_ = true;
-  patience_.cancel(ignored);
+  timeout_.cancel(ignored);
   socket_.close(ignored);
 }
 
@@ -123,17 +123,17 @@ void IgtlSession::send(const std::string& batch) {
 
 void IgtlSession::write_next() {
   on_its_way_ = std::exchange(waiting_, {});
-  patience_.expires_after(kPatience);
-  patience_.async_wait([self = shared_from_this()](Code cancelled) {
+  timeout_.expires_after(kTimeout);
+  timeout_.async_wait([self = shared_from_this()](Code cancelled) {
     if (!cancelled && !self->on_its_way_.empty())
-      self->end(fmt::format("it has taken nothing for {} s", kPatience.count()));
+      self->end(fmt::format("it has taken nothing for {} s", kTimeout.count()));
   });
   boost::asio::async_write(socket_, boost::asio::buffer(on_its_way_),
                            [self = shared_from_this()](Code wrong, std::size_t) {
                              if (wrong || self->ended_) return self->end(wrong);
                              self->on_its_way_.clear();
                              Code ignored;
-                             self->patience_.cancel(ignored);
+                             self->timeout_.cancel(ignored);
                              if (!self->waiting_.empty()) self->write_next();
                            });
 }

@@ -22,7 +22,7 @@ namespace tact::host::igtl {
 
 inline constexpr std::size_t kMaxUsedBody = 4096;             // of a message that is used
 inline constexpr std::uint64_t kMaxSkippedBody = 256u << 20;  // of one that is read away, an image
-inline constexpr std::chrono::seconds kPatience{10};
+inline constexpr std::chrono::seconds kTimeout{10};
 
 struct SessionEvents {
   std::function<void(const MessageHead& head, const pose::Pose& pose)> pose;
@@ -57,7 +57,7 @@ class IgtlSession : public std::enable_shared_from_this<IgtlSession> {
   void end(const Code& wrong);
 
   boost::asio::ip::tcp::socket socket_;
-  boost::asio::steady_timer patience_;
+  boost::asio::steady_timer timeout_;
   SessionEvents events_;
   MessageHead head_;
   std::array<char, kMaxUsedBody> bytes_{};

@@ -239,12 +239,13 @@ int show_live(const Options& options) {
                          show_and_record(view, recorder, inputs, figure, picker), *trust);
   server::ViewerServer server(
       io, view,
-      [&client](const server::HandWish& wish) {
-        client.move_hand(wish.position_m, wish.rotation_rad, wish.grip_ratio);
+      [&client](const server::HandRequest& request) {
+        client.move_hand(request.position_m, request.rotation_rad, request.grip_ratio);
       },
       warn);
   if (!options.scenes.empty())
-    server.let_choose([&picker](const nlohmann::json& wish) { picker.ask(wish); }, picker.list());
+    server.let_choose([&picker](const nlohmann::json& request) { picker.ask(request); },
+                      picker.list());
   const int status = serve(options, io, server, [&] {
     client.start();
     inputs.start();
@@ -265,7 +266,7 @@ int show_recording(const Options& options, record::ReadResult read) {
   server::ViewerServer server(io, view, nullptr, warn);
   server::Playback playback(io, view, std::move(read.recording),
                             std::filesystem::path(options.open).filename().string());
-  server.let_steer([&playback](const server::ReplayWish& wish) { playback.steer(wish); });
+  server.let_steer([&playback](const server::ReplayRequest& request) { playback.steer(request); });
   const int status = serve(options, io, server, [&playback] { playback.start(); });
   return status == kGood && !read.damage.empty() ? kCheckFailed : status;
 }

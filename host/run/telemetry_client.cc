@@ -28,7 +28,7 @@ using boost::system::error_code;
 using model::Error;
 
 constexpr std::chrono::milliseconds kRetry{50};  // a person waits for the first picture
-constexpr double kPatience_s = 0.3;              // as the page has it (host/README.md)
+constexpr double kTimeout_s = 0.3;               // as the page has it (host/README.md)
 constexpr int kMessagesPerTurn = 64;             // then other work gets a turn
 
 /// The descriptor in a control message, or -1. Any further ones are closed.
@@ -172,16 +172,16 @@ bool TelemetryClient::has_data() {
 /// From each message on: a tactd that stands still keeps its connection.
 void TelemetryClient::listen() {
   if (std::exchange(is_silent_, false) && events_.silent) events_.silent(0.0);
-  const double patience_s =
+  const double timeout_s =
       // Below 8 frames a second 0.3 s would end within a gap that is none.
-      std::max(kPatience_s, 2.5 / std::max(1.0, static_cast<double>(hello_.frame_rate_Hz)));
+      std::max(kTimeout_s, 2.5 / std::max(1.0, static_cast<double>(hello_.frame_rate_Hz)));
   silence_.expires_after(std::chrono::duration_cast<std::chrono::nanoseconds>(
-      std::chrono::duration<double>(patience_s)));
-  silence_.async_wait([this, patience_s](error_code wrong) {
+      std::chrono::duration<double>(timeout_s)));
+  silence_.async_wait([this, timeout_s](error_code wrong) {
     const bool came = silence_.expiry() > boost::asio::steady_timer::clock_type::now();
     if (wrong || came || !socket_.is_open() || has_data()) return;  // it was we who did not look
     is_silent_ = true;
-    if (events_.silent) events_.silent(patience_s);
+    if (events_.silent) events_.silent(timeout_s);
   });
 }
 

@@ -24,23 +24,23 @@ constexpr std::size_t kFramesPerPart = 256;
 
 }  // namespace
 
-Download::Download(beast::tcp_stream stream, Seat seat, record::Snapshot snapshot,
+Download::Download(beast::tcp_stream stream, ConnectionSlot slot, record::Snapshot snapshot,
                    DownloadKind kind)
     : stream_(std::move(stream)),
-      seat_(std::move(seat)),
+      slot_(std::move(slot)),
       snapshot_(std::move(snapshot)),
       kind_(kind),
       deadline_(std::chrono::steady_clock::now() + kLongestDownload),
       bodies_(bodies_in(snapshot_)) {}
 
-void Download::wait_at_most(std::chrono::seconds patience) {
+void Download::wait_at_most(std::chrono::seconds timeout) {
   // Two limits: 30 s for a part, five minutes for all.
-  stream_.expires_at(std::min(deadline_, std::chrono::steady_clock::now() + patience));
+  stream_.expires_at(std::min(deadline_, std::chrono::steady_clock::now() + timeout));
 }
 
 void Download::start(Header header) {
   header_ = std::move(header);
-  wait_at_most(kPatience);
+  wait_at_most(kTimeout);
   http::async_write_header(stream_, serializer_,
                            [self = shared_from_this()](error_code wrong, std::size_t) {
                              if (!wrong) self->write_chunk(self->first_part());
@@ -58,7 +58,7 @@ std::string Download::first_part() const {
 void Download::write_chunk(std::string part) {
   seal_.add(part);
   part_ = std::move(part);
-  wait_at_most(kPatience);
+  wait_at_most(kTimeout);
   boost::asio::async_write(stream_, http::make_chunk(boost::asio::buffer(part_)),
                            [self = shared_from_this()](error_code wrong, std::size_t) {
                              if (!wrong) self->write_next();

@@ -14,12 +14,12 @@
 #include <string>
 
 #include "host/record/recording.h"
-#include "host/server/seat.h"
+#include "host/server/connection_slot.h"
 #include "model/io/seal.h"
 
 namespace tact::host::server {
 
-constexpr std::chrono::seconds kPatience{30};          // for a browser that does not read
+constexpr std::chrono::seconds kTimeout{30};           // for a browser that does not read
 constexpr std::chrono::seconds kLongestDownload{300};  // for one that reads slowly
 
 enum class DownloadKind { kCsv, kRecording };
@@ -28,7 +28,7 @@ class Download : public std::enable_shared_from_this<Download> {
  public:
   using Header = boost::beast::http::response<boost::beast::http::empty_body>;
 
-  Download(boost::beast::tcp_stream stream, Seat seat, record::Snapshot snapshot,
+  Download(boost::beast::tcp_stream stream, ConnectionSlot slot, record::Snapshot snapshot,
            DownloadKind kind);
 
   /// Header must be chunked. The connection closes at the end.
@@ -40,10 +40,10 @@ class Download : public std::enable_shared_from_this<Download> {
   void write_next();
   void finish();
 
-  void wait_at_most(std::chrono::seconds patience);
+  void wait_at_most(std::chrono::seconds timeout);
 
   boost::beast::tcp_stream stream_;
-  Seat seat_;
+  ConnectionSlot slot_;
   record::Snapshot snapshot_;
   DownloadKind kind_;
   std::chrono::steady_clock::time_point deadline_;

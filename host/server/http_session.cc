@@ -64,15 +64,15 @@ std::string bytes_of(const record::MeshBytes& mesh) {
 
 }  // namespace
 
-HttpSession::HttpSession(beast::tcp_stream stream, Seat seat, Site& site)
-    : stream_(std::move(stream)), seat_(std::move(seat)), site_(site) {}
+HttpSession::HttpSession(beast::tcp_stream stream, ConnectionSlot slot, Site& site)
+    : stream_(std::move(stream)), slot_(std::move(slot)), site_(site) {}
 
 void HttpSession::read_next() {
   // A parser reads one message; its limits have to be set anew.
   parser_.emplace();
   parser_->header_limit(kMaxHeaderBytes);
   parser_->body_limit(kMaxBodyBytes);
-  stream_.expires_after(site_.request_patience);
+  stream_.expires_after(site_.request_timeout);
   http::async_read(stream_, in_, *parser_,
                    [self = shared_from_this()](error_code wrong, std::size_t) {
                      if (wrong) return self->refuse(wrong);
@@ -136,7 +136,7 @@ void HttpSession::upgrade(const Request& request) {
     return write(sorry(http::status::forbidden, "403: this WebSocket is for tact's own page only"),
                  request);
   }
-  std::make_shared<LiveSession>(std::move(stream_), std::move(seat_), site_.view, site_.move_hand,
+  std::make_shared<LiveSession>(std::move(stream_), std::move(slot_), site_.view, site_.move_hand,
                                 site_.steer, site_.ask_scene)
       ->start(request);
 }
@@ -153,7 +153,7 @@ void HttpSession::download(const Request& request, std::string_view path, std::s
   header.chunked(true);
   record::Snapshot snapshot = site_.view.recent(tick_value(query, "from_tick", 0),
                                                 tick_value(query, "to_tick", UINT64_MAX));
-  std::make_shared<Download>(std::move(stream_), std::move(seat_), std::move(snapshot), kind)
+  std::make_shared<Download>(std::move(stream_), std::move(slot_), std::move(snapshot), kind)
       ->start(std::move(header));
 }
 
@@ -197,7 +197,7 @@ void HttpSession::write(Response response, const Request& request) {
 }
 
 void HttpSession::send() {
-  stream_.expires_after(kPatience);
+  stream_.expires_after(kTimeout);
   http::async_write(stream_, response_, [self = shared_from_this()](error_code wrong, std::size_t) {
     if (wrong) return;
     self->response_.keep_alive() ? self->read_next() : self->leave();

@@ -15,10 +15,10 @@
 #include <string>
 
 #include "host/server/access.h"
+#include "host/server/connection_slot.h"
 #include "host/server/live_session.h"
 #include "host/server/live_view.h"
 #include "host/server/page_files.h"
-#include "host/server/seat.h"
 
 namespace tact::host::server {
 
@@ -28,10 +28,10 @@ struct Site {
   PageFiles page;
   Access access;
   MoveHand move_hand;
-  Steer steer;                                 // of a replay alone
-  AskScene ask_scene;                          // of a session in simulation, where it is offered
-  std::string scenes;                          // what may be asked for, as JSON; or empty
-  std::chrono::milliseconds request_patience;  // for one whole request, from the last answer on
+  Steer steer;                                // of a replay alone
+  AskScene ask_scene;                         // of a session in simulation, where it is offered
+  std::string scenes;                         // what may be asked for, as JSON; or empty
+  std::chrono::milliseconds request_timeout;  // for one whole request, from the last answer on
 };
 
 class HttpSession : public std::enable_shared_from_this<HttpSession> {
@@ -39,7 +39,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   using Request = LiveSession::Request;
   using Response = boost::beast::http::response<boost::beast::http::string_body>;
 
-  HttpSession(boost::beast::tcp_stream stream, Seat seat, Site& site);
+  HttpSession(boost::beast::tcp_stream stream, ConnectionSlot slot, Site& site);
   void start() { read_next(); }
 
  private:
@@ -55,7 +55,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void drain();
 
   boost::beast::tcp_stream stream_;
-  Seat seat_;
+  ConnectionSlot slot_;
   boost::beast::flat_buffer in_;
   std::optional<boost::beast::http::request_parser<boost::beast::http::string_body>> parser_;
   Response response_;

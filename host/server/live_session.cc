@@ -23,7 +23,7 @@ constexpr double kFarthestHand_m = 1.0;  // beyond any device
 
 }  // namespace
 
-std::optional<HandWish> parse_hand(const std::string& text) {
+std::optional<HandRequest> parse_hand(const std::string& text) {
   const nlohmann::json hand = object_in(text, "hand");
   if (hand.is_null()) return std::nullopt;
   double value[7];
@@ -38,15 +38,15 @@ std::optional<HandWish> parse_hand(const std::string& text) {
     if (i < 6 && std::abs(value[i]) > (i < 3 ? kFarthestHand_m : std::numbers::pi))
       return std::nullopt;
   }
-  return HandWish{.position_m = {value[0], value[1], value[2]},
-                  .rotation_rad = {value[3], value[4], value[5]},
-                  .grip_ratio = std::clamp(value[6], 0.0, 1.0)};
+  return HandRequest{.position_m = {value[0], value[1], value[2]},
+                     .rotation_rad = {value[3], value[4], value[5]},
+                     .grip_ratio = std::clamp(value[6], 0.0, 1.0)};
 }
 
-LiveSession::LiveSession(beast::tcp_stream stream, Seat seat, LiveView& view,
+LiveSession::LiveSession(beast::tcp_stream stream, ConnectionSlot slot, LiveView& view,
                          const MoveHand& move_hand, const Steer& steer, const AskScene& ask_scene)
     : socket_(std::move(stream)),
-      seat_(std::move(seat)),
+      slot_(std::move(slot)),
       view_(view),
       move_hand_(move_hand),
       steer_(steer),
@@ -121,12 +121,13 @@ void LiveSession::take(const std::string& text) {
     write_next();
   }
   if (steer_)
-    if (const std::optional<ReplayWish> wish = parse_replay(text)) steer_(*wish);
+    if (const std::optional<ReplayRequest> request = parse_replay(text)) steer_(*request);
   if (!move_hand_) return;
-  if (const std::optional<HandWish> hand = parse_hand(text)) move_hand_(*hand);
+  if (const std::optional<HandRequest> hand = parse_hand(text)) move_hand_(*hand);
   // Behind the hand's right: who may not move it chooses no scene.
   if (ask_scene_)
-    if (const nlohmann::json wish = object_in(text, "wish"); !wish.is_null()) ask_scene_(wish);
+    if (const nlohmann::json request = object_in(text, "wish"); !request.is_null())
+      ask_scene_(request);
 }
 
 }  // namespace tact::host::server

@@ -6,7 +6,7 @@
 // kMaxUnseen may be on the way, and of those that wait only the newest is kept. So a slow browser
 // sees fewer frames, never older ones, and holds up nobody. A page may send
 // {"hand":{"x_m":..,"y_m":..,"z_m":..,"turn_x_rad":..,"turn_y_rad":..,"turn_z_rad":..,
-// "grip_ratio":..}} for a simulated device, and to a replay what replay_wish.h says. Where the
+// "grip_ratio":..}} for a simulated device, and to a replay what replay_request.h says. Where the
 // scene of a simulation may be chosen (scene_picker.h) it may also send what is said there.
 // Nothing else is heard: no page arms, stops or resets a device.
 #pragma once
@@ -22,31 +22,31 @@
 #include <optional>
 #include <string>
 
+#include "host/server/connection_slot.h"
 #include "host/server/live_view.h"
-#include "host/server/replay_wish.h"
-#include "host/server/seat.h"
+#include "host/server/replay_request.h"
 
 namespace tact::host::server {
 
 /// Where a page wants the simulated hand, W.
-struct HandWish {
+struct HandRequest {
   double position_m[3] = {};
   double rotation_rad[3] = {};  // of the tool against its rest orientation, rotation vector
   double grip_ratio = 0.0;      // 0 open, 1 closed
 };
-using MoveHand = std::function<void(const HandWish&)>;
-using AskScene = std::function<void(const nlohmann::json& wish)>;
+using MoveHand = std::function<void(const HandRequest&)>;
+using AskScene = std::function<void(const nlohmann::json& request)>;
 
 /// The hand target in a page's message; none if it has none, or a number is not sensible.
-std::optional<HandWish> parse_hand(const std::string& text);
+std::optional<HandRequest> parse_hand(const std::string& text);
 
 class LiveSession final : public LiveListener, public std::enable_shared_from_this<LiveSession> {
  public:
   using Request = boost::beast::http::request<boost::beast::http::string_body>;
   static constexpr std::uint64_t kMaxUnseen = 4;
 
-  LiveSession(boost::beast::tcp_stream stream, Seat seat, LiveView& view, const MoveHand& move_hand,
-              const Steer& steer, const AskScene& ask_scene);
+  LiveSession(boost::beast::tcp_stream stream, ConnectionSlot slot, LiveView& view,
+              const MoveHand& move_hand, const Steer& steer, const AskScene& ask_scene);
   ~LiveSession();
 
   void start(const Request& upgrade);
@@ -60,7 +60,7 @@ class LiveSession final : public LiveListener, public std::enable_shared_from_th
   void write_next();
 
   boost::beast::websocket::stream<boost::beast::tcp_stream> socket_;
-  Seat seat_;
+  ConnectionSlot slot_;
   boost::beast::flat_buffer in_;
   LiveView& view_;
   const MoveHand& move_hand_;

@@ -35,10 +35,10 @@ void LiveView::begin(const record::Hello& hello, record::MeshBytes mesh, Link li
   hello_ = hello;
   mesh_ = std::make_shared<const record::MeshBytes>(std::move(mesh));
   ++scene_number_;
-  if (companion_)
+  if (overlay_source_)
     // Before tell(): the status of a new scene has its figure.
-    figure_ =
-        std::make_shared<const std::string>(model::io::text_of(companion_->begin(hello, *mesh_)));
+    figure_ = std::make_shared<const std::string>(
+        model::io::text_of(overlay_source_->begin(hello, *mesh_)));
   recent_.restart(static_cast<double>(hello.frame_rate_Hz));
   link_ = link;
   detail_ = detail;
@@ -48,9 +48,9 @@ void LiveView::begin(const record::Hello& hello, record::MeshBytes mesh, Link li
 void LiveView::add(const record::Frame& frame, const tracking::TrackedOperator* tracked,
                    const figure::FigurePose* shown) {
   Text beside;
-  if (companion_) {
-    beside = std::make_shared<const std::string>(companion_->with(frame, tracked, shown));
-    shown = &companion_->figure();
+  if (overlay_source_) {
+    beside = std::make_shared<const std::string>(overlay_source_->with(frame, tracked, shown));
+    shown = &overlay_source_->figure();
   }
   recent_.add(frame, tracked, shown);
   newest_beside_ = beside;

@@ -29,9 +29,9 @@ class LiveListener {
 };
 
 /// What is told beside every frame, made by who knows more than telemetry: the operator's figure.
-class Companion {
+class OverlaySource {
  public:
-  virtual ~Companion() = default;
+  virtual ~OverlaySource() = default;
   /// For every scene; what it gives is the status's "figure".
   virtual nlohmann::json begin(const record::Hello& hello, const record::MeshBytes& mesh) = 0;
   /// One JSON text for each frame. `shown` is the figure of a recording: it is told as it was.
@@ -46,7 +46,7 @@ class LiveView {
   LiveView();
 
   /// Before the first scene. It outlives the view; null: none.
-  void accompany(Companion* companion) { companion_ = companion; }
+  void accompany(OverlaySource* overlay_source) { overlay_source_ = overlay_source; }
 
   // From telemetry or a replay:
   void begin(const record::Hello& hello, record::MeshBytes mesh, Link link,
@@ -88,7 +88,7 @@ class LiveView {
   Text picker_;         // what may be chosen, if anything may
   Text status_;
   std::function<void()> watched_;
-  Companion* companion_ = nullptr;
+  OverlaySource* overlay_source_ = nullptr;
   Text figure_;         // of the companion, for this scene
   Text newest_beside_;  // of the newest frame
   record::RecentFrames recent_;

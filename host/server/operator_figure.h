@@ -14,7 +14,7 @@ namespace tact::host::server {
 /// grip_m() of the tool's mesh; the default without a mesh.
 Eigen::Vector3d grip_of(const record::Hello& hello, const record::MeshBytes& mesh);
 
-class OperatorFigure final : public Companion {
+class OperatorFigure final : public OverlaySource {
  public:
   explicit OperatorFigure(double height_m);
 

@@ -110,21 +110,21 @@ void Playback::play_next(std::uint64_t turn) {
   schedule();
 }
 
-void Playback::steer(const ReplayWish& wish) {
+void Playback::steer(const ReplayRequest& request) {
   stop();
-  speed_ratio_ = wish.speed_ratio.value_or(speed_ratio_);
-  repeats_ = wish.repeats.value_or(repeats_);
-  if (wish.at_s) jump_to(frame_at(*wish.at_s));
-  if (wish.step_frames) {
+  speed_ratio_ = request.speed_ratio.value_or(speed_ratio_);
+  repeats_ = request.repeats.value_or(repeats_);
+  if (request.at_s) jump_to(frame_at(*request.at_s));
+  if (request.step_frames) {
     playing_ = false;
-    const std::int64_t wanted = static_cast<std::int64_t>(shown_) + *wish.step_frames;
+    const std::int64_t wanted = static_cast<std::int64_t>(shown_) + *request.step_frames;
     const auto last = static_cast<std::int64_t>(at_ns_.size()) - 1;
     jump_to(static_cast<std::size_t>(std::clamp<std::int64_t>(wanted, 0, last)));
   }
-  if (wish.playing) {
+  if (request.playing) {
     // Play at the end means: again from the start.
-    if (*wish.playing && !playing_ && is_last() && !wish.at_s) jump_to(0);
-    playing_ = *wish.playing;
+    if (*request.playing && !playing_ && is_last() && !request.at_s) jump_to(0);
+    playing_ = *request.playing;
   }
   due_ = Clock::now();
   if (playing_) schedule();

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "host/server/live_view.h"
-#include "host/server/replay_wish.h"
+#include "host/server/replay_request.h"
 
 namespace tact::host::server {
 
@@ -26,7 +26,7 @@ class Playback {
 
   void start();
   void stop();
-  void steer(const ReplayWish& wish);
+  void steer(const ReplayRequest& request);
 
  private:
   void report();

@@ -66,10 +66,10 @@ std::optional<Error> ScenePicker::check(const Choice& choice) const {
   return std::nullopt;
 }
 
-void ScenePicker::ask(const json& wish) {
-  const json scene = wish.value("scene", json());
+void ScenePicker::ask(const json& request) {
+  const json scene = request.value("scene", json());
   const Choice choice{scene.is_string() ? scene.get<std::string>() : "",
-                      wish.value("set", json::object())};
+                      request.value("set", json::object())};
   // Never of hardware: there a person starts tactd, with the device before the eyes.
   if (!is_simulated()) {
     answer_ = "a scene is chosen here in simulation only";

@@ -32,7 +32,7 @@ class ScenePicker {
   std::string list() const;
 
   /// Of a page.
-  void ask(const nlohmann::json& wish);
+  void ask(const nlohmann::json& request);
   /// After LiveView::begin: what was asked for may be what runs now.
   void begin();
   /// The program that started tact-view did not start what was asked for, and why.

@@ -38,9 +38,9 @@ ViewerServer::ViewerServer(boost::asio::io_context& io, LiveView& view, MoveHand
             .steer = {},
             .ask_scene = {},
             .scenes = {},
-            .request_patience = {}},
+            .request_timeout = {}},
       warn_(std::move(warn)),
-      seat_(std::make_shared<char>()) {}
+      slot_(std::make_shared<char>()) {}
 
 std::optional<Error> ViewerServer::open(const ViewerOptions& options) {
   error_code wrong;
@@ -60,7 +60,7 @@ std::optional<Error> ViewerServer::open(const ViewerOptions& options) {
   // The page first: a server without it would only answer 404.
   if (std::optional<Error> error = site_.page.load(options.page_folder)) return error;
   if (std::optional<Error> error = listen({address, options.port})) return error;
-  site_.request_patience = options.request_patience;
+  site_.request_timeout = options.request_timeout;
   site_.access.loopback = address.is_loopback();
   site_.access.bind_address = url_name(address);
   site_.access.public_url = options.public_url;
@@ -87,8 +87,8 @@ std::optional<Error> ViewerServer::listen(const tcp::endpoint& endpoint) {
 void ViewerServer::start() {
   acceptor_.start([this](tcp::socket socket) {
     // One of the uses is our own.
-    if (seat_.use_count() > kMaxConnections) return turn_away(std::move(socket));
-    std::make_shared<HttpSession>(boost::beast::tcp_stream(std::move(socket)), seat_, site_)
+    if (slot_.use_count() > kMaxConnections) return turn_away(std::move(socket));
+    std::make_shared<HttpSession>(boost::beast::tcp_stream(std::move(socket)), slot_, site_)
         ->start();
   });
 }

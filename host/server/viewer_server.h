@@ -23,7 +23,7 @@ struct ViewerOptions {
   std::uint16_t port = 8321;  // 0: any free one
   std::string page_folder;
   std::string public_url{};  // where browsers find it, if not at bind_address and port
-  std::chrono::milliseconds request_patience{10'000};  // for one request to arrive
+  std::chrono::milliseconds request_timeout{10'000};  // for one request to arrive
 };
 
 class ViewerServer {
@@ -56,7 +56,7 @@ class ViewerServer {
   net::Acceptor acceptor_;
   Site site_;
   Warn warn_;
-  Seat seat_;  // its copies are the connections
+  ConnectionSlot slot_;  // its copies are the connections
   std::uint64_t turned_away_ = 0;
   std::chrono::steady_clock::time_point reported_;
 };

@@ -119,7 +119,7 @@ struct CanBench {
 
   /// What the device has counted under this name; it fails the test when there is no such count.
   std::uint64_t count(std::string_view name) const {
-    for (const hal::DeviceCount& one : device->tally())
+    for (const hal::DeviceCount& one : device->counters())
       if (one.name == name) return one.count;
     ADD_FAILURE() << "no count " << name;
     return 0;

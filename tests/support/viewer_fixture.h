@@ -48,8 +48,8 @@ class Viewer : public ::testing::Test {
                  .silent = [this](double seconds) { silences_s_.push_back(seconds); }}),
         server_(
             io_, view_,
-            [this](const host::server::HandWish& wish) {
-              client_.move_hand(wish.position_m, wish.rotation_rad, wish.grip_ratio);
+            [this](const host::server::HandRequest& request) {
+              client_.move_hand(request.position_m, request.rotation_rad, request.grip_ratio);
             },
             [this](const std::string& sentence) { warnings_.push_back(sentence); }) {
     fs::create_directories(folder_);
@@ -62,11 +62,11 @@ class Viewer : public ::testing::Test {
   }
 
   void start(const std::string& bind_address = "127.0.0.1",
-             std::chrono::milliseconds request_patience = std::chrono::seconds(10)) {
+             std::chrono::milliseconds request_timeout = std::chrono::seconds(10)) {
     ASSERT_EQ(tests::sentence_of(server_.open({.bind_address = bind_address,
                                                .port = 0,
                                                .page_folder = folder_,
-                                               .request_patience = request_patience})),
+                                               .request_timeout = request_timeout})),
               "");
     server_.start();
     client_.start();

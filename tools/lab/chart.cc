@@ -45,7 +45,7 @@ void add_options(CLI::App& app, Options& o) {
                  "with it alone: also this file, SCENE.accuracy, which tactd --check tells")
       ->needs("--tool-reference")
       ->excludes("--reference");
-  app.add_option("--laws", o.chart.wish.laws, "only these laws")
+  app.add_option("--laws", o.chart.request.laws, "only these laws")
       ->delimiter(',')
       ->check(CLI::IsMember(all_families()));
   app.add_flag("--quick", o.quick, "fewer sizes, fewer ticks");
@@ -84,7 +84,7 @@ Result<int> check_whole_tool(const program::Program& program, const Options& o,
   if (!reference) return reference.error();
   std::vector<ToolRow> rows;
   for (const auto& name : model::scene::kLawNames) {
-    const auto& laws = o.chart.wish.laws;
+    const auto& laws = o.chart.request.laws;
     // Laws without a section of their own would be judged with numbers that nobody wrote.
     if (!scene.describes(name.kind)) continue;
     if (!laws.empty() && std::find(laws.begin(), laws.end(), name.name) == laws.end()) continue;
@@ -173,7 +173,7 @@ Result<int> make_chart(const program::Program& program, const Options& o, const 
 
 Result<int> run(const program::Program& program, Options& o) {
   if (auto error = program::prepare_folder(o.out)) return *error;
-  o.chart.wish.quick = o.quick;
+  o.chart.request.quick = o.quick;
   if (o.quick) o.chart.timing = {.ticks = 5000, .rounds = 2, .limit_s = 1.0};
   if (o.reference.empty() && o.tool_reference.empty())
     return Error{"no reference given; --reference or --tool-reference is needed"};

@@ -18,8 +18,8 @@
 
 namespace tact::firmware::guardian::guardian_test {
 
-constexpr int kPatience_ms = 20'000, kSilence_ms = 100;
-constexpr hal::LastWords::Bytes kFirst{1}, kSecond{2}, kThird{3};
+constexpr int kTimeout_ms = 20'000, kSilence_ms = 100;
+constexpr hal::ShutdownFrames::Bytes kFirst{1}, kSecond{2}, kThird{3};
 
 /// Both ends of a device whose messages are datagrams; three words in two steps.
 struct Wire {
@@ -27,27 +27,27 @@ struct Wire {
     if (socketpair(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0, end) != 0) std::abort();
     words.fd = end[0];
     words.add_step(std::array{kFirst, kSecond});
-    words.add_step(std::array<hal::LastWords::Bytes, 1>{kThird});
+    words.add_step(std::array<hal::ShutdownFrames::Bytes, 1>{kThird});
   }
   Wire(const Wire&) = delete;
   Wire& operator=(const Wire&) = delete;
   ~Wire() {
     for (const int fd : end) close(fd);
   }
-  std::vector<hal::LastWords::Bytes> hear(std::size_t most, int patience_ms) const {
-    std::vector<hal::LastWords::Bytes> heard;
+  std::vector<hal::ShutdownFrames::Bytes> hear(std::size_t most, int timeout_ms) const {
+    std::vector<hal::ShutdownFrames::Bytes> heard;
     pollfd one{.fd = end[1], .events = POLLIN, .revents = 0};
-    while (heard.size() < most && poll(&one, 1, patience_ms) == 1) {
+    while (heard.size() < most && poll(&one, 1, timeout_ms) == 1) {
       heard.emplace_back();
       if (recv(end[1], heard.back().data(), heard.back().size(), 0) != 16) heard.pop_back();
     }
     return heard;
   }
-  hal::LastWords words;
+  hal::ShutdownFrames words;
   int end[2] = {-1, -1};
 };
 
-std::unique_ptr<Guardian> start(const hal::LastWords& words) {
+std::unique_ptr<Guardian> start(const hal::ShutdownFrames& words) {
   auto guardian =
       Guardian::start(words, {.priority = 1, .program = tests::program_path("tact-guardian")});
   EXPECT_TRUE(guardian) << guardian.error().sentence;
@@ -85,13 +85,13 @@ struct Guarded {
 };
 
 bool soon(const std::function<bool()>& what) {
-  for (int i = 0; i < kPatience_ms && !what(); ++i) usleep(1000);
+  for (int i = 0; i < kTimeout_ms && !what(); ++i) usleep(1000);
   return what();
 }
 
 bool lives(pid_t process) { return kill(process, 0) == 0; }
 
-using Words = std::vector<hal::LastWords::Bytes>;
+using Words = std::vector<hal::ShutdownFrames::Bytes>;
 const Words kAll{kFirst, kSecond, kThird};
 
 TEST(Guardian, SaysTheLastWordsOfAProgramThatIsKilled) {
@@ -99,16 +99,16 @@ TEST(Guardian, SaysTheLastWordsOfAProgramThatIsKilled) {
   Guarded guarded(wire, [](Guardian&) {});
   EXPECT_EQ(wire.hear(1, kSilence_ms), Words{}) << "as long as it lives";
   guarded.end();
-  EXPECT_EQ(wire.hear(3, kPatience_ms), kAll);
+  EXPECT_EQ(wire.hear(3, kTimeout_ms), kAll);
   EXPECT_EQ(wire.hear(1, kSilence_ms), Words{}) << "once";
 }
 
 TEST(Guardian, SaysThemAlsoOfOneThatCrashesOrLeavesWithoutAWord) {
   const Wire crashed, left;
   const Guarded one(crashed, [](Guardian&) { std::raise(SIGKILL); });
-  EXPECT_EQ(crashed.hear(3, kPatience_ms), kAll);
+  EXPECT_EQ(crashed.hear(3, kTimeout_ms), kAll);
   const Guarded other(left, [](Guardian&) { _exit(0); });
-  EXPECT_EQ(left.hear(3, kPatience_ms), kAll);
+  EXPECT_EQ(left.hear(3, kTimeout_ms), kAll);
 }
 
 TEST(Guardian, TellsThatTheDeviceTookNothing) {
@@ -158,7 +158,7 @@ TEST(Guardian, NoSignalOfATerminalReachesIt) {
     kill(guarded.guardian, signal);
   usleep(20'000);
   guarded.end();
-  EXPECT_EQ(wire.hear(3, kPatience_ms), kAll);
+  EXPECT_EQ(wire.hear(3, kTimeout_ms), kAll);
 }
 
 TEST(Guardian, ItsCallsAreFilteredAndItsFilesAreFew) {

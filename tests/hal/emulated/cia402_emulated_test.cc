@@ -123,7 +123,7 @@ TEST(Cia402Emulated, LastWordsTakeTheTorqueAtOnceThenThePowerAndLeaveTheWatchOn)
   for (const ObjectHabits& habits : all_habits()) {
     Bench bench(habits);
     ASSERT_EQ(bench.open(), "");
-    const auto words = bench.device->last_words();  // before the loop, as tactd asks for them
+    const auto words = bench.device->shutdown_frames();  // before the loop, as tactd asks for them
     ASSERT_TRUE(words);
     ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->trouble();
     bench.expect_torques_of({0.0, 0.0, 4.0});
@@ -139,7 +139,7 @@ TEST(Cia402Emulated, LastWordsTakeTheTorqueAtOnceThenThePowerAndLeaveTheWatchOn)
 TEST(Cia402Emulated, LastWordsAreZeroTorqueWithoutAnEnableAndSyncAndNoMore) {
   Bench bench;
   ASSERT_EQ(bench.open(), "");
-  const auto words = bench.device->last_words();
+  const auto words = bench.device->shutdown_frames();
   ASSERT_TRUE(words && words->count == 12);
   for (std::size_t i = 0; i < words->count; ++i) {
     const auto frame = can::unpack_can_frame(words->bytes_of(i));
@@ -213,7 +213,7 @@ TEST(Cia402Emulated, AWatchThatWasLeftOpenIsSwitchedOffBeforeItIsAskedForAgain) 
   cia402::HeartbeatGuard guard;
   const cia402::CstConfiguration can;
   const auto asks = [&](bool wanted) {
-    for (int tick = 0; tick <= cia402::HeartbeatGuard::kPatience_ticks; ++tick)
+    for (int tick = 0; tick <= cia402::HeartbeatGuard::kTimeout_ticks; ++tick)
       if (const auto frame = guard.step(wanted, 1, can)) return static_cast<int>(frame->data[4]);
     return -1;
   };

@@ -16,7 +16,7 @@
 #include <string>
 #include <type_traits>
 
-#include "hal/last_words.h"
+#include "hal/shutdown_frames.h"
 #include "tests/rig/emulators/can/can_bus.h"
 #include "tests/rig/emulators/can/drive.h"
 #include "tests/support/can_bench.h"
@@ -66,7 +66,7 @@ class BasicEmulatedDrives {
   }
 
   /// What the guardian says of a dead tactd: the first step takes the torque, the rest the power.
-  void expect_freed_by(const hal::LastWords& words) {
+  void expect_freed_by(const hal::ShutdownFrames& words) {
     ASSERT_EQ(say_step(words, 0), 0);
     millisecond();
     for (const auto& one : drive) EXPECT_EQ(one->torque_Nm(), 0.0);

@@ -155,7 +155,7 @@ TEST(OdriveEmulated, LastWordsTakeTheTorqueAtOnceThenThePower) {
   for (const auto generation : {OdriveGeneration::k05, OdriveGeneration::k06}) {
     Bench bench({.generation = generation, .estimates_from_power_on = true}, Homing::kAbsolute);
     ASSERT_EQ(bench.open(), "");
-    const auto words = bench.device->last_words();  // before the loop, as tactd asks for them
+    const auto words = bench.device->shutdown_frames();  // before the loop, as tactd asks for them
     ASSERT_TRUE(words);
     ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->trouble();
     for (int i = 0; i < 3; ++i) bench.tick({0.0, 0.0, 4.0});
@@ -167,7 +167,7 @@ TEST(OdriveEmulated, LastWordsTakeTheTorqueAtOnceThenThePower) {
 TEST(OdriveEmulated, LastWordsAreZeroTorqueAndIdleAndNoMore) {
   Bench bench;
   ASSERT_EQ(bench.open(), "");
-  const auto words = bench.device->last_words();
+  const auto words = bench.device->shutdown_frames();
   ASSERT_TRUE(words && words->count == 9);
   for (std::size_t i = 0; i < words->count; ++i) {
     const auto frame = can::unpack_can_frame(words->bytes_of(i));

@@ -113,13 +113,13 @@ TEST(FalconDevice, TooMuchForceKeepsItsDirection) {
   FalconBench bench;
   bench.home({0.02, 0.0, 0.0});
   bench.run(60);
-  const Vec3 wish_N{8.0, 20.0, 30.0};
-  bench.tick(wish_N);
+  const Vec3 wanted_N{8.0, 20.0, 30.0};
+  bench.tick(wanted_N);
   int largest = 0;
   for (const int word : bench.words()) largest = std::max(largest, std::abs(word));
   EXPECT_EQ(largest, falcon::kFalconMotorMax);
   const Vec3 rendered_N = force_of(bench.words(), falcon_settings(), {0.02, 0.0, 0.0});
-  EXPECT_GT(dot(normalized(rendered_N), normalized(wish_N)), 0.99999);
+  EXPECT_GT(dot(normalized(rendered_N), normalized(wanted_N)), 0.99999);
 }
 
 TEST(FalconDevice, ItsForceLimitCanBeMadeEverywhere) {
@@ -178,11 +178,11 @@ TEST(FalconDevice, ItsWeightIsHeldFirstAndTheForceKeepsItsDirectionBesideIt) {
   FalconBench bench(settings);
   bench.home();
   bench.run(60);
-  const Vec3 wish_N{10.0, 5.0, 20.0};
-  bench.tick(wish_N);
+  const Vec3 wanted_N{10.0, 5.0, 20.0};
+  bench.tick(wanted_N);
   const Vec3 pushed_N = force_of(bench.words(), settings, {}) - Vec3{0.0, 0.0, 0.2 * 9.81};
   EXPECT_GT(norm(pushed_N), 3.0);
-  EXPECT_GT(dot(normalized(pushed_N), normalized(wish_N)), 0.9999);
+  EXPECT_GT(dot(normalized(pushed_N), normalized(wanted_N)), 0.9999);
 }
 
 TEST(FalconDevice, TheMiddleButtonCloses) {

@@ -167,7 +167,7 @@ TEST(MoteusDelta, AKilledRunLeavesDrivesThatTheNextOneTakesUp) {
 TEST(MoteusDelta, LastWordsStopAllThreeAtOnceAndAreNoMoreThanThat) {
   MoteusBench bench;
   ASSERT_EQ(bench.open(), "");
-  const auto words = bench.device->last_words();  // before the loop, as tactd asks for them
+  const auto words = bench.device->shutdown_frames();  // before the loop, as tactd asks for them
   ASSERT_TRUE(words);
   EXPECT_EQ(words->count, 6u);
   for (std::size_t i = 0; i < words->count; ++i) {

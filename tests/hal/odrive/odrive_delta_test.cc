@@ -234,10 +234,10 @@ TEST(OdriveDelta, FramesOfOtherNodesChangeNothing) {
   bench.tick();
   EXPECT_TRUE(bench.sample.fresh);
   EXPECT_EQ(bench.count("strays"), 1u);
-  const auto tally = bench.device->tally();
-  ASSERT_FALSE(tally.empty());
-  EXPECT_STREQ(tally[0].name, "strays");
-  EXPECT_EQ(tally[0].count, 1u);
+  const auto counters = bench.device->counters();
+  ASSERT_FALSE(counters.empty());
+  EXPECT_STREQ(counters[0].name, "strays");
+  EXPECT_EQ(counters[0].count, 1u);
 }
 
 TEST(OdriveDelta, ASecondOpeningOfTheGateComesAfterStop) {

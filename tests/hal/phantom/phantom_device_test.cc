@@ -233,7 +233,7 @@ TEST_F(Phantom, InfoIsWhatTheLibraryTells) {
   for (const char* part : {"nothing zeroes this device", "or the library hangs", "for long: 0.88 N",
                            "advises: 500 N/m", "assumed, not measured"})
     EXPECT_NE(info.caution.find(part), std::string::npos) << info.caution;
-  EXPECT_FALSE(device->last_words());
+  EXPECT_FALSE(device->shutdown_frames());
   EXPECT_TRUE(device->loop_calls().empty());
 }
 

@@ -17,19 +17,19 @@ using firmware::loop::State;
 
 constexpr std::int64_t kFrame_ns = 10'000'000;
 
-TEST(ReplayWish, IsReadFromAPagesMessage) {
-  const auto wish = parse_replay(
+TEST(ReplayRequest, IsReadFromAPagesMessage) {
+  const auto request = parse_replay(
       R"({"replay":{"playing":true,"at_s":1.5,"step_frames":-1,"speed_ratio":0.25,"repeats":false}})");
-  ASSERT_TRUE(wish);
-  EXPECT_EQ(wish->playing, true);
-  EXPECT_EQ(wish->at_s, 1.5);
-  EXPECT_EQ(wish->step_frames, -1);
-  EXPECT_EQ(wish->speed_ratio, 0.25);
-  EXPECT_EQ(wish->repeats, false);
+  ASSERT_TRUE(request);
+  EXPECT_EQ(request->playing, true);
+  EXPECT_EQ(request->at_s, 1.5);
+  EXPECT_EQ(request->step_frames, -1);
+  EXPECT_EQ(request->speed_ratio, 0.25);
+  EXPECT_EQ(request->repeats, false);
   EXPECT_FALSE(parse_replay(R"({"replay":{"at_s":2}})")->playing);
 }
 
-TEST(ReplayWish, IsRefusedWhenAnyOfItIsNotSensible) {
+TEST(ReplayRequest, IsRefusedWhenAnyOfItIsNotSensible) {
   for (const char* text :
        {"", "{", "[]", "null", "7", R"({"replay":7})", R"({"replay":{"arm":true}})",
         R"({"replay":{"at_s":-1}})", R"({"replay":{"at_s":1e99}})", R"({"replay":{"at_s":"0"}})",

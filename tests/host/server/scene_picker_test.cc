@@ -42,7 +42,7 @@ class Picker : public ::testing::Test {
     view_.begin(hello, TinyMeshes{}.bytes(), link);
     picker_.begin();
   }
-  void ask(const char* wish) { picker_.ask(json::parse(wish)); }
+  void ask(const char* request) { picker_.ask(json::parse(request)); }
   json reported() const { return json::parse(*view_.status()).value("picker", json()); }
   std::string answer() const { return reported().value("answer", "nothing is offered"); }
 
@@ -69,7 +69,7 @@ TEST_F(Picker, SendsAGoodWishAndTellsWhenItRuns) {
 
 TEST_F(Picker, RefusesWhatIsNotOfferedByName) {
   show("liver", true);
-  for (const auto& [wish, reason] :
+  for (const auto& [request, reason] :
        {std::pair{R"({"scene":"skin"})", "there is no scene \"skin\" here"},
         {R"({"scene":"../heart"})", "there is no scene \"../heart\" here"},
         {R"({"scene":7})", "there is no scene \"\" here"},
@@ -79,7 +79,7 @@ TEST_F(Picker, RefusesWhatIsNotOfferedByName) {
         {R"({"scene":"heart","set":[8]})", "\"set\" has no numbers by key"},
         {R"({"scene":"heart","set":{"disc_stack.layers":"12 --arm"}})",
          "disc_stack.layers = \"12 --arm\" is no number"}}) {
-    ask(wish);
+    ask(request);
     EXPECT_EQ(answer(), reason);
   }
   EXPECT_TRUE(lines_.empty());
@@ -140,7 +140,7 @@ class Chooser : public Viewer {
   /// Of a server that gives its pages this right over the hand: is a wish heard?
   bool is_heard(const host::server::MoveHand& move_hand) {
     host::server::ViewerServer server(io_, view_, move_hand);
-    server.let_choose([this](const json&) { ++wishes_; }, "[]");
+    server.let_choose([this](const json&) { ++requests_; }, "[]");
     start();  // the thread, and a server beside
     EXPECT_FALSE(server.open({.port = 0, .page_folder = folder_}));
     server.start();
@@ -158,13 +158,13 @@ class Chooser : public Viewer {
     socket.close(websocket::close_code::normal, wrong);  // answered after all before it was taken
     boost::asio::post(io_, [this] { io_.stop(); });      // before its server goes
     thread_.join();
-    return wishes_ > 0;
+    return requests_ > 0;
   }
-  int wishes_ = 0;
+  int requests_ = 0;
 };
 
 TEST_F(Chooser, IsHeardWhereTheHandMayBeMoved) {
-  EXPECT_TRUE(is_heard([](const host::server::HandWish&) {}));
+  EXPECT_TRUE(is_heard([](const host::server::HandRequest&) {}));
 }
 
 TEST_F(Chooser, IsNotHeardWhereNoHandMayBeMoved) { EXPECT_FALSE(is_heard(nullptr)); }

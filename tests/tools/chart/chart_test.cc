@@ -80,9 +80,7 @@ report::Table chart_of(const model::scene::Scene& scene,
   return table;
 }
 
-ChartOptions quick() {
-  return {.wish = {.laws = {}, .quick = true}, .timing = kShort};
-}
+ChartOptions quick() { return {.request = {.laws = {}, .quick = true}, .timing = kShort}; }
 
 TEST(Errors, MatchPenAndPaper) {
   // Peak 2 N. Errors 0.1, -0.2 and (pull) 0.4 N: 5, 10 and 20 % of it.
@@ -194,7 +192,7 @@ TEST(Chart, ALinearReferenceJudgesTheComplianceLawAtSmallStrain) {
   ASSERT_TRUE(liver && truth);
   EXPECT_TRUE(liver->compliance.large_strain) << "as it is felt";
   ChartOptions options = quick();
-  options.wish.laws = {"compliance"};
+  options.request.laws = {"compliance"};
   const report::Table table = chart_of(*liver, *truth, options);
   double best = 1.0;
   for (const report::Row& row : table.rows())

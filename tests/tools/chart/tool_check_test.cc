@@ -137,7 +137,7 @@ TEST(Chart, JudgesEverySizeByTheWholeToolWhereItIsKnown) {
       {.depth_m = 0.001, .force_N = 1.25 * k * 0.001, .profile_m = {0.001, 0.0}}};
   ToolReference whole_tool = linear_truth(scene, 0.5 * k);
   ChartOptions options{
-      .wish = {.laws = {}, .quick = true}, .timing = kShort, .tool_reference = &whole_tool};
+      .request = {.laws = {}, .quick = true}, .timing = kShort, .tool_reference = &whole_tool};
   const auto rows = measure_chart(scene, one_sphere, options);
   ASSERT_TRUE(rows) << rows.error().sentence;
   std::size_t linear = 0;

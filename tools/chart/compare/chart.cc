@@ -79,7 +79,7 @@ Result<std::vector<ChartRow>> measure_chart(const Scene& scene,
                                             const ChartOptions& options) {
   const auto cases = cases_of(scene, reference);
   if (!cases) return cases.error();
-  const std::vector<Variant> variants = variants_of(scene, options.wish);
+  const std::vector<Variant> variants = variants_of(scene, options.request);
   if (options.tool_reference != nullptr)
     if (auto differs = check_tool_reference_fits(*options.tool_reference, scene))
       return std::move(*differs);

@@ -38,7 +38,7 @@ struct Provenance {
 
 struct ChartOptions {
   std::string label = "tact-lab chart";  // before the progress
-  VariantWish wish;
+  VariantRequest request;
   TimingSettings timing;
   const ground_truth::ToolReference* tool_reference = nullptr;  // laws are judged by it too
 };

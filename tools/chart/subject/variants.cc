@@ -14,15 +14,16 @@ using model::scene::LawSizes;
 /// Sizes of one law: `whole` of them, `quick` fewer.
 class List {
  public:
-  List(const model::scene::Scene& scene, const VariantWish& wish) : scene_(scene), wish_(wish) {}
+  List(const model::scene::Scene& scene, const VariantRequest& request)
+      : scene_(scene), request_(request) {}
 
   void laws();
   std::vector<Variant> take() { return std::move(out_); }
 
  private:
   bool wants(const std::string& family) const {
-    return wish_.laws.empty() ||
-           std::find(wish_.laws.begin(), wish_.laws.end(), family) != wish_.laws.end();
+    return request_.laws.empty() ||
+           std::find(request_.laws.begin(), request_.laws.end(), family) != request_.laws.end();
   }
   bool wants(LawKind kind) const {
     return scene_.describes(kind) && wants(std::string(name_of(kind)));
@@ -30,7 +31,7 @@ class List {
   void add(const LawSizes& sizes) { out_.push_back({.sizes = sizes}); }
   void each(std::initializer_list<std::size_t> whole, std::initializer_list<std::size_t> quick,
             LawKind kind, std::size_t LawSizes::* size) {
-    for (const std::size_t n : wish_.quick ? quick : whole) {
+    for (const std::size_t n : request_.quick ? quick : whole) {
       LawSizes sizes{.law = kind};
       sizes.*size = n;
       add(sizes);
@@ -39,7 +40,7 @@ class List {
   void discs();
 
   const model::scene::Scene& scene_;
-  const VariantWish& wish_;
+  const VariantRequest& request_;
   std::vector<Variant> out_;
 };
 
@@ -48,7 +49,7 @@ void List::discs() {
   const std::size_t layers = scene_.disc_stack.delays.layers;
   for (const auto form :
        {model::indent::DiscForm::kLinear, model::indent::DiscForm::kAlmenLaszlo}) {
-    if (!wish_.quick && layers > 1)
+    if (!request_.quick && layers > 1)
       add({.law = LawKind::kDiscStack, .layers = layers / 2, .disc_form = form});
     add({.law = LawKind::kDiscStack, .layers = layers, .disc_form = form});
   }
@@ -67,7 +68,7 @@ void List::laws() {
   // Two sizes, one after the other: curves over the organ, then knots of a curve.
   if (!wants(LawKind::kCompliance)) return;
   each({2, 3, 5, 9, 17, 33}, {5, 17}, LawKind::kCompliance, &LawSizes::curves);
-  if (wish_.quick) return;
+  if (request_.quick) return;
   for (const std::size_t knots : std::array<std::size_t, 3>{17, 33, 129})
     add({.law = LawKind::kCompliance, .table_knots = knots, .curves = scene_.compliance.curves});
 }
@@ -82,8 +83,8 @@ std::string Variant::size() const {
   return whole.size() > name ? whole.substr(name + 1) : "as the scene says";
 }
 
-std::vector<Variant> variants_of(const model::scene::Scene& scene, const VariantWish& wish) {
-  List list(scene, wish);
+std::vector<Variant> variants_of(const model::scene::Scene& scene, const VariantRequest& request) {
+  List list(scene, request);
   list.laws();
   return list.take();
 }

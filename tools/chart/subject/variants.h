@@ -17,13 +17,13 @@ struct Variant {
   std::string size() const;    // "65 knots"
 };
 
-struct VariantWish {
+struct VariantRequest {
   std::vector<std::string> laws;  // families; empty: all
   bool quick = false;             // fewer sizes
 };
 
 /// In the order of the table. Laws that the scene does not describe are left out.
-std::vector<Variant> variants_of(const model::scene::Scene& scene, const VariantWish& wish);
+std::vector<Variant> variants_of(const model::scene::Scene& scene, const VariantRequest& request);
 /// Every family there is, for --laws.
 std::vector<std::string> all_families();
 

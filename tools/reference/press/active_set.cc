@@ -10,7 +10,7 @@ namespace {
 using model::Error;
 using model::Result;
 
-constexpr int kPatience = 10;            // rounds of many that may make it no better
+constexpr int kTimeout = 10;             // rounds of many that may make it no better
 constexpr Eigen::Index kMaxPivots = 50;  // times the unknowns
 constexpr double kZero = 1e-10;          // of the largest pressure or overlap
 
@@ -76,18 +76,18 @@ Result<Eigen::VectorXd> solve_contact(const Eigen::MatrixXd& compliance,
                                       const Eigen::VectorXd& overlap) {
   ActiveSet set(compliance, overlap);
   std::size_t fewest = static_cast<std::size_t>(overlap.size()) + 1;
-  int patience = kPatience;
+  int timeout = kTimeout;
   for (Eigen::Index round = 0; round <= kMaxPivots * overlap.size(); ++round) {
     if (!set.solve()) return kNotDefinite;
     const std::vector<Eigen::Index> wrong = set.wrong();
     if (wrong.empty()) return set.pressure();
     if (wrong.size() < fewest) {
       fewest = wrong.size();
-      patience = kPatience;
+      timeout = kTimeout;
     } else {
-      --patience;
+      --timeout;
     }
-    if (patience > 0)
+    if (timeout > 0)
       for (const Eigen::Index i : wrong) set.flip(i);
     else
       // Always the largest number: a fixed order cannot turn in a circle.

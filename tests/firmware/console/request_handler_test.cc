@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a person asks of a running tactd by its socket: done, or refused with the reason. Arming is
 // an act, made once, when it may be.
-#include "firmware/console/operator_desk.h"
+#include "firmware/console/request_handler.h"
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>
@@ -19,26 +19,26 @@
 #include "model/io/socket_file.h"
 #include "tests/support/puppet_loop.h"
 
-namespace tact::firmware::console::operator_desk_test {
+namespace tact::firmware::console::request_handler_test {
 
 using loop::State;
 
-class Desk : public testing::Test {
+class RequestHandler : public testing::Test {
  protected:
   void SetUp() override {
     testing::internal::CaptureStderr();
     auto opened = ControlSocket::open(path);
     ASSERT_TRUE(opened) << opened.error().sentence;
     control = std::move(*opened);
-    desk = make_desk(view, tick);
+    request_handler = make_desk(view, tick);
   }
   void TearDown() override {
     testing::internal::GetCapturedStderr();
     control.reset();
     std::filesystem::remove(path);
   }
-  std::unique_ptr<OperatorDesk> make_desk(OperatorView& of, std::function<void()> pause) {
-    return std::make_unique<OperatorDesk>(
+  std::unique_ptr<RequestHandler> make_desk(OperatorView& of, std::function<void()> pause) {
+    return std::make_unique<RequestHandler>(
         signals, requests, of, [this] { return frame; }, control.get(), std::move(pause));
   }
   /// A person who has said it; hear() is the answer, once the desk has been at work.
@@ -58,7 +58,7 @@ class Desk : public testing::Test {
   }
   Answer ask(const char* word) {
     const int fd = say(word);
-    desk->obey(1'000'000'000);
+    request_handler->obey(1'000'000'000);
     return hear(fd);
   }
   std::string refusal(const char* word) {
@@ -71,7 +71,7 @@ class Desk : public testing::Test {
     testing::internal::GetCapturedStderr();
     testing::internal::CaptureStderr();
     frame.state = state;
-    desk->obey(0);
+    request_handler->obey(0);
     const std::string reported = testing::internal::GetCapturedStderr();
     testing::internal::CaptureStderr();
     return reported;
@@ -96,10 +96,10 @@ class Desk : public testing::Test {
   telemetry::Frame frame;
   std::string path = control_path(testing::TempDir(), "liver.toml", getpid());
   std::unique_ptr<ControlSocket> control;
-  std::unique_ptr<OperatorDesk> desk;
+  std::unique_ptr<RequestHandler> request_handler;
 };
 
-TEST_F(Desk, ArmsOnlyAfterTheWordsThatItMayBe) {
+TEST_F(RequestHandler, ArmsOnlyAfterTheWordsThatItMayBe) {
   EXPECT_EQ(refusal("arm"), "puppet: not armed: the device is not ready yet");
   show(State::kOff);
   EXPECT_NE(refusal("arm").find("not armed"), std::string::npos);
@@ -113,17 +113,17 @@ TEST_F(Desk, ArmsOnlyAfterTheWordsThatItMayBe) {
   EXPECT_EQ(requests.refused.load(), 2u);
 }
 
-TEST_F(Desk, ARequestThatWaitsWhileTheWordsAreToldIsRefused) {
+TEST_F(RequestHandler, ARequestThatWaitsWhileTheWordsAreToldIsRefused) {
   const std::array<int, 3> early{say("arm"), say("arm"), say("reset")};
   show(State::kReady);
-  desk->obey(0);
+  request_handler->obey(0);
   for (const int one : early)
     EXPECT_NE(hear(one).sentence.find("came before it was ready"), std::string::npos);
   EXPECT_TRUE(edges.empty()) << "queued";
   EXPECT_EQ(requests.refused.load(), 3u);
 }
 
-TEST_F(Desk, ResetsAStopAloneAndTheWordsComeAgainBeforeTheNextArming) {
+TEST_F(RequestHandler, ResetsAStopAloneAndTheWordsComeAgainBeforeTheNextArming) {
   show(State::kReady);
   EXPECT_EQ(refusal("reset"), "puppet: not reset: it is ready, not stopped");
   show(State::kArmed);
@@ -139,14 +139,14 @@ TEST_F(Desk, ResetsAStopAloneAndTheWordsComeAgainBeforeTheNextArming) {
   EXPECT_EQ(edges.back(), "arm");
 }
 
-TEST_F(Desk, WhatTheLoopRefusesIsTheAnswer) {
+TEST_F(RequestHandler, WhatTheLoopRefusesIsTheAnswer) {
   refuses = true;
   show(State::kReady);
   EXPECT_NE(refusal("arm").find("puppet: not armed: no power"), std::string::npos);
   EXPECT_EQ(pauses, 1) << "the echo ends the wait";
 }
 
-TEST_F(Desk, ALoopThatDoesNotAnswerIsNotAskedLater) {
+TEST_F(RequestHandler, ALoopThatDoesNotAnswerIsNotAskedLater) {
   stands = true;
   show(State::kReady);
   EXPECT_NE(refusal("arm").find("not armed: the loop gives no answer"), std::string::npos);
@@ -154,9 +154,9 @@ TEST_F(Desk, ALoopThatDoesNotAnswerIsNotAskedLater) {
   EXPECT_LT(pauses, 500) << "of 1 ms; five requests in a row stay below WatchdogSec";
 }
 
-TEST_F(Desk, ARequestThatWasDoneBeforeItWasTakenBackIsToldAsDone) {
+TEST_F(RequestHandler, ARequestThatWasDoneBeforeItWasTakenBackIsToldAsDone) {
   std::uint32_t taken = 0;  // by a tick that ends after the desk has given up
-  desk = make_desk(view, [&] {
+  request_handler = make_desk(view, [&] {
     const std::uint32_t asked = requests.asked.load();
     if ((asked & 3U) != 0) taken = asked;
     if ((asked & 3U) == 0) requests.echo(taken, true);
@@ -166,9 +166,9 @@ TEST_F(Desk, ARequestThatWasDoneBeforeItWasTakenBackIsToldAsDone) {
   EXPECT_EQ(requests.asked.load() & 3U, 0U);
 }
 
-TEST_F(Desk, ADeviceThatArmsItselfAtTheStartWaitsForAPersonAfterAStop) {
+TEST_F(RequestHandler, ADeviceThatArmsItselfAtTheStartWaitsForAPersonAfterAStop) {
   OperatorView itself(device, lines, true);
-  desk = make_desk(itself, tick);
+  request_handler = make_desk(itself, tick);
   for (const State state : {State::kReady, State::kArmed, State::kStopped, State::kReady}) {
     const std::string words = show(state);
     EXPECT_EQ(words.find("ready, force is off") != std::string::npos,
@@ -178,7 +178,7 @@ TEST_F(Desk, ADeviceThatArmsItselfAtTheStartWaitsForAPersonAfterAStop) {
   EXPECT_EQ(itself.why_not_arm(), "");
 }
 
-TEST_F(Desk, DisarmsAtAnyTime) {
+TEST_F(RequestHandler, DisarmsAtAnyTime) {
   EXPECT_TRUE(ask("disarm").done);
   show(State::kReady);
   show(State::kArmed);
@@ -186,7 +186,7 @@ TEST_F(Desk, DisarmsAtAnyTime) {
   EXPECT_EQ(edges, (std::vector<std::string>{"disarm", "disarm"}));
 }
 
-TEST_F(Desk, ADisarmThatIsNotAnsweredStandsForTheNextTick) {
+TEST_F(RequestHandler, ADisarmThatIsNotAnsweredStandsForTheNextTick) {
   show(State::kArmed);
   stands = true;
   const Answer answer = ask("disarm");
@@ -195,14 +195,14 @@ TEST_F(Desk, ADisarmThatIsNotAnsweredStandsForTheNextTick) {
   EXPECT_EQ(static_cast<loop::Request>(requests.asked.load() & 3U), loop::Request::kDisarm);
 }
 
-TEST_F(Desk, AStopThatIsDisarmedStillHasToBeReset) {
+TEST_F(RequestHandler, AStopThatIsDisarmedStillHasToBeReset) {
   show(State::kStopped);
   EXPECT_EQ(ask("disarm").sentence, "puppet: no force; it has stopped: reset it, then arm it");
 }
 
-TEST_F(Desk, WhatWouldArmItselfWaitsForAPersonOnceItIsDisarmed) {
+TEST_F(RequestHandler, WhatWouldArmItselfWaitsForAPersonOnceItIsDisarmed) {
   OperatorView itself(device, lines, true);
-  desk = make_desk(itself, tick);
+  request_handler = make_desk(itself, tick);
   show(State::kReady);
   EXPECT_EQ(ask("arm").sentence, "puppet: not armed: it arms itself as soon as it has power");
   stands = true;
@@ -214,14 +214,14 @@ TEST_F(Desk, WhatWouldArmItselfWaitsForAPersonOnceItIsDisarmed) {
   EXPECT_TRUE(ask("arm").done);
 }
 
-TEST_F(Desk, StopsAtAnyTimeEvenInTheMomentOfTheWords) {
+TEST_F(RequestHandler, StopsAtAnyTimeEvenInTheMomentOfTheWords) {
   const int fd = say("stop");
   show(State::kReady);
   EXPECT_TRUE(hear(fd).done);
   EXPECT_TRUE(requests.stop.load());
 }
 
-TEST_F(Desk, ToldOfItsStateAndOfWordsThatItDoesNotKnow) {
+TEST_F(RequestHandler, ToldOfItsStateAndOfWordsThatItDoesNotKnow) {
   frame.force_N[0] = 3.0F, frame.force_N[1] = 4.0F;
   show(State::kArmed);
   EXPECT_EQ(ask("status").sentence, "puppet: armed, 5.000 N");
@@ -233,13 +233,13 @@ TEST_F(Desk, ToldOfItsStateAndOfWordsThatItDoesNotKnow) {
   EXPECT_TRUE(edges.empty());
 }
 
-TEST_F(Desk, ASignalToEndIsHeardBesideARequest) {
+TEST_F(RequestHandler, ASignalToEndIsHeardBesideARequest) {
   show(State::kReady);
   const int fd = say("status");
   raise(SIGTERM);
-  desk->obey(1'000'000'000);
+  request_handler->obey(1'000'000'000);
   EXPECT_TRUE(hear(fd).done);
   EXPECT_TRUE(requests.stop.load());
 }
 
-}  // namespace tact::firmware::console::operator_desk_test
+}  // namespace tact::firmware::console::request_handler_test

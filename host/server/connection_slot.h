@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// seat.h - what every connection holds while it lasts, whatever it becomes: a request, a download,
+// connection_slot.h - what every connection holds while it lasts, whatever it becomes: a request, a download,
 // a WebSocket. The server counts the copies and lets in no more than kMaxConnections.
 #pragma once
 
@@ -7,7 +7,7 @@
 
 namespace tact::host::server {
 
-using Seat = std::shared_ptr<const void>;
+using ConnectionSlot = std::shared_ptr<const void>;
 
 constexpr long kMaxConnections = 64;
 

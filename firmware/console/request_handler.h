@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// operator_desk.h - a person asks, the loop does it or not, and the person hears which.
+// request_handler.h - a person asks, the loop does it or not, and the person hears which.
 //
 // Arming is an act, made once, when it may be: after the words "ready, force is off" were told. A
 // request that comes at another time is refused with the reason, and forgotten.
@@ -20,12 +20,12 @@ namespace tact::firmware::console {
 /// 1 ms.
 void pause_a_moment();
 
-class OperatorDesk {
+class RequestHandler {
  public:
   /// `control`: none, and nobody can ask. `pause` lets the loop have a moment to answer.
-  OperatorDesk(const OperatorSignals& signals, loop::Requests& requests, OperatorView& view,
-               std::function<telemetry::Frame()> newest, ControlSocket* control = nullptr,
-               std::function<void()> pause = pause_a_moment)
+  RequestHandler(const OperatorSignals& signals, loop::Requests& requests, OperatorView& view,
+                 std::function<telemetry::Frame()> newest, ControlSocket* control = nullptr,
+                 std::function<void()> pause = pause_a_moment)
       : signals_(signals),
         requests_(requests),
         view_(view),

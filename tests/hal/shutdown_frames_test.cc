@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hal/last_words.h"
+#include "hal/shutdown_frames.h"
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>
@@ -11,9 +11,9 @@
 
 #include "tests/support/no_alloc.h"
 
-namespace tact::hal::last_words_test {
+namespace tact::hal::shutdown_frames_test {
 
-using Bytes = LastWords::Bytes;
+using Bytes = ShutdownFrames::Bytes;
 
 struct Ends {
   Ends() {
@@ -33,16 +33,16 @@ struct Ends {
   int fd[2] = {-1, -1};
 };
 
-LastWords three_words(int fd) {
-  LastWords words{.fd = fd};
+ShutdownFrames three_words(int fd) {
+  ShutdownFrames words{.fd = fd};
   EXPECT_TRUE(words.add_step(std::array{Bytes{1}, Bytes{2}}));
   EXPECT_TRUE(words.add_step(std::array<Bytes, 1>{Bytes{3}}));
   return words;
 }
 
-TEST(LastWords, AStepLeavesAloneAndAllLeaveInOrderWithoutHeap) {
+TEST(ShutdownFrames, AStepLeavesAloneAndAllLeaveInOrderWithoutHeap) {
   const Ends ends;
-  const LastWords words = three_words(ends.fd[0]);
+  const ShutdownFrames words = three_words(ends.fd[0]);
   const tests::NoAlloc guard;
   EXPECT_EQ(say_step(words, 0), 0);
   EXPECT_EQ(guard.calls(), 0u);
@@ -52,31 +52,31 @@ TEST(LastWords, AStepLeavesAloneAndAllLeaveInOrderWithoutHeap) {
   EXPECT_EQ(say_step(words, 7), 0) << "nothing to say";
 }
 
-TEST(LastWords, AWordOfACanFdFrameLeavesWholeBesideShortOnes) {
+TEST(ShutdownFrames, AWordOfACanFdFrameLeavesWholeBesideShortOnes) {
   const Ends ends;
-  LastWords words{.fd = ends.fd[0]};
-  LastWords::LongBytes one{};
+  ShutdownFrames words{.fd = ends.fd[0]};
+  ShutdownFrames::LongBytes one{};
   one.front() = 7, one.back() = 9;
-  EXPECT_TRUE(words.add_step(std::array<LastWords::LongBytes, 1>{one}));
+  EXPECT_TRUE(words.add_step(std::array<ShutdownFrames::LongBytes, 1>{one}));
   EXPECT_TRUE(words.add_step(std::array<Bytes, 1>{Bytes{1}}));
   EXPECT_EQ(say_all(words), 0);
-  LastWords::LongBytes heard{};
+  ShutdownFrames::LongBytes heard{};
   ASSERT_EQ(recv(ends.fd[1], heard.data(), heard.size(), MSG_DONTWAIT), 72);
   EXPECT_EQ(heard, one);
   EXPECT_EQ(ends.heard(), (std::vector<Bytes>{{1}}));
 }
 
-TEST(LastWords, WhatDoesNotFitIsRefused) {
-  LastWords words;
-  const std::vector<Bytes> many(LastWords::kMax);
+TEST(ShutdownFrames, WhatDoesNotFitIsRefused) {
+  ShutdownFrames words;
+  const std::vector<Bytes> many(ShutdownFrames::kMax);
   EXPECT_TRUE(words.add_step(many));
   EXPECT_FALSE(words.add_step(std::array<Bytes, 1>{}));
-  EXPECT_EQ(words.count, LastWords::kMax);
+  EXPECT_EQ(words.count, ShutdownFrames::kMax);
 }
 
-TEST(LastWords, AQueueThatIsFullForAMomentIsTriedAgain) {
+TEST(ShutdownFrames, AQueueThatIsFullForAMomentIsTriedAgain) {
   const Ends ends;
-  const LastWords words = three_words(ends.fd[0]);
+  const ShutdownFrames words = three_words(ends.fd[0]);
   const Bytes other{9};
   while (send(ends.fd[0], other.data(), other.size(), MSG_DONTWAIT) == 16) {
   }
@@ -88,14 +88,14 @@ TEST(LastWords, AQueueThatIsFullForAMomentIsTriedAgain) {
   EXPECT_EQ(say_step(words, 0), 0);
 }
 
-TEST(LastWords, ADeviceThatIsGoneIsAnErrorAndNoMore) {
+TEST(ShutdownFrames, ADeviceThatIsGoneIsAnErrorAndNoMore) {
   Ends ends;
-  LastWords words = three_words(ends.fd[0]);
+  ShutdownFrames words = three_words(ends.fd[0]);
   close(ends.fd[1]);
   ends.fd[1] = -1;
   EXPECT_NE(say_all(words), 0);
-  words.carrier = LastWords::Carrier::kUsbBulk;
+  words.carrier = ShutdownFrames::Carrier::kUsbBulk;
   EXPECT_EQ(say_all(words), ENOTTY) << "no USB device at all";
 }
 
-}  // namespace tact::hal::last_words_test
+}  // namespace tact::hal::shutdown_frames_test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/server/replay_wish.h"
+#include "host/server/replay_request.h"
 
 #include <cmath>
 #include <cstdint>
@@ -37,22 +37,22 @@ bool take(const nlohmann::json& value, std::optional<int>& into) {
 
 }  // namespace
 
-std::optional<ReplayWish> parse_replay(const std::string& text) {
+std::optional<ReplayRequest> parse_replay(const std::string& text) {
   const nlohmann::json replay = object_in(text, "replay");
   if (replay.is_null()) return std::nullopt;
-  ReplayWish wish;
+  ReplayRequest request;
   for (const auto& [key, value] : replay.items()) {
-    const bool good = key == "playing"       ? take(value, wish.playing)
-                      : key == "at_s"        ? take(value, 0.0, kLongest_s, wish.at_s)
-                      : key == "step_frames" ? take(value, wish.step_frames)
+    const bool good = key == "playing"       ? take(value, request.playing)
+                      : key == "at_s"        ? take(value, 0.0, kLongest_s, request.at_s)
+                      : key == "step_frames" ? take(value, request.step_frames)
                       : key == "speed_ratio"
-                          ? take(value, 1.0 / kFastest_ratio, kFastest_ratio, wish.speed_ratio)
-                      : key == "repeats" ? take(value, wish.repeats)
+                          ? take(value, 1.0 / kFastest_ratio, kFastest_ratio, request.speed_ratio)
+                      : key == "repeats" ? take(value, request.repeats)
                                          : false;
     // One wrong key refuses all: half a wish would play what nobody asked for.
     if (!good) return std::nullopt;
   }
-  return wish;
+  return request;
 }
 
 }  // namespace tact::host::server

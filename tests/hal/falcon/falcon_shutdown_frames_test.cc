@@ -4,18 +4,18 @@
 #include "hal/falcon/falcon_boot.h"
 #include "tests/hal/falcon/falcon_bench.h"
 
-namespace tact::tests::falcon_last_words_test {
+namespace tact::tests::falcon_shutdown_frames_test {
 
-TEST(FalconLastWords, AreZeroWordsOverTheOpenDescriptorAndNoMore) {
+TEST(FalconShutdownFrames, AreZeroWordsOverTheOpenDescriptorAndNoMore) {
   FalconBench bench;
   bench.pipe->fd = 42;
   bench.home();
   bench.run(3, {0.0, 0.0, 4.0});
   ASSERT_NE(bench.words(), falcon::FalconWords{});
-  const auto words = bench.device.last_words();
+  const auto words = bench.device.shutdown_frames();
   ASSERT_TRUE(words);
   EXPECT_EQ(words->fd, 42);
-  EXPECT_EQ(words->carrier, LastWords::Carrier::kUsbBulk);
+  EXPECT_EQ(words->carrier, ShutdownFrames::Carrier::kUsbBulk);
   EXPECT_EQ(words->endpoint, falcon::kFalconEndpointOut);
   ASSERT_GE(words->count, 2u) << "nobody sees whether one has come";
   for (std::size_t i = 0; i < words->count; ++i) {
@@ -26,9 +26,9 @@ TEST(FalconLastWords, AreZeroWordsOverTheOpenDescriptorAndNoMore) {
   }
 }
 
-TEST(FalconLastWords, WithoutADescriptorThereAreNone) {
+TEST(FalconShutdownFrames, WithoutADescriptorThereAreNone) {
   FalconBench bench;
-  EXPECT_FALSE(bench.device.last_words());
+  EXPECT_FALSE(bench.device.shutdown_frames());
 }
 
-}  // namespace tact::tests::falcon_last_words_test
+}  // namespace tact::tests::falcon_shutdown_frames_test

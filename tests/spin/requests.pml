@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// desk.pml - the operator's desk (firmware/console/operator_desk.cc) as Spin sees it, beside a loop.
+// requests.pml - the operator's desk (firmware/console/request_handler.cc) as Spin sees it, beside a loop.
 //
 // A person asks at any moment, and what was asked waits until the desk takes it. The loop changes
 // its state at any moment, so what the desk was shown may be over. A request is `news` when it was

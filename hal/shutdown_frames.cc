@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hal/last_words.h"
+#include "hal/shutdown_frames.h"
 
 #include <linux/usbdevice_fs.h>
 #include <sys/ioctl.h>
@@ -22,11 +22,11 @@ void wait_ns(long pause_ns) {
   clock_nanosleep(CLOCK_MONOTONIC, 0, &pause, nullptr);
 }
 
-int send_datagrams(const LastWords& words, std::size_t first, std::size_t last) {
+int send_datagrams(const ShutdownFrames& words, std::size_t first, std::size_t last) {
   // Copies on the stack: an iovec takes no const, and the guardian uses no heap.
-  std::array<LastWords::LongBytes, LastWords::kMax> bytes{};
-  std::array<iovec, LastWords::kMax> place{};
-  std::array<mmsghdr, LastWords::kMax> message{};
+  std::array<ShutdownFrames::LongBytes, ShutdownFrames::kMax> bytes{};
+  std::array<iovec, ShutdownFrames::kMax> place{};
+  std::array<mmsghdr, ShutdownFrames::kMax> message{};
   for (std::size_t i = first; i < last; ++i) {
     bytes[i] = words.word[i];
     place[i] = {.iov_base = bytes[i].data(), .iov_len = words.bytes_of(i).size()};
@@ -40,9 +40,9 @@ int send_datagrams(const LastWords& words, std::size_t first, std::size_t last) 
   return sent < 0 ? errno : ENOBUFS;
 }
 
-int send_bulk(const LastWords& words, std::size_t first, std::size_t last) {
+int send_bulk(const ShutdownFrames& words, std::size_t first, std::size_t last) {
   for (std::size_t i = first; i < last; ++i) {
-    LastWords::LongBytes bytes = words.word[i];
+    ShutdownFrames::LongBytes bytes = words.word[i];
     usbdevfs_bulktransfer transfer{};
     transfer.ep = words.endpoint;
     transfer.len = static_cast<unsigned>(words.bytes_of(i).size());
@@ -59,8 +59,8 @@ int send_bulk(const LastWords& words, std::size_t first, std::size_t last) {
 }
 
 template <class Bytes>
-bool add(LastWords& to, std::span<const Bytes> words) {
-  if (to.count + words.size() > LastWords::kMax) return false;
+bool add(ShutdownFrames& to, std::span<const Bytes> words) {
+  if (to.count + words.size() > ShutdownFrames::kMax) return false;
   for (const Bytes& one : words) {
     to.step[to.count] = static_cast<std::uint8_t>(to.steps);
     to.size[to.count] = static_cast<std::uint8_t>(one.size());
@@ -72,20 +72,20 @@ bool add(LastWords& to, std::span<const Bytes> words) {
 
 }  // namespace
 
-bool LastWords::add_step(std::span<const Bytes> words) { return add(*this, words); }
-bool LastWords::add_step(std::span<const LongBytes> words) { return add(*this, words); }
+bool ShutdownFrames::add_step(std::span<const Bytes> words) { return add(*this, words); }
+bool ShutdownFrames::add_step(std::span<const LongBytes> words) { return add(*this, words); }
 
-int say_step(const LastWords& words, std::uint32_t step) {
+int say_step(const ShutdownFrames& words, std::uint32_t step) {
   const auto all = std::span(words.step).first(std::min<std::size_t>(words.count, words.kMax));
   const auto of_step = std::ranges::equal_range(all, step);
   const auto first = static_cast<std::size_t>(of_step.begin() - all.begin());
   const auto last = first + of_step.size();
   if (first == last) return 0;
-  return words.carrier == LastWords::Carrier::kUsbBulk ? send_bulk(words, first, last)
-                                                       : send_datagrams(words, first, last);
+  return words.carrier == ShutdownFrames::Carrier::kUsbBulk ? send_bulk(words, first, last)
+                                                            : send_datagrams(words, first, last);
 }
 
-int say_all(const LastWords& words) {
+int say_all(const ShutdownFrames& words) {
   int first_error = 0;
   for (std::uint32_t step = 0; step < words.steps; ++step) {
     if (step > 0) wait_ns(kBetweenSteps_ns);

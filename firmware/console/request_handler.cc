@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware/console/operator_desk.h"
+#include "firmware/console/request_handler.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -23,7 +23,7 @@ void pause_a_moment() {
   nanosleep(&kMoment, nullptr);
 }
 
-void OperatorDesk::obey(std::int64_t longest_ns) {
+void RequestHandler::obey(std::int64_t longest_ns) {
   const bool ends = signals_.wait_for_end(longest_ns, control_ != nullptr ? control_->fd() : -1);
   // Taken before show(): what was asked before the words
   // were told must not count as an answer to them.
@@ -33,18 +33,18 @@ void OperatorDesk::obey(std::int64_t longest_ns) {
   if (asked) asked->answer(do_word(asked->word(), just_reported));
 }
 
-std::optional<ControlRequest> OperatorDesk::next_request() const {
+std::optional<ControlRequest> RequestHandler::next_request() const {
   return control_ != nullptr ? control_->next() : std::nullopt;
 }
 
 // A request that came before the words, and be it in the moment before, is no answer to them.
-bool OperatorDesk::show() {
+bool RequestHandler::show() {
   if (!view_.show(newest_())) return false;
   while (const auto early = next_request()) early->answer(do_word(early->word(), true));
   return true;
 }
 
-Answer OperatorDesk::do_word(const std::string& word, bool too_early) {
+Answer RequestHandler::do_word(const std::string& word, bool too_early) {
   if (word == "arm") return arm(too_early);
   if (word == "reset") return reset(too_early);
   if (word == "disarm") return disarm();
@@ -53,7 +53,7 @@ Answer OperatorDesk::do_word(const std::string& word, bool too_early) {
   return {.done = false, .sentence = "arm, disarm, reset, stop and status are known, nothing else"};
 }
 
-Answer OperatorDesk::arm(bool too_early) {
+Answer RequestHandler::arm(bool too_early) {
   if (too_early) return refuse("armed", kTooEarly);
   if (const std::string why = view_.why_not_arm(); !why.empty()) return refuse("armed", why);
   const auto armed = ask_loop(loop::Request::kArm);
@@ -62,7 +62,7 @@ Answer OperatorDesk::arm(bool too_early) {
                   "no power, or no good sample in that moment; look, and arm again");
 }
 
-Answer OperatorDesk::reset(bool too_early) {
+Answer RequestHandler::reset(bool too_early) {
   if (too_early) return refuse("reset", kTooEarly);
   if (const std::string why = view_.why_not_reset(); !why.empty()) return refuse("reset", why);
   const auto ready = ask_loop(loop::Request::kReset);
@@ -71,7 +71,7 @@ Answer OperatorDesk::reset(bool too_early) {
 }
 
 // Force goes away by it: never too early, and asked of the loop whatever was shown last.
-Answer OperatorDesk::disarm() {
+Answer RequestHandler::disarm() {
   // Not taken back: a loop that goes on later takes the force away then.
   const auto off = wait_for(requests_.ask(loop::Request::kDisarm));
   if (!off)
@@ -88,7 +88,7 @@ Answer OperatorDesk::disarm() {
 
 // A loop that does not tick by then shall not do it later: the request is taken back. What a tick
 // had taken by then may be done all the same.
-std::optional<bool> OperatorDesk::ask_loop(loop::Request request) {
+std::optional<bool> RequestHandler::ask_loop(loop::Request request) {
   const std::uint32_t number = requests_.ask(request);
   if (const auto answer = wait_for(number)) return answer;
   requests_.take_back();
@@ -96,7 +96,7 @@ std::optional<bool> OperatorDesk::ask_loop(loop::Request request) {
 }
 
 // For the echo of a request, at most kMaxPauses.
-std::optional<bool> OperatorDesk::wait_for(std::uint32_t number) {
+std::optional<bool> RequestHandler::wait_for(std::uint32_t number) {
   for (int i = 0; i < kMaxPauses; ++i) {
     if (const auto answer = requests_.answer(number)) return answer;
     pause_();
@@ -104,20 +104,20 @@ std::optional<bool> OperatorDesk::wait_for(std::uint32_t number) {
   return std::nullopt;
 }
 
-Answer OperatorDesk::not_done(const char* what, const std::optional<bool>& answer,
-                              const char* why) const {
+Answer RequestHandler::not_done(const char* what, const std::optional<bool>& answer,
+                                const char* why) const {
   const auto words = fmt::format("not {}: {}", what, answer ? why : "the loop gives no answer");
   view_.report(words);
   return {.done = false, .sentence = fmt::format("{}: {}", view_.device(), words)};
 }
 
-Answer OperatorDesk::stop() {
+Answer RequestHandler::stop() {
   // The one request that is never refused.
   requests_.stop.store(true);
   return {.done = true, .sentence = view_.device() + ": force to zero, then tactd ends"};
 }
 
-Answer OperatorDesk::refuse(const char* what, const std::string& why) const {
+Answer RequestHandler::refuse(const char* what, const std::string& why) const {
   // Counted with those that the loop refuses: the report has one number.
   requests_.refused.fetch_add(1);
   view_.report(fmt::format("not {}: {}", what, why));

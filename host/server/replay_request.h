@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// replay_wish.h - what a page may ask of a recording that is shown: where, whether and how fast it
+// replay_request.h - what a page may ask of a recording that is shown: where, whether and how fast it
 // plays.
 //
 //     {"replay": {"playing": true, "at_s": 1.5, "step_frames": -1,
@@ -15,7 +15,7 @@
 
 namespace tact::host::server {
 
-struct ReplayWish {
+struct ReplayRequest {
   std::optional<bool> playing;
   std::optional<double> at_s;         // since the first frame
   std::optional<int> step_frames;     // from the frame that is shown; the replay then rests
@@ -23,9 +23,9 @@ struct ReplayWish {
   std::optional<bool> repeats;        // at its end it begins anew
 };
 
-using Steer = std::function<void(const ReplayWish&)>;
+using Steer = std::function<void(const ReplayRequest&)>;
 
 /// None if the message has no "replay", or one that is not sensible.
-std::optional<ReplayWish> parse_replay(const std::string& text);
+std::optional<ReplayRequest> parse_replay(const std::string& text);
 
 }  // namespace tact::host::server

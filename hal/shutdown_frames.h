@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// last_words.h - what takes the force away when the program that drives a device has died.
+// shutdown_frames.h - what takes the force away when the program that drives a device has died.
 //
 // A device gives them when it is opened: the messages of its own stop(), zero force first and then
 // power off, as finished bytes, and the open descriptor that carries them. So a process that knows
@@ -18,7 +18,7 @@
 
 namespace tact::hal {
 
-struct LastWords {
+struct ShutdownFrames {
   static constexpr std::size_t kMax = 32;  // CiA 402 drives need 12
   enum class Carrier : std::uint8_t { kDatagrams, kUsbBulk };
   using Bytes = std::array<std::uint8_t, 16>;
@@ -43,10 +43,10 @@ struct LastWords {
 
 /// The words of one step, over `words.fd`. 0: all are with the kernel; else an errno. Neither heap
 /// nor lock.
-int say_step(const LastWords& words, std::uint32_t step);
+int say_step(const ShutdownFrames& words, std::uint32_t step);
 /// All of them: zero force at once, the last after `steps` ms and what a full queue takes, 2 ms a
 /// step (22 ms where a USB device does not answer). 0, or the errno of the first step that a device
 /// did not take.
-int say_all(const LastWords& words);
+int say_all(const ShutdownFrames& words);
 
 }  // namespace tact::hal
