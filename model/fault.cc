@@ -63,7 +63,7 @@ constexpr std::array kTable{
         "let go",
         "release the clutch: contact begins again where the tool is. If nobody presses it, its "
         "line "
-        "flaps: mend it (device.lines.clutch)"},
+        "flaps: repair it (device.lines.clutch)"},
     FaultEntry{Fault::kUnknown, "unknown", "a fault of another version of tact, or a broken record",
                "use programs and recordings of one build"},
     FaultEntry{Fault::kForceNotFinite, "force not finite", "the model produced NaN or infinity",
@@ -74,12 +74,10 @@ constexpr std::array kTable{
                "check power and cable, then start tactd again"},
     FaultEntry{Fault::kDeviceFailed, "device failed", "the device reported an error",
                "check power, cable and driver of the device, then start tactd again"},
-    FaultEntry{
-        Fault::kLoopLate, "loop late",
-        "the loop missed its deadlines: 20 periods at once or 20 ticks in a row, 100 in a "
-        "row without hard real time",
-        "choose a smaller law (tact-lab plan names one) or a lower rate_Hz, and free the loop's "
-        "core of other work, then start tactd again"},
+    FaultEntry{Fault::kLoopLate, "loop late",
+               "overrun: 20 periods skipped, or 20 late ticks in a row (100 on a stock kernel)",
+               "use a faster law (tact-lab plan names one) or a lower rate_Hz, and free the loop's "
+               "core of other work, then start tactd again"},
     FaultEntry{Fault::kLawBroke, "law broke",
                "the tissue's law blew up and gives no force that can be trusted",
                "make its step shorter or its springs softer (spring_patch.substeps, integrator), "
@@ -88,7 +86,7 @@ constexpr std::array kTable{
                "make sure that nobody is in danger, release the e-stop, then reset and arm"},
     FaultEntry{Fault::kLinesDiffer, "lines differ",
                "the two channels of the e-stop disagreed for more than 50 ms",
-               "a wire, contact or input is broken: mend it before anybody holds the device"},
+               "a wire, contact or input is broken: repair it before anybody holds the device"},
     FaultEntry{Fault::kLinesLost, "lines lost", "the GPIO chip of the safety lines does not answer",
                "check the chip and its driver (gpiodetect), then start tactd again"},
     FaultEntry{Fault::kDeadManReleased, "dead man released", "the dead-man switch is open",
@@ -100,9 +98,10 @@ constexpr std::array kTable{
     FaultEntry{
         Fault::kBusOff, "bus off", "the CAN controller is error passive, or has left the bus",
         "check bit rate, termination and cable, then start tactd again: it says how to set the "
-        "interface up anew"},
-    FaultEntry{Fault::kDriveFault, "drive fault", "a drive reported an error",
-               "the sentence beside it says which and why; mend the cause, then start tactd again"},
+        "interface up again"},
+    FaultEntry{
+        Fault::kDriveFault, "drive fault", "a drive reported an error",
+        "the sentence beside it says which and why; repair the cause, then start tactd again"},
     FaultEntry{Fault::kDriveSilent, "drive silent", "a drive's heartbeat is missing",
                "check its supply and its cable, then start tactd again"},
     FaultEntry{Fault::kDeviceUnplugged, "device unplugged", "the USB device is gone",
@@ -113,7 +112,7 @@ constexpr std::array kTable{
     FaultEntry{Fault::kHomingLost, "homing lost", "the device no longer knows where it is",
                "start tactd again and home it"},
     FaultEntry{Fault::kForceOff, "force off", "the device itself switched its forces off",
-               "the sentence beside it says why; mend the cause, then start tactd again"},
+               "the sentence beside it says why; repair the cause, then start tactd again"},
     FaultEntry{Fault::kPowerLost, "power lost",
                "the motors lost their power while armed: the enable line fell, as after a pause of "
                "the heartbeat, or the device switched them off",
@@ -138,7 +137,7 @@ constexpr std::array kTable{
                "find out who ended it (dmesg), then start tactd again"},
     FaultEntry{Fault::kGripFlaps, "grip flaps",
                "the line of the grip switch changed faster than a foot or a hand can",
-               "mend the switch or its wire (device.lines.grip), then reset and arm"},
+               "repair the switch or its wire (device.lines.grip), then reset and arm"},
     FaultEntry{Fault::kEnergyOverdrawn, "energy overdrawn",
                "the device gave more energy to the hand than limits.energy_J: the tool jumped, or "
                "the loop paused, under force",

@@ -3,7 +3,7 @@
 //
 // 0 is none; 1 to 99 is a limit that is acting while the loop goes on; 100 and above latch: force
 // goes to zero until an operator resets (supervisor.h) or, where its remedy says so, starts tactd
-// anew. Numbers are never reused.
+// again. Numbers are never reused.
 #pragma once
 
 #include <cstdint>

@@ -57,7 +57,7 @@ need_packages() {
     return 0
   fi
   tail -n 15 "$log" >&2
-  echo "tact: apt-get failed (whole log: $log); mend the package sources, then start again" >&2
+  echo "tact: apt-get failed (whole log: $log); repair the package sources, then start again" >&2
   return 2
 }
 

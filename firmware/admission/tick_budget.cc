@@ -22,7 +22,7 @@ using model::Vec3;
 constexpr std::size_t kTurnTicks = 500;  // one turn of the circle
 constexpr std::size_t kMaxTicks = 4000;  // enough for a p99.9
 constexpr std::int64_t kLongest_ns = 150'000'000;
-constexpr double kCircleEdges = 5.0;  // radius: further than a patch bears before it gathers anew
+constexpr double kCircleEdges = 5.0;  // radius: further than a patch bears before it gathers again
 
 /// One turn about the middle of a triangle, in its plane, each point brought to the surface.
 std::vector<model::contact::Site> circle(const model::mesh::SurfaceMesh& mesh,

@@ -40,7 +40,7 @@ bool OperatorView::show(const telemetry::Frame& newest) {
   const bool was_reported = reported_ready_;
   if (newest.state == loop::State::kArmed || newest.state == loop::State::kStopped)
     arms_itself_ = false;  // at the start alone
-  // Each time it becomes ready it is told anew: the words before are no leave to arm.
+  // Each time it becomes ready it is told again: the words before are no leave to arm.
   if (newest.state != loop::State::kReady) reported_ready_ = false;
   // Each fault once, when it latches.
   if (newest.fault != before_.fault && newest.fault != 0) {

@@ -95,7 +95,7 @@ void filter_calls(int device, int socket) {
   for (const int call : {SYS_futex, SYS_clock_nanosleep, SYS_exit_group, SYS_exit,
                          SYS_restart_syscall, SYS_rt_sigreturn})
     good = good && seccomp_rule_add(filter, SCMP_ACT_ALLOW, call, 0) == 0;
-  // Last words over CAN are sent by one call each step,
+  // Shutdown frames over CAN are sent by one call each step,
   // those over USB by transfers on its endpoint.
   good = good && allow_on(filter, SYS_sendmmsg, device) &&
          allow_ioctl(filter, device, USBDEVFS_BULK) &&

@@ -105,7 +105,7 @@ int run_replay(const model::scene::Scene& scene, const std::string& path) {
                   1);
 }
 
-/// The --set values of a recorded run: they replay it, unless some are given anew.
+/// The --set values of a recorded run: they replay it, unless some are given again.
 model::Result<std::vector<std::string>> recorded_overrides(const std::string& path) {
   const auto log = firmware::telemetry::TickLogReader::open(path);
   if (!log) return log.error();

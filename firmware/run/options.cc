@@ -40,7 +40,7 @@ void add_real_time(CLI::App& app, Options& o) {
   app.add_flag("--no-seccomp", o.no_seccomp, "let the loop make any system call")
       ->excludes(seccomp);
   app.add_flag("--trust-library", o.trust_library,
-               "load the vendor SDK of the scene whoever's file it is");
+               "load the vendor SDK without checking who owns the file");
 }
 
 // What is kept of a run, and a kept run again.

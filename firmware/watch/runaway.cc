@@ -36,7 +36,7 @@ std::optional<pc::Shortfall> lift_rttime_limit() {
   if (limit.rlim_max == RLIM_INFINITY) return std::nullopt;
   return pc::Shortfall{fmt::format(
       "the kernel kills a real-time thread of this session after {} us without a sleep "
-      "(RLIMIT_RTTIME), without a word; start tactd after ulimit -R unlimited, or mend rttime in "
+      "(RLIMIT_RTTIME), without a word; start tactd after ulimit -R unlimited, or repair rttime in "
       "/etc/security/limits.d/",
       limit.rlim_max)};
 }

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint8_t kind_of(CanCause cause) { return static_cast<std::uint8_t>(cause); }
 
-/// Full now, perhaps not in the next tick. Everything else does not mend itself.
+/// Full now, perhaps not in the next tick. Everything else does not repair itself.
 bool is_no_room(int error) RT_SAFE {
   return error == ENOBUFS || error == EAGAIN || error == EINTR || error == ENOMEM;
 }

@@ -60,7 +60,7 @@ class CanDevice final : public Device {
     Tool tool;
     std::int64_t stamp_ns = 0;
     const bool measured = fault() == Fault::kNone && measure(tool, stamp_ns);
-    judge_gap(measured);
+    check_gap(measured);
     if (fault() != Fault::kNone || !measured) return fault();
     sample = {.tool = tool, .stamp_ns = stamp_ns, .sequence = ++sequence_, .fresh = true};
     return Fault::kNone;
@@ -183,7 +183,7 @@ class CanDevice final : public Device {
     return !lost;
   }
 
-  void judge_gap(bool fresh) RT_SAFE {
+  void check_gap(bool fresh) RT_SAFE {
     gap_.step(fresh);
     if (!gap_.is_lost()) return;
     std::size_t oldest = 0;  // the drive that the words name
@@ -207,7 +207,7 @@ class CanDevice final : public Device {
     bus_->send();
   }
 
-  /// Off at once; on again from the beginning, so that each drive confirms its state anew.
+  /// Off at once; on again from the beginning, so that each drive confirms its state again.
   void follow_permission() RT_SAFE {
     if (!permitted_) loop_.power = CanPower::kOff;
     if (!permitted_ || loop_.power != CanPower::kOff) return;

@@ -11,7 +11,7 @@
 // has and none is older than one and a half periods: now and then a tick gets no frame of one axis
 // and the next gets two. Power does not matter. Its stamp is the arrival of the oldest. Without
 // samples the torques fade (sample_gap.h). A fault stops all three and latches; only opening the
-// device anew clears it.
+// device again clears it.
 //
 // A new kind of drive is its frames, its bring-up and a CanDrives; nothing of a device is in them.
 // All of it is there twice, for classic frames and for CAN FD (CanFdDrives).

@@ -4,7 +4,7 @@
 //
 //     1016:01 = host node << 16 | timeout, ms       0 instead of the timeout: nobody is missed
 //
-// A watch that is on cannot be written anew in some drives (abort 0x06040043): where "on" was
+// A watch that is on cannot be written again in some drives (abort 0x06040043): where "on" was
 // refused or left open, "off" comes first.
 //
 // One expedited SDO download in the loop's own batch, one answer; the next only when that came or

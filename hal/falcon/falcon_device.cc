@@ -65,7 +65,7 @@ Fault FalconDevice::read(Sample& sample, std::int64_t now_ns) RT_SAFE {
     sample.sequence = reply.sequence;
     sample.fresh = true;
   }
-  judge_silence(now_ns);
+  check_silence(now_ns);
   return fault_;
 }
 
@@ -126,7 +126,7 @@ bool FalconDevice::locate(const FalconReply& reply) RT_SAFE {
   return true;
 }
 
-void FalconDevice::judge_silence(std::int64_t now_ns) RT_SAFE {
+void FalconDevice::check_silence(std::int64_t now_ns) RT_SAFE {
   ++misses_;
   if (fault_ != Fault::kNone || misses_ < kSilentTicks) return;
   const FalconPipeHealth health = pipe_->health();

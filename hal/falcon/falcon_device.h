@@ -52,7 +52,7 @@ class FalconDevice final : public Device {
   bool take(const FalconReply& reply, std::int64_t now_ns) RT_SAFE;
   bool follow_homing(const FalconReport& report) RT_SAFE;
   bool locate(const FalconReply& reply) RT_SAFE;
-  void judge_silence(std::int64_t now_ns) RT_SAFE;
+  void check_silence(std::int64_t now_ns) RT_SAFE;
   void check_pipe() RT_SAFE;
   void latch(Fault fault, const FalconTrouble& trouble) RT_SAFE;
   FalconWords words_for(const Vec3& force_W_N) const RT_SAFE;

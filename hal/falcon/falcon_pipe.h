@@ -2,7 +2,7 @@
 // falcon_pipe.h - packets to and from a Falcon whose firmware runs, whoever carries them.
 //
 // One I/O thread waits for the bus and hands the newest report over; the loop never waits. A pipe
-// that has ended stays so: a device that comes back is opened anew. It brings no reports any more,
+// that has ended stays so: a device that comes back is opened again. It brings no reports any more,
 // but carries commands as long as the device is there: a Falcon may hold its last motor words for
 // ever, so somebody must be able to send it zeros. A stall of the command endpoint is cleared for
 // that (USB 2.0, 9.4.5).

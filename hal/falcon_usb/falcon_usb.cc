@@ -118,7 +118,7 @@ Result<libusb_context*> make_context() {
 }  // namespace
 
 Result<std::unique_ptr<FalconUsb>> FalconUsb::open(const std::string& bus_path) {
-  const auto context = make_context();  // a new one looks at the bus anew, also without udevd
+  const auto context = make_context();  // a new one looks at the bus again, also without udevd
   if (!context) return context.error();
   std::unique_ptr<FalconUsb> usb(new FalconUsb);
   usb->context_ = *context;

@@ -11,11 +11,11 @@ const char* words(LinesCause cause) {
       break;
     case LinesCause::kClutchFlaps:
       return "the clutch line changes faster than a foot can press, and counts as pressed: a wire "
-             "is loose or the switch is broken; mend it (device.lines.clutch), then it counts "
+             "is loose or the switch is broken; repair it (device.lines.clutch), then it counts "
              "again after a second";
     case LinesCause::kGripFlaps:
       return "the grip line changes faster than a foot can press: a wire is loose or the switch is "
-             "broken; mend it (device.lines.grip), then reset and arm";
+             "broken; repair it (device.lines.grip), then reset and arm";
     case LinesCause::kDeadManOpen:
       return "the dead-man switch is open; hold it, then reset and arm";
     case LinesCause::kOneOpen:
@@ -25,17 +25,17 @@ const char* words(LinesCause cause) {
       return "both channels of the e-stop are open: it is pressed, or has no supply; release it, "
              "then reset and arm";
     case LinesCause::kAStaysOpen:
-      return "channel A of the e-stop stays open while channel B is closed: mend the wire or the "
+      return "channel A of the e-stop stays open while channel B is closed: repair the wire or the "
              "contact of A, press and release the e-stop, then reset and arm";
     case LinesCause::kBStaysOpen:
-      return "channel B of the e-stop stays open while channel A is closed: mend the wire or the "
+      return "channel B of the e-stop stays open while channel A is closed: repair the wire or the "
              "contact of B, press and release the e-stop, then reset and arm";
     case LinesCause::kAStaysClosed:
       return "channel A of the e-stop did not open with channel B: A is welded or shorted, or a "
-             "wire of B broke; mend it, press and release the e-stop, then reset and arm";
+             "wire of B broke; repair it, press and release the e-stop, then reset and arm";
     case LinesCause::kBStaysClosed:
       return "channel B of the e-stop did not open with channel A: B is welded or shorted, or a "
-             "wire of A broke; mend it, press and release the e-stop, then reset and arm";
+             "wire of A broke; repair it, press and release the e-stop, then reset and arm";
     case LinesCause::kChipLost:
       return "the GPIO chip of device.lines does not answer any more: check it and its driver "
              "(gpiodetect lists the chips), then start tactd again";
@@ -104,7 +104,7 @@ Fault SafetyLogic::evaluate(const SafetyLevels& levels, std::int64_t now_ns) RT_
 
 SafetyOutputs SafetyLogic::drive(const LinesTick& tick) RT_SAFE {
   const bool good = fault_ == Fault::kNone && !tick.faulted;
-  // A heartbeat that paused starts its 100 ms anew: the relay beside it has dropped.
+  // A heartbeat that paused starts its 100 ms again: the relay beside it has dropped.
   if (!good || now_ns_ - last_toggle_ns_ > kHeartbeatPause_ns) beating_ = false;
   if (good && tick.healthy) {
     outputs_.heartbeat = !outputs_.heartbeat;

@@ -4,7 +4,7 @@
 //   e-stop, two normally closed channels:  high = closed = good; low = open, broken wire, no power
 //   one channel open                       -> kEmergencyStop, at once
 //   channels differ for more than 50 ms    -> kLinesDiffer, until both have been open together:
-//                                             only then a contact that sticks is mended
+//                                             only then a contact that sticks is repaired
 //   dead-man low                           -> kDeadManReleased, at once
 //   grip switch flaps (grip_switch.h)      -> kGripFlaps, until it has been quiet for a second
 //   clutch      counts after 10 ms, as the grip switch; one that flaps counts as pressed: no force,

@@ -228,7 +228,7 @@ std::optional<MoteusReply> decode_moteus(const can::CanFdFrame& frame, int node)
       take_values(reader, head, reply);
     } else if (head == kWriteError || head == kReadError) {
       reply.refused_register = static_cast<int>(reader.varuint() & 0xFFFFu);
-      reader.varuint();  // why: this register is all that can be mended
+      reader.varuint();  // why: this register is all that can be repaired
     } else if (head != kNothing) {
       return std::nullopt;  // of another protocol: where the next one begins is not known
     }

@@ -222,7 +222,7 @@ Result<std::unique_ptr<Device>> start_odrive_delta(std::unique_ptr<can::CanBus> 
         "device.can.homing \"index\" turns the motors before the loop runs, but "
         "device.lines.enable gives them power only then: use \"absolute\" or \"jig\""};
   }
-  const auto caution = judge_odrive_velocity_limit(settings);
+  const auto caution = check_odrive_velocity_limit(settings);
   if (!caution) return caution.error();
   const auto start = bring_up_odrives(*bus, settings.can, rate_Hz);
   if (!start) return start.error();

@@ -5,7 +5,7 @@
 //     zero torque     zero torque, closed loop asked for            torques   zero torque, idle
 //
 // The drives run on their own clocks (OD-3). A fault sends zero torque and Estop, which a drive
-// keeps until its errors are cleared; only opening the device anew does that. Without the loop the
+// keeps until its errors are cleared; only opening the device again does that. Without the loop the
 // drives' own watchdogs stop them (ODrive: axis.config.enable_watchdog, watchdog_timeout 0.005 to
 // 0.02 s). The device itself is in can_device.h.
 #pragma once

@@ -46,7 +46,7 @@ OdriveVelocityLimit odrive_velocity_limit(const model::DeltaSettings& delta,
           .least_turns_per_s = std::ceil(cut_turns_per_s + kHand_mps * turns_per_m)};
 }
 
-model::Result<std::string> judge_odrive_velocity_limit(const model::DeviceSettings& settings) {
+model::Result<std::string> check_odrive_velocity_limit(const model::DeviceSettings& settings) {
   const double own_turns_per_s = settings.can.max_velocity_turns_per_s;
   const bool own = own_turns_per_s > 0.0;
   const double limit_turns_per_s = own ? own_turns_per_s : kVendorsLimit_turns_per_s;

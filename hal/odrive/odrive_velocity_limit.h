@@ -28,6 +28,6 @@ OdriveVelocityLimit odrive_velocity_limit(const model::DeltaSettings& delta,
 
 /// What a person should know, with numbers and the remedy; empty: nothing. An error for a scene whose
 /// own limit may cut torque at rest.
-model::Result<std::string> judge_odrive_velocity_limit(const model::DeviceSettings& settings);
+model::Result<std::string> check_odrive_velocity_limit(const model::DeviceSettings& settings);
 
 }  // namespace tact::hal::odrive

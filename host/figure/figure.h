@@ -16,7 +16,7 @@
 // kFarthestPlace_m of the default. A bone without a tracker stays neutral; the head looks down at
 // the device, the feet stand. A body that is held, lost or back: bound_bone.h.
 //
-// Time is an argument, s, of any clock; a step back begins anew, binding and all. No number that is
+// Time is an argument, s, of any clock; a step back begins again, binding and all. No number that is
 // not finite comes out. Frame W, m. For display, not for the force loop. Source: CC-10,
 // TR-1 to TR-6.
 #pragma once
@@ -77,7 +77,7 @@ class Figure {
 
   /// One frame. `tool` is the tool's pose in W; one that is not finite leaves the last one.
   const FigurePose& update(double time_s, const Pose& tool, const TrackedOperator& bodies);
-  /// Another run of the device, maybe another tool: the clock begins anew, what is bound stays so.
+  /// Another run of the device, maybe another tool: the clock begins again, what is bound stays so.
   void go_on_with(const Eigen::Vector3d& tool_grip_m);
   const FigurePose& pose() const { return pose_; }
   const BodyPlan& plan() const { return plan_; }

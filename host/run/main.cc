@@ -50,7 +50,7 @@ void warn_of_silence(double silence_s) {
   warn(fmt::format("no news from tactd for {:.1f} s: its force is not known", silence_s));
 }
 
-/// A file name with broken UTF-8 is mended instead of throwing.
+/// A file name with broken UTF-8 is repaired instead of throwing.
 std::string to_text(const nlohmann::json& json) { return model::io::text_of(json); }
 
 /// The answers to wishes: lines of standard input, by the program that gave --scenes.

@@ -159,7 +159,7 @@ std::string scene_json(const record::Hello& hello) {
         {"tool", record::text_of(hello.tool_material)},
         {"pieces", pieces}}},
   };
-  // A name with broken UTF-8 is mended instead of throwing.
+  // A name with broken UTF-8 is repaired instead of throwing.
   return model::io::text_of(scene);
 }
 

@@ -68,7 +68,7 @@ HttpSession::HttpSession(beast::tcp_stream stream, ConnectionSlot slot, Site& si
     : stream_(std::move(stream)), slot_(std::move(slot)), site_(site) {}
 
 void HttpSession::read_next() {
-  // A parser reads one message; its limits have to be set anew.
+  // A parser reads one message; its limits have to be set again.
   parser_.emplace();
   parser_->header_limit(kMaxHeaderBytes);
   parser_->body_limit(kMaxBodyBytes);

@@ -57,7 +57,7 @@ std::string OperatorFigure::with(const record::Frame& frame,
                                  const figure::FigurePose* shown) {
   static const tracking::TrackedOperator kNobody{};
   const double time_s = static_cast<double>(frame.time_ns) * 1e-9;
-  // A recording's figure is told as it was shown, not posed anew.
+  // A recording's figure is told as it was shown, not posed again.
   reported_ = shown ? *shown : figure_.update(time_s, pose_of(frame), tracked ? *tracked : kNobody);
   const bool head_tracked =
       tracked && (*tracked)[tracking::BodyRole::kHead].state == tracking::BodyState::kTracked;

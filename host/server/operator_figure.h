@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // operator_figure.h - the operator's figure beside every frame: the tool from telemetry, the bodies
 // from a tracker or a recording, the hand at the handle of the tool's mesh. A recording that has
-// the figure itself is shown as it was. When tactd begins anew, what is bound stays bound.
+// the figure itself is shown as it was. When tactd begins again, what is bound stays bound.
 #pragma once
 
 #include <string>
@@ -18,7 +18,7 @@ class OperatorFigure final : public OverlaySource {
  public:
   explicit OperatorFigure(double height_m);
 
-  /// Where the right shoulder is while none is tracked, W, m. It begins the figure anew.
+  /// Where the right shoulder is while none is tracked, W, m. It begins the figure again.
   void put_shoulder_at(const Eigen::Vector3d& shoulder_m);
 
   nlohmann::json begin(const record::Hello& hello, const record::MeshBytes& mesh) override;

@@ -20,7 +20,7 @@ struct ReplayRequest {
   std::optional<double> at_s;         // since the first frame
   std::optional<int> step_frames;     // from the frame that is shown; the replay then rests
   std::optional<double> speed_ratio;  // 1: as it was; > 0
-  std::optional<bool> repeats;        // at its end it begins anew
+  std::optional<bool> repeats;        // at its end it begins again
 };
 
 using Steer = std::function<void(const ReplayRequest&)>;

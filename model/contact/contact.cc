@@ -101,7 +101,7 @@ void Contact::detect(const Tool& tool) RT_SAFE {
       sphere.centre_m = left > 1 ? sphere.centre_m + to_go_m / left : centre_m;
       step(scene_, organ(), sphere, to_go_m / left);
     }
-    if (sphere.contacts()) organ().move(sphere);
+    if (sphere.is_in_contact()) organ().move(sphere);
   }
 }
 
@@ -147,14 +147,14 @@ void Contact::report(Sphere& sphere, const Tool& tool, double way_m,
   sphere_contact = {};
   sphere_contact.state = sphere.state;
   if (sphere.state == ContactState::kInside) rendered.is_inside = true;
-  if (!sphere.contacts() && sphere.reported_N == Vec3{}) {
+  if (!sphere.is_in_contact() && sphere.reported_N == Vec3{}) {
     sphere.largest_N = sphere.lag_N = 0.0;
     sphere.was_held = false;
     return;
   }
   const OrganForce answer = ask(sphere);
   follow_force(sphere, answer.elastic_N, way_m);
-  if (!sphere.contacts() && sphere.reported_N != Vec3{}) sphere_contact.normal = last_normal;
+  if (!sphere.is_in_contact() && sphere.reported_N != Vec3{}) sphere_contact.normal = last_normal;
   sphere_contact.force_N = sphere.reported_N + resistance_N(sphere, answer.resistance_N);
   rendered.wrench.force_N += sphere_contact.force_N;
   rendered.wrench.torque_Nm += cross(sphere.centre_m - tool.position_m, sphere_contact.force_N);
@@ -200,7 +200,7 @@ bool Contact::release_first() RT_SAFE {
 
 // A place without an answer keeps its last force, and loses it in 0.1 s or one radius of way.
 OrganForce Contact::ask(Sphere& sphere) RT_SAFE {
-  if (!sphere.contacts()) return {};
+  if (!sphere.is_in_contact()) return {};
   SphereContact& sphere_contact = contact_[sphere.index];
   if (organ().is_solved())
     sphere.unsolved_ratio = 0.0;
@@ -233,7 +233,7 @@ void Contact::follow_force(Sphere& sphere, const Vec3& wanted_N, double way_m) R
   constexpr double kNoise_N = 1e-3;  // of a solution
   const Vec3 change_N = wanted_N - sphere.reported_N;
   const double length_N = norm(change_N);
-  sphere.largest_N = sphere.contacts() ? std::max(sphere.largest_N, norm(wanted_N)) : 0.0;
+  sphere.largest_N = sphere.is_in_contact() ? std::max(sphere.largest_N, norm(wanted_N)) : 0.0;
   // A contact that lets go loses its force in 0.1 s, faster where its law is steep.
   const double let_go_ratio = sphere.lets_go ? kLetGo_ratio * scene_.period_s / kLetGo_s : 0.0;
   const double smooth_N = kNoise_N + kSteepest_ratio * sphere.stiffest_N_per_m * way_m +

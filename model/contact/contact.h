@@ -15,10 +15,10 @@
 // A contact begins from outside only, and ends where the sphere is outside: on the side where it
 // went in or, beyond the law's range, on any.
 //
-// A change of state never adds energy. Slack takes up the depth that would come for free (letting
-// go over a bump or stiffer tissue, a nearest point that jumps, a contact that ends on another
-// side). It shrinks as the tool withdraws, and where a proxy that lagged comes nearer: the depth
-// stays.
+// A change of state never adds energy. A depth offset cancels penetration that no work has produced
+// (release over a bump or stiffer tissue, a nearest point that jumps, a contact that ends on
+// another side). The offset shrinks as the tool withdraws, and where a lagging proxy comes nearer:
+// the depth stays.
 #pragma once
 
 #include <array>
@@ -55,7 +55,7 @@ class Contact {
 
   /// Where the spheres meet the surface. The tool's way since the last call, `periods` ago, is
   /// followed as a straight line, period by period. What moves farther than reach_m, or than can be
-  /// followed, is lost: its contact ends, and it is found anew.
+  /// followed, is lost: its contact ends, and it is found again.
   void detect_contact(const Tool& tool, std::uint32_t periods = 1,
                       double reach_m = kAnywhere_m) RT_SAFE;
   /// What the tool feels there: states, laws, forces. Call after touch. A blade cuts only if it

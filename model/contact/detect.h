@@ -11,7 +11,7 @@
 //     touching        -> lets go     wholly outside, and either beyond its law or with nothing of
 //                                    the organ between it and its place: its depth shrinks to 0
 //     lets go         -> free
-//     touching        -> found anew  its place has no answer any more
+//     touching        -> found again  its place has no answer any more
 //
 // Closing and opening the grip lead from touching to held and back, a pull farther than the surface
 // from held to free (contact.h).

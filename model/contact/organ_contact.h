@@ -19,7 +19,7 @@ struct OrganForce {
   Vec3 resistance_N;  // LW-3, ML-9: by its movement, outside of the potential
 };
 
-/// What a step did to a sphere that touches: kLost is to be found anew.
+/// What a step did to a sphere that touches: kLost is to be found again.
 enum class Step : std::uint8_t { kTouches, kLeaves, kLost };
 
 class OrganContact {

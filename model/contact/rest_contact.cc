@@ -58,7 +58,7 @@ Step RestContact::step(Sphere& sphere, const Vec3& moved_m) RT_SAFE {
   if (s.is_held) return Step::kTouches;
   const PressingSphere& pressing = pressing_[sphere.index];
   if (sphere.lets_go && !(pressing.in.indentation_m > 0.0)) return Step::kLeaves;
-  // Slack takes up all of its depth: what it touches may be another part of the organ by now.
+  // The offset cancels all of its depth: the sphere may be at another part of the organ by now.
   const bool is_all_offset = s.depth_offset_m > 0.0 && !(pressing.depth_m > 0.0);
   return s.proxy.site().distance_m < sphere.radius_m && !is_all_offset ? Step::kTouches
                                                                        : Step::kLeaves;
@@ -96,7 +96,7 @@ void RestContact::move_to_proxy(std::size_t i) RT_SAFE {
   const Site& site = s.proxy.site();
   s.place = site.place;
   s.point_m = site.point_m;
-  // A press straight down turns nothing: axes that are not made anew do not drift.
+  // A press straight down turns nothing: axes that are not made again do not drift.
   if (site.normal == s.normal && s.axes.unit[0] != Vec3{}) return;
   s.normal = site.normal;
   s.axes = axes_of(s.normal, s.axes);
@@ -172,8 +172,8 @@ void RestContact::couple_new_spheres() RT_SAFE {
     }
 }
 
-// On the other's bulge the one that has just come would meet energy that nobody gave: that much is
-// slack. Of the two, only one presses yet.
+// A new contact on tissue displaced by its neighbour would gain energy: that depth is offset. Of the
+// two spheres only one presses so far.
 void RestContact::couple_pair(std::size_t i, std::size_t j) RT_SAFE {
   const SiteCoupling along = scene_.law->coupling(indentation(i), indentation(j),
                                                   norm(sphere_[i].centre_m - sphere_[j].centre_m));

@@ -62,7 +62,7 @@ struct Sphere {
   double stiffest_N_per_m = 0.0;  // of its law, when it touched last
   bool was_held = false;
 
-  bool contacts() const RT_SAFE {
+  bool is_in_contact() const RT_SAFE {
     return state == ContactState::kTouching || state == ContactState::kHeld;
   }
 };

@@ -20,7 +20,7 @@ void solve_factored(const StiffnessMatrix& l, double* x) {
   constexpr int kWidth = kLoadsAtOnce;
   using Loads = Eigen::Array<double, kWidth, 1>;
   const auto at = [x](std::int64_t row) { return Eigen::Map<Loads>(x + row * kWidth); };
-  // Own loops over L: Eigen would read it anew for each
+  // Own loops over L: Eigen would read it again for each
   // load, and it is what does not fit into a cache.
   const std::int32_t* start = l.outerIndexPtr();
   const std::int32_t* row = l.innerIndexPtr();

@@ -29,7 +29,7 @@ double delay_through_layer_s(const LayerDelays& delays, std::size_t layer) {
 }
 
 std::size_t layer_budget(const LayerDelays& delays) {
-  // DS-8  T_i < 1/rate. Each T_i is summed anew: 64 layers at most, at set-up.
+  // DS-8  T_i < 1/rate. Each T_i is summed again: 64 layers at most, at set-up.
   std::size_t count = 0;
   while (count < delays.layers &&
          delay_through_layer_s(delays, count + 1) < 1.0 / delays.refresh_rate_Hz)

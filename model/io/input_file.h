@@ -20,7 +20,7 @@ inline constexpr std::uintmax_t kMaxBytes = 1'000'000'000;
 /// A regular file, read from its start on.
 class InputFile {
  public:
-  /// An error is "PATH: what is wrong; CURE".
+  /// An error is "PATH: what is wrong; REMEDY".
   static Result<InputFile> open(const std::string& path, std::string_view remedy);
   InputFile(InputFile&& other) noexcept
       : path_(std::move(other.path_)),
@@ -48,7 +48,7 @@ class InputFile {
   std::uintmax_t size_bytes_ = 0;
 };
 
-/// All of a file; an error is "PATH: what is wrong; CURE".
+/// All of a file; an error is "PATH: what is wrong; REMEDY".
 Result<std::string> read_file(const std::string& path, std::string_view remedy = "check the name",
                               std::uintmax_t most_bytes = kMaxBytes);
 

@@ -131,12 +131,12 @@ class Parser {
     if (read && std::isfinite(number)) {
       fail(fmt::format("{} is beyond 1e12; scale the mesh down", quoted(word)));
     } else if (read) {
-      fail(
-          fmt::format("{} is not a finite number; mend the vertex and export again", quoted(word)));
+      fail(fmt::format("{} is not a finite number; repair the vertex and export again",
+                       quoted(word)));
     } else if (word.find(',') != std::string_view::npos) {
       fail(fmt::format("{} has a decimal comma; export with decimal points", quoted(word)));
     } else {
-      fail(fmt::format("{} is not a number; mend the vertex and export again", quoted(word)));
+      fail(fmt::format("{} is not a number; repair the vertex and export again", quoted(word)));
     }
     return false;
   }

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A file of another schema is measured anew, not translated.
+// A file of another schema is measured again, not translated.
 constexpr std::string_view kSchema = "tact-accuracy/2";
 
 /// What is no number becomes NaN, and is refused with the others.
@@ -131,7 +131,7 @@ Result<Accuracy> read_accuracy(const Scene& scene) {
   if (!fs::exists(path, failed))
     return Error{fmt::format("nobody has measured it; {}", remedy(scene))};
   // What is lacking is told from the outside inwards,
-  // each time with the commands that make it anew.
+  // each time with the commands that make it again.
   const auto text = io::read_file(path, remedy(scene));
   if (!text) return text.error();
   const auto parsed = io::parse_toml(*text, path);

@@ -36,7 +36,7 @@ class PatchMemory {
   /// u - z of a node.
   Vec3 flowed_m(std::size_t node, const Vec3& position_m) const RT_SAFE;
 
-  /// Before nodes are gathered anew: each is then kept from its old place, or forgotten.
+  /// Before nodes are gathered again: each is then kept from its old place, or forgotten.
   void set_aside() RT_SAFE { std::swap(stretched_, old_stretched_); }
   void keep(std::size_t node, std::size_t old_node) RT_SAFE;
   void forget(std::size_t node, const Vec3& rest_m) RT_SAFE;

@@ -176,7 +176,7 @@ contact::TangentCompliance SpringPatch::tangent_compliance(const contact::Place&
   return {.rest_m_per_N = {.xx = compliance_m_per_N, .yy = compliance_m_per_N}};
 }
 
-// A triangle near the rim, or out of the region, gathers anew, once for each triangle.
+// A triangle near the rim, or out of the region, gathers again, once for each triangle.
 void SpringPatch::follow_contacts() RT_SAFE {
   std::array<std::uint32_t, contact::kMaxSpheres> triangle{};
   std::size_t count = 0;

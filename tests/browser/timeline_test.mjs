@@ -149,7 +149,7 @@ async function check_mouse(page) {
   await page.click("#repeat");
   await page.keyboard.press("Space");
   check(
-    "or begins anew",
+    "or begins again",
     (await waits(page, () => (window.seen_start ||= Number(document.getElementById("seek").value) < 1))) &&
       (await waits(page, () => {
         // to its end, and there it is young again

@@ -16,7 +16,7 @@ TEST(Result, HasAValueOrASentence) {
   EXPECT_EQ(bad.error().sentence, "scene.toml:3: no number");
 }
 
-TEST(Result, WhoTakesTheValueOfAnErrorEndsTheProgramWithItsSentenceInEveryBuild) {
+TEST(Result, ReadingTheValueOfAnErrorAbortsWithItsMessage) {
   Result<std::string> bad = Error{"scene.toml:3: no number"};
   const auto ends = testing::KilledBySignal(SIGABRT);
   const char* sentence = "value\\(\\) of an error: scene.toml:3: no number";

@@ -23,7 +23,7 @@ class PhantomRun : public Tactd {
   }
 };
 
-TEST_F(PhantomRun, IsRefusedWhereItsMotorsBearLessForLongThanTheSceneSaysAndTheTimeIsTooShort) {
+TEST_F(PhantomRun, IsRefusedWhereItsContinuousForceIsBelowTheScenes) {
   const Outcome out = run("--check --set limits.thermal_time_s=0.1");
   EXPECT_EQ(out.status, 2) << out.output;
   EXPECT_TRUE(has(out,

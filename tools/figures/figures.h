@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// figures.h - the figures of the documents behind tact, drawn anew with its laws.
+// figures.h - the figures of the documents behind tact, drawn again with its laws.
 //
 // No copy holds a curve. Where a document prints numbers to a figure, they stand beside ours;
 // elsewhere the curves are ours alone, and the figure says so. Documents: [1] to [4] of

@@ -76,7 +76,7 @@ void add_run_options(CLI::App& app, Options& o) {
       ->check(tact::model::io::within(0, 1023))
       ->needs(back->check(tact::model::io::within(0, 1023)));
   app.add_flag("--trust-library", o.run.scene.trust_library,
-               "load the vendor SDK of the scene whoever's file it is");
+               "load the vendor SDK without checking who owns the file");
   app.add_flag("--arm", o.run.arm, "hardware: with force; without it the force is always zero");
   app.add_option("--out", o.out,
                  "folder for jitter.json, report.html, histogram.svg and .csv, and "

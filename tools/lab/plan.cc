@@ -171,7 +171,7 @@ void add_plan(program::Program& lab) {
   lab.add<Options>(
       "plan", "the fastest law and size within the scene's [tolerance] on this machine",
       R"(No more model than the scene needs. A reference is linear elastic: compliance is judged
-with large_strain off. Time is touch, feel and judge of the whole tool; shape is that
+with large_strain off. Time is detect, render and limit of the whole tool; shape is that
 under one sphere. The plan is kept in $XDG_CACHE_HOME/tact/plan (or ~/.cache); tactd
 reads it when the scene says law = "auto". When no law is good enough there is no plan.
 Example: tact-lab plan model/scenes/liver.toml --chart chart/chart.json)",

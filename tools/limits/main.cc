@@ -45,7 +45,7 @@ void add_options(CLI::App& app, Options& o) {
   app.add_flag("--consent-from-stdin", o.consent_from_stdin,
                "read the words of consent from a pipe: for a test bench that nobody holds");
   app.add_flag("--trust-library", o.scene.trust_library,
-               "load the vendor SDK of the scene whoever's file it is");
+               "load the vendor SDK without checking who owns the file");
   app.add_flag("--json", o.json, "print one JSON document");
 }
 

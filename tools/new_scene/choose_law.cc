@@ -7,7 +7,7 @@ namespace tact::tools::new_scene {
 
 std::optional<model::Error> choose_law(
     const OutputNames& files, const std::string& log_path,
-    const std::function<void(const char* step, const std::string& text)>& tell) {
+    const std::function<void(const char* step, const std::string& text)>& report) {
   report("reference", "one sphere, by CalculiX: minutes for thousands of vertices");
   auto answer = ask("tact-lab", {"reference", files.scene, "--out", files.reference}, log_path);
   if (!answer) return answer.error();

@@ -17,6 +17,6 @@ namespace tact::tools::new_scene {
 /// no law is good enough, Ctrl-C. Minutes to an hour.
 std::optional<model::Error> choose_law(
     const OutputNames& files, const std::string& log_path,
-    const std::function<void(const char* step, const std::string& text)>& tell);
+    const std::function<void(const char* step, const std::string& text)>& report);
 
 }  // namespace tact::tools::new_scene

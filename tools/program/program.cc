@@ -41,13 +41,13 @@ std::optional<int> Program::parse(int argc, char** argv) {
 CLI::App& Program::add_part(const std::string& name, const std::string& purpose,
                             const std::string& footer) {
   options_->require_subcommand(1);
-  options_->set_help_all_flag("--help-all", "this, and the options of every subcommand");
   CLI::App* part = options_->add_subcommand(name, purpose);
   part->footer(footer + kStatus);
   return *part;
 }
 
 int Program::run(int argc, char** argv) {
+  options_->set_help_all_flag("--help-all", "this, and the options of every subcommand");
   if (const auto status = parse(argc, argv)) return *status;
   const std::string part = options_->get_subcommands().front()->get_name();
   part_ = " " + part;

@@ -74,7 +74,7 @@ Result<ReferencePress> check(const model::contact::ContactScene& scene, const Wa
   model::contact::Contact contact(scene);
   double depth_m = -kAbove_m;
   Vec3 force_N;
-  const auto feel = [&](double at_m) {
+  const auto render_force = [&](double at_m) {
     contact.detect_contact(way.at(at_m));
     force_N = contact.render_force(way.at(at_m), false).wrench.force_N;
   };

@@ -22,7 +22,7 @@ bool has(const model::Error& error, const std::string& part) {
   return error.sentence.find(part) != std::string::npos;
 }
 
-TEST(StiffnessCheck, RefusesAStiffnessBeyondTheDevicesLimitAndSaysWhichKeyToChange) {
+TEST(StiffnessCheck, RefusesStiffnessBeyondTheDeviceLimitAndNamesTheKey) {
   model::scene::Scene scene = tests::make_plate_scene();
   const auto tissue = std::move(*model::scene::make_tissue(scene));
   // One sphere, 100 N/m along the surface: K < b / (T/2 + t_d) = 1000 b.
@@ -59,7 +59,7 @@ TEST(StiffnessCheck, NeverAsksForALargerNumberOfTheDevicesDamping) {
       << refused.error().sentence;
 }
 
-TEST(StiffnessCheck, NamesTheKeyToSetWhereTheTissueItselfIsTooStiffAlongItsSurface) {
+TEST(StiffnessCheck, NamesTheKeyWhereTheTissueIsTooStiffTangentially) {
   model::scene::Scene scene = tests::make_plate_scene();
   scene.contact.sliding_stiffness_N_per_m = 0.0;  // the tissue's own
   scene.elastic = {.youngs_modulus_Pa = 1e5, .poisson_ratio = 0.45};

@@ -23,25 +23,25 @@ namespace tact::firmware::console::request_handler_test {
 
 using loop::State;
 
-class RequestHandler : public testing::Test {
+class Requests : public testing::Test {
  protected:
   void SetUp() override {
     testing::internal::CaptureStderr();
     auto opened = ControlSocket::open(path);
     ASSERT_TRUE(opened) << opened.error().sentence;
     control = std::move(*opened);
-    request_handler = make_desk(view, tick);
+    request_handler = make_handler(view, tick);
   }
   void TearDown() override {
     testing::internal::GetCapturedStderr();
     control.reset();
     std::filesystem::remove(path);
   }
-  std::unique_ptr<RequestHandler> make_desk(OperatorView& of, std::function<void()> pause) {
+  std::unique_ptr<RequestHandler> make_handler(OperatorView& of, std::function<void()> pause) {
     return std::make_unique<RequestHandler>(
         signals, requests, of, [this] { return frame; }, control.get(), std::move(pause));
   }
-  /// A person who has said it; hear() is the answer, once the desk has been at work.
+  /// A person who has said it; hear() is the answer, once the handler has been at work.
   int say(const char* word) const {
     const auto address = model::io::socket_address(path);
     const int fd = ::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
@@ -99,7 +99,7 @@ class RequestHandler : public testing::Test {
   std::unique_ptr<RequestHandler> request_handler;
 };
 
-TEST_F(RequestHandler, ArmsOnlyAfterTheWordsThatItMayBe) {
+TEST_F(Requests, ArmsOnlyAfterTheWordsThatItMayBe) {
   EXPECT_EQ(refusal("arm"), "puppet: not armed: the device is not ready yet");
   show(State::kOff);
   EXPECT_NE(refusal("arm").find("not armed"), std::string::npos);
@@ -113,7 +113,7 @@ TEST_F(RequestHandler, ArmsOnlyAfterTheWordsThatItMayBe) {
   EXPECT_EQ(requests.refused.load(), 2u);
 }
 
-TEST_F(RequestHandler, ARequestThatWaitsWhileTheWordsAreToldIsRefused) {
+TEST_F(Requests, ARequestThatWaitsWhileTheWordsAreToldIsRefused) {
   const std::array<int, 3> early{say("arm"), say("arm"), say("reset")};
   show(State::kReady);
   request_handler->obey(0);
@@ -123,7 +123,7 @@ TEST_F(RequestHandler, ARequestThatWaitsWhileTheWordsAreToldIsRefused) {
   EXPECT_EQ(requests.refused.load(), 3u);
 }
 
-TEST_F(RequestHandler, ResetsAStopAloneAndTheWordsComeAgainBeforeTheNextArming) {
+TEST_F(Requests, ResetsAStopAloneAndTheWordsComeAgainBeforeTheNextArming) {
   show(State::kReady);
   EXPECT_EQ(refusal("reset"), "puppet: not reset: it is ready, not stopped");
   show(State::kArmed);
@@ -139,14 +139,14 @@ TEST_F(RequestHandler, ResetsAStopAloneAndTheWordsComeAgainBeforeTheNextArming) 
   EXPECT_EQ(edges.back(), "arm");
 }
 
-TEST_F(RequestHandler, WhatTheLoopRefusesIsTheAnswer) {
+TEST_F(Requests, WhatTheLoopRefusesIsTheAnswer) {
   refuses = true;
   show(State::kReady);
   EXPECT_NE(refusal("arm").find("puppet: not armed: no power"), std::string::npos);
   EXPECT_EQ(pauses, 1) << "the echo ends the wait";
 }
 
-TEST_F(RequestHandler, ALoopThatDoesNotAnswerIsNotAskedLater) {
+TEST_F(Requests, ALoopThatDoesNotAnswerIsNotAskedLater) {
   stands = true;
   show(State::kReady);
   EXPECT_NE(refusal("arm").find("not armed: the loop gives no answer"), std::string::npos);
@@ -154,9 +154,9 @@ TEST_F(RequestHandler, ALoopThatDoesNotAnswerIsNotAskedLater) {
   EXPECT_LT(pauses, 500) << "of 1 ms; five requests in a row stay below WatchdogSec";
 }
 
-TEST_F(RequestHandler, ARequestThatWasDoneBeforeItWasTakenBackIsToldAsDone) {
+TEST_F(Requests, ARequestThatWasDoneBeforeItWasTakenBackIsToldAsDone) {
   std::uint32_t taken = 0;  // by a tick that ends after the desk has given up
-  request_handler = make_desk(view, [&] {
+  request_handler = make_handler(view, [&] {
     const std::uint32_t asked = requests.asked.load();
     if ((asked & 3U) != 0) taken = asked;
     if ((asked & 3U) == 0) requests.echo(taken, true);
@@ -166,9 +166,9 @@ TEST_F(RequestHandler, ARequestThatWasDoneBeforeItWasTakenBackIsToldAsDone) {
   EXPECT_EQ(requests.asked.load() & 3U, 0U);
 }
 
-TEST_F(RequestHandler, ADeviceThatArmsItselfAtTheStartWaitsForAPersonAfterAStop) {
+TEST_F(Requests, ADeviceThatArmsItselfAtTheStartWaitsForAPersonAfterAStop) {
   OperatorView itself(device, lines, true);
-  request_handler = make_desk(itself, tick);
+  request_handler = make_handler(itself, tick);
   for (const State state : {State::kReady, State::kArmed, State::kStopped, State::kReady}) {
     const std::string words = show(state);
     EXPECT_EQ(words.find("ready, force is off") != std::string::npos,
@@ -178,7 +178,7 @@ TEST_F(RequestHandler, ADeviceThatArmsItselfAtTheStartWaitsForAPersonAfterAStop)
   EXPECT_EQ(itself.why_not_arm(), "");
 }
 
-TEST_F(RequestHandler, DisarmsAtAnyTime) {
+TEST_F(Requests, DisarmsAtAnyTime) {
   EXPECT_TRUE(ask("disarm").done);
   show(State::kReady);
   show(State::kArmed);
@@ -186,7 +186,7 @@ TEST_F(RequestHandler, DisarmsAtAnyTime) {
   EXPECT_EQ(edges, (std::vector<std::string>{"disarm", "disarm"}));
 }
 
-TEST_F(RequestHandler, ADisarmThatIsNotAnsweredStandsForTheNextTick) {
+TEST_F(Requests, ADisarmThatIsNotAnsweredStandsForTheNextTick) {
   show(State::kArmed);
   stands = true;
   const Answer answer = ask("disarm");
@@ -195,14 +195,14 @@ TEST_F(RequestHandler, ADisarmThatIsNotAnsweredStandsForTheNextTick) {
   EXPECT_EQ(static_cast<loop::Request>(requests.asked.load() & 3U), loop::Request::kDisarm);
 }
 
-TEST_F(RequestHandler, AStopThatIsDisarmedStillHasToBeReset) {
+TEST_F(Requests, AStopThatIsDisarmedStillHasToBeReset) {
   show(State::kStopped);
   EXPECT_EQ(ask("disarm").sentence, "puppet: no force; it has stopped: reset it, then arm it");
 }
 
-TEST_F(RequestHandler, WhatWouldArmItselfWaitsForAPersonOnceItIsDisarmed) {
+TEST_F(Requests, WhatWouldArmItselfWaitsForAPersonOnceItIsDisarmed) {
   OperatorView itself(device, lines, true);
-  request_handler = make_desk(itself, tick);
+  request_handler = make_handler(itself, tick);
   show(State::kReady);
   EXPECT_EQ(ask("arm").sentence, "puppet: not armed: it arms itself as soon as it has power");
   stands = true;
@@ -214,14 +214,14 @@ TEST_F(RequestHandler, WhatWouldArmItselfWaitsForAPersonOnceItIsDisarmed) {
   EXPECT_TRUE(ask("arm").done);
 }
 
-TEST_F(RequestHandler, StopsAtAnyTimeEvenInTheMomentOfTheWords) {
+TEST_F(Requests, StopsAtAnyTimeEvenInTheMomentOfTheWords) {
   const int fd = say("stop");
   show(State::kReady);
   EXPECT_TRUE(hear(fd).done);
   EXPECT_TRUE(requests.stop.load());
 }
 
-TEST_F(RequestHandler, ToldOfItsStateAndOfWordsThatItDoesNotKnow) {
+TEST_F(Requests, ToldOfItsStateAndOfWordsThatItDoesNotKnow) {
   frame.force_N[0] = 3.0F, frame.force_N[1] = 4.0F;
   show(State::kArmed);
   EXPECT_EQ(ask("status").sentence, "puppet: armed, 5.000 N");
@@ -233,7 +233,7 @@ TEST_F(RequestHandler, ToldOfItsStateAndOfWordsThatItDoesNotKnow) {
   EXPECT_TRUE(edges.empty());
 }
 
-TEST_F(RequestHandler, ASignalToEndIsHeardBesideARequest) {
+TEST_F(Requests, ASignalToEndIsHeardBesideARequest) {
   show(State::kReady);
   const int fd = say("status");
   raise(SIGTERM);

@@ -60,7 +60,7 @@ TEST(GateProperties, WhoFleesWithTheForceGetsNoMoreThanTheBudgetAndMostOfIt) {
   EXPECT_GT(count(rules, firmware::gate::Stage::kPassivity), 1000u);
 }
 
-TEST(GateProperties, WhoDefeatsTheGuessStillMeetsTheBrake) {
+TEST(GateProperties, EnergyBoundHoldsWhenHandReverses) {
   GateRules rules;
   EXPECT_EQ(run(Temper::kRattle, {}, rules, 50 * times(), 2000), "");
   EXPECT_GT(rules.most_given_J(), 0.5 * kRulesLimits.energy_J);
@@ -127,7 +127,7 @@ Wall lean_on_wall(double stiffness_N_per_m, double budget_J) {
   return out;
 }
 
-TEST(GateProperties, AWallTooStiffForItsDeviceShakesWithoutTheEnergyStageAndNotWithIt) {
+TEST(GateProperties, AWallTooStiffShakesOnlyWithoutThePassivityStage) {
   for (const double stiffness_N_per_m : {3000.0, 6000.0, 20000.0}) {
     const Wall without = lean_on_wall(stiffness_N_per_m, 1e9);
     EXPECT_GT(without.swing_m, 5e-4) << stiffness_N_per_m;
@@ -153,7 +153,7 @@ TEST(GateProperties, AWallTooStiffForItsDeviceShakesWithoutTheEnergyStageAndNotW
   EXPECT_LT(soft.given_J, 0.02);
 }
 
-TEST(GateProperties, EveryStageHasItsSayInEverySetting) {
+TEST(GateProperties, EveryStageActsInEveryConfiguration) {
   for (const GateSetting& setting : kGateSettings) {
     const model::Limits& limits = setting.limits;
     if (!(limits.force_N > 0.0)) continue;

@@ -67,7 +67,7 @@ TEST(GateScalars, AnUnsoundLimitLetsNothingThrough) {
     });
 }
 
-TEST(GateScalars, AnApproachStaysWithinItsStepAndItsRadiusFromAnyPlaceToAnyPlace) {
+TEST(GateScalars, AnApproachStaysWithinItsStepAndItsRadius) {
   constexpr double kRounding = 1e-14;
   // One of each class of a written force, and of each class of what may be wanted.
   const std::vector<double> from{0.0,  Doubles::denorm_min(), -Doubles::min(),

@@ -79,7 +79,7 @@ TEST(Gate, OneMissedSampleHoldsTheForce) {
   EXPECT_EQ(v.acting, Fault::kSampleHeld);
 }
 
-TEST(Gate, FromTheSecondMissedSampleTheForceFadesToZeroInTenMilliseconds) {
+TEST(Gate, FromTheSecondMissedSampleForceFadesToZeroIn10ms) {
   Gate gate = open_gate({1, 0, 0});
   GateInput stale = wanting({1, 0, 0});
   stale.fresh = false;
@@ -266,7 +266,7 @@ TEST(Gate, AToolThatSpeedsUpAsAHandDoesMeetsThePowerLimitWithoutAStop) {
   EXPECT_EQ(v.wrench, Wrench{});
 }
 
-TEST(Gate, AToolThatJumpsUnderForceOverdrawsTheEnergyAndStaysStoppedUntilItIsDisarmed) {
+TEST(Gate, AJumpUnderForceOverdrawsTheTankAndLatchesUntilDisarmed) {
   Gate gate = open_gate({2, 0, 0});
   GateInput jump = wanting({2, 0, 0});
   jump.tool.position_m.x = 0.06;  // 2 N * 60 mm = 0.12 J, of 0.1 J

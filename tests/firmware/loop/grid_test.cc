@@ -23,7 +23,7 @@ TEST(Grid, IsTheSameWheneverTheLoopStarts) {
 }
 
 // A tick of a kernel with HZ = 100, 250 or 1000 comes at whole milliseconds, if at all.
-TEST(Grid, KeepsAWakeUpAndMostOfAPeriodOrMillisecondAfterItFreeOfTheKernelsTick) {
+TEST(Grid, WakesFarFromTheKernelsTick) {
   for (const std::int64_t period_ns : kPeriods_ns)
     for (std::int64_t due_ns = next_deadline_ns(0, period_ns); due_ns < 20'000'000;
          due_ns += period_ns) {

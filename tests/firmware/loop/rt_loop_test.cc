@@ -181,7 +181,7 @@ TEST_F(RtLoopTest, AStallOfTwentyPeriodsEndsTheForce) {
   EXPECT_EQ(device.last, model::Wrench{});
 }
 
-TEST_F(RtLoopTest, AClockThatStepsBackBringsNoForceBeyondItsLimitsAndNoCatchingUp) {
+TEST_F(RtLoopTest, AClockStepBackCausesNoExcessForceAndNoCatchUp) {
   press();
   run_ticks(1);
   TickRecord before = newest();
@@ -259,7 +259,7 @@ TEST(MarkedTime, IsTheClocksBetweenItsReadings) {
   time.set(2'000'000, 53'006'000);  // a clock that stands, and one that runs back
   time.set(1'500'000, 56'000'000);
   EXPECT_EQ(time.at_ns(56'003'000), 1'501'000) << "the rate of before";
-  time.set(2'500'000, 1'000);  // a counter that began anew
+  time.set(2'500'000, 1'000);  // a counter that began again
   EXPECT_EQ(time.at_ns(4'000), 2'501'000);
 }
 

@@ -104,7 +104,7 @@ TEST(Cia402BringUp, NodeGuardingThatCannotBeReadIsNotTakenForNone) {
   bench.expect_refused("arm 2 (node 2 on can0) keeps its node guarding on");
 }
 
-TEST(Cia402BringUp, ADriveWithoutHeartbeatIsRefusedWithTheRemedyAndItsGuardingStays) {
+TEST(Cia402BringUp, ADriveWithoutHeartbeatIsRefusedAndItsGuardingStays) {
   for (const std::uint32_t entry : {0x101700u, 0x101601u}) {
     for (const std::uint32_t abort : {0x06020000u, 0x06090011u}) {
       Bench bench;

@@ -64,7 +64,7 @@ TEST(Cia402Delta, ForceBecomesTheTorquesOfTheStatics) {
   EXPECT_NEAR(bench.sample.tool.position_m.z, published_pose().position_D_m.x, 1e-6);
 }
 
-TEST(Cia402Delta, SyncIsTheLastFrameAndTheHostsHeartbeatComesEvery5Milliseconds) {
+TEST(Cia402Delta, SyncIsTheLastFrameAndTheHostHeartbeatComesEvery5ms) {
   Bench bench;
   bench.run();
   bench.drives.host_heartbeats = 0;

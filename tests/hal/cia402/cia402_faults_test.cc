@@ -9,7 +9,7 @@ namespace tact::hal::cia402::cia402_faults_test {
 
 using Bench = tests::Cia402Bench;
 
-TEST(Cia402Faults, TorquesFadeWithinTwelveTicksWithoutPositionsAndTheDeviceIsLostAfterTwenty) {
+TEST(Cia402Faults, WithoutPositionsTorqueFadesIn12TicksAndTheDeviceIsLostIn20) {
   Bench bench;
   bench.run();
   bench.tick();

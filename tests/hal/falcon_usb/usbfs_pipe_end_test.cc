@@ -59,7 +59,7 @@ TEST(UsbfsPipeEnd, AStallIsNamed) {
   EXPECT_EQ(pipe->health().end, falcon::FalconPipeEnd::kStalled);
 }
 
-TEST(UsbfsPipeEnd, AfterAStallCommandsStillReachTheDeviceAndStoppingSendsTheLast) {
+TEST(UsbfsPipeEnd, AfterAStallCommandsReachTheDeviceAndStopSendsTheLast) {
   Bus bus;
   const auto pipe = start(bus);
   for (std::size_t i = 0; i < falcon_usb::UsbfsPipe::kIn; ++i)

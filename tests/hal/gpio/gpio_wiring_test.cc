@@ -109,7 +109,7 @@ class GpioWiring : public testing::Test {
   model::LinesSettings settings_;
 };
 
-TEST_F(GpioWiring, ALineThatTheChipDoesNotGiveIsAnErrorAndNeverALineThatIsNotWired) {
+TEST_F(GpioWiring, ALineThatTheChipRefusesIsAnErrorAndNotAnUnwiredLine) {
   const std::array<std::pair<int, const char*>, 9> lines{{{kEstopA, "estop_a"},
                                                           {kEstopB, "estop_b"},
                                                           {kDeadMan, "dead_man"},

@@ -98,7 +98,7 @@ TEST(GripSwitch, TheLinesTellItAsTheirFaultBehindTheEmergencyStop) {
   EXPECT_EQ(logic.cause(), LinesCause::kBothOpen);
 }
 
-TEST(ClutchSwitch, OneThatFlapsCountsAsPressedUntilItWasQuietForASecondAndIsTold) {
+TEST(ClutchSwitch, AFlappingLineCountsAsPressedUntilQuietForASecond) {
   SafetyLogic logic{{.clutch = true}};
   std::int64_t now_ns = 0;
   const auto ticks = [&](int n, bool pressed) {

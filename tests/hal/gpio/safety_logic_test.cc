@@ -107,7 +107,7 @@ TEST(SafetyLogic, AWeldedContactIsNotForgottenWhenTheEStopIsReleased) {
   EXPECT_EQ(bench.fault, Fault::kLinesDiffer);
   EXPECT_EQ(bench.logic.cause(), LinesCause::kBStaysClosed);
   EXPECT_FALSE(bench.outputs.enable);
-  bench.ticks(3, {.estop_a = false, .estop_b = false, .dead_man = true});  // mended and pressed
+  bench.ticks(3, {.estop_a = false, .estop_b = false, .dead_man = true});  // repaired and pressed
   EXPECT_EQ(bench.fault, Fault::kEmergencyStop);
   bench.tick(kGood);
   EXPECT_EQ(bench.fault, Fault::kNone);

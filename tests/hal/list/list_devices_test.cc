@@ -140,7 +140,7 @@ TEST_F(ListDevices, AForceDimensionDeviceShowsItsOwnWords) {
   EXPECT_EQ(part.what, "Force Dimension device \"omega.x haptic device\", USB 1451:0402");
 }
 
-TEST_F(ListDevices, APhantomIsOpenedByItsSerialPortOrItsHidNodeWhoeverMadeItsNumbers) {
+TEST_F(ListDevices, APhantomIsFoundByItsSerialPortOrItsHidNode) {
   probes.access_error = nobody_may;
   const struct {
     const char *vendor, *product, *inside, *node, *rule;

@@ -70,7 +70,7 @@ TEST(MoteusBringUp, NodesThatNoMoteusHasAreRefused) {
   }
 }
 
-TEST(MoteusBringUp, AFaultThatAStopClearsIsToldAndOneThatStaysIsRefusedWhenItStarts) {
+TEST(MoteusBringUp, AFaultThatAStopClearsIsReportedAndOneThatStaysIsRefused) {
   MoteusBench bench;
   bench.drives.drive[2]->fail(0);
   ASSERT_EQ(bench.open(), "");

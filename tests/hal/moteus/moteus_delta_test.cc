@@ -13,7 +13,7 @@ namespace tact::hal::moteus::moteus_delta_test {
 using tests::MoteusBench;
 using tests::published_pose;
 
-TEST(MoteusDelta, IsReadyWhenAllThreeAreInPositionModeAndNoneHasHadATorqueBefore) {
+TEST(MoteusDelta, IsReadyWhenAllAreInPositionModeWithoutEarlierTorque) {
   MoteusBench bench({.prepare_ms = 40});
   ASSERT_EQ(bench.open(), "");
   int ticks = 0;
@@ -50,7 +50,7 @@ TEST(MoteusDelta, NothingHasPowerWithoutPermissionAndThePoseIsKnown) {
   EXPECT_FALSE(bench.device->ready());
 }
 
-TEST(MoteusDelta, PermissionThatIsWithdrawnStopsInThatTickAndComesBackWithoutTorque) {
+TEST(MoteusDelta, WithdrawnPermissionStopsAtOnceAndReturnsWithoutTorque) {
   MoteusBench bench;
   bench.run();
   for (int press = 0; press < 2; ++press) {
@@ -91,7 +91,7 @@ TEST(MoteusDelta, ThePoseIsThatOfTheArms) {
   EXPECT_EQ(bench.sample.stamp_ns, bench.now_ns - 100'000);
 }
 
-TEST(MoteusDelta, ATorqueIsNeverAboveThatOfTheSceneAndKeepsTheDirectionOfTheForce) {
+TEST(MoteusDelta, TorqueIsLimitedByTheSceneAndKeepsTheForceDirection) {
   MoteusBench bench;
   bench.settings.delta.max_joint_torque_Nm = 2.0;
   bench.run();

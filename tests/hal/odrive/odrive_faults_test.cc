@@ -100,7 +100,7 @@ TEST(OdriveFaults, ASilentHeartbeatIsFoundWithin350Milliseconds) {
   bench.expect_latched(Fault::kDriveSilent);
 }
 
-TEST(OdriveFaults, TorquesFadeWithinTwelveTicksWithoutPositionsAndTheDeviceIsLostAfterTwenty) {
+TEST(OdriveFaults, WithoutPositionsTorqueFadesIn12TicksAndTheDeviceIsLostIn20) {
   Bench bench;
   bench.run();
   bench.tick();

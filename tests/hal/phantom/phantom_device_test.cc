@@ -188,7 +188,7 @@ TEST_F(Phantom, ALoopThatDiesTakesItsForceAlong) {
   EXPECT_TRUE(comes([&] { return !output_is_on(); })) << "then the force output goes off";
 }
 
-TEST_F(Phantom, WithdrawnPowerSwitchesTheForceOutputOffAndComesBackThroughZero) {
+TEST_F(Phantom, WithdrawnPowerTurnsForceOutputOffAndReturnsThroughZero) {
   open();
   ASSERT_TRUE(ready());
   ASSERT_TRUE(

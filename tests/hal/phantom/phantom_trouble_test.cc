@@ -105,7 +105,7 @@ TEST_F(PhantomTrouble, AnUpdateOfTheCalibrationWaitsForTheNextStart) {
       << "the position would jump under the force";
 }
 
-TEST_F(PhantomTrouble, ASchedulerThatFallsSilentLeavesNoFreshSampleAndIsToldWithItsForce) {
+TEST_F(PhantomTrouble, ASilentSchedulerLeavesNoFreshSampleAndIsReported) {
   stub.silence(1);
   sleep_ms(10);
   tick(kUp);  // takes what came before

@@ -223,7 +223,7 @@ TEST(ToolArm, CcdFromTheSubRootAloneWouldSaveNothing) {
   EXPECT_GT(2 * updates_of_ccd(kShoulderBone), 3 * updates_of_ccd(0));
 }
 
-TEST(ToolArm, TurnsLessThanHalfOfTheJointsThatTheFullChainTurnsAtEqualError) {
+TEST(ToolArm, TurnsLessThanHalfTheJointsOfTheFullChainAtEqualError) {
   const Counted sub = count(RootRule::kSubRootFirst), full = count(RootRule::kAlwaysFullChain);
   const double ratio = static_cast<double>(full.updates) / static_cast<double>(sub.updates);
   std::printf("joint updates over 30 s: sub-root %ld, full chain %ld, ratio %.2f\n", sub.updates,

@@ -156,7 +156,7 @@ TEST(RobustPose, KeepsTheStatusOfWhatHasNoAnswer) {
 
 // 0.5 px of noise at 2 m, f = 1200 px, eight markers. Depth is what one camera sees worst: its
 // error goes with distance squared over the size of the body, 15 cm here.
-TEST(RobustPose, NoiseOfHalfAPixelMovesAShownBodyAtTwoMetresByLessThanThreeMillimetres) {
+TEST(RobustPose, HalfAPixelOfNoiseMovesABodyAt2mByLessThan3mm) {
   Views views;
   std::vector<double> raw_m, across_m, shown_m;
   for (int i = 0; i < 100; ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The operator of a recording is the one that was seen live, wherever the recording begins; and the
-// one who sits at the device stays bound when tactd begins anew.
+// one who sits at the device stays bound when tactd begins again.
 #include "host/server/operator_figure.h"
 #include "host/server/playback.h"
 #include "tests/support/operator_motion.h"

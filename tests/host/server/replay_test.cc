@@ -112,7 +112,7 @@ TEST_F(Replay, BeginsWhenSomebodyLooksAndRestsAtItsEnd) {
   run_for(50);
   EXPECT_EQ(heard_.ticks_.size(), 100U) << "it rests";
   play(20.0);
-  EXPECT_EQ(heard_.ticks_.back(), 0U) << "played again it begins anew";
+  EXPECT_EQ(heard_.ticks_.back(), 0U) << "played again it begins again";
 }
 
 TEST_F(Replay, TellsItsLengthAndWhereItStopped) {

@@ -27,7 +27,7 @@ contact::Place place_of(const mesh::SurfaceMesh& mesh, std::uint32_t vertex) {
 }
 
 // Three places, two directions each, touching and held.
-TEST(Sideways, StiffnessIsTheFiniteElementsAlongBothDirectionsWithin15Percent) {
+TEST(Sideways, StiffnessMatchesFiniteElementsBothWaysWithin15Percent) {
   std::ifstream file(TACT_SOURCE_DIR "/tests/data/reference/liver_sideways.json");
   const auto reference = nlohmann::json::parse(file);
   const auto scene = load_scene(TACT_SOURCE_DIR "/model/scenes/liver.toml", {});

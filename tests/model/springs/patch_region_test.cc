@@ -111,7 +111,7 @@ TEST(PatchRegion, AStayingVertexKeepsItsDent) {
   const Vec3 indentation_m = region.moved_m(touched);
   pressed.move_to(0.012, 0.0, 1e-6);
   pressed.advance();
-  EXPECT_NE(region.vertices()[0], touched) << "gathered anew";
+  EXPECT_NE(region.vertices()[0], touched) << "gathered again";
   ASSERT_NE(region.slot_of(touched), kNoSlot);
   EXPECT_NEAR(norm(region.moved_m(touched) - indentation_m), 0.0, 0.1 * norm(indentation_m));
 }
@@ -132,7 +132,7 @@ TEST(PatchRegion, ALeavingVertexReturnsToRest) {
   EXPECT_EQ(pressed.patch().region().moved_m(touched), Vec3{});
 }
 
-// Small regions that are gathered anew again and again, at once and in the middle of motion.
+// Small regions that are gathered again and again, at once and in the middle of motion.
 TEST(PatchRegion, HandingOverNeverGivesTheToolEnergy) {
   for (const std::size_t nodes : {40u, 80u, 120u}) {
     for (const double stretch : {0.0, 0.1}) {

@@ -110,7 +110,7 @@ TEST(ComplianceFamily, AHeldPatchIsStifferSidewaysThanOneThatMaySink) {
   EXPECT_NEAR(give.held.row[1].y, 40.0 - 900.0 / (disc + 100.0), 1e-4);
 }
 
-TEST(ComplianceFamily, AlongTheSurfaceNoPlaceIsMoreThanThreeTimesAsStiffAsAHalfSpace) {
+TEST(ComplianceFamily, TangentStiffnessIsAtMostThreeTimesThatOfAHalfSpace) {
   const indent::ElasticTip tip{1.0, 0.45, 4_mm};
   const double half_space = 1.0 / tip.sideways_stiffness_N_per_m();
   ComplianceMap map = lobe();

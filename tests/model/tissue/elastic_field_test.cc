@@ -103,7 +103,7 @@ TEST(ElasticField, CoordinatesAtBothEndsGiveTheOutermostLaws) {
 
 // Force on the tool against the central difference of the energy, for a tool moved in x, y and z.
 void expect_slope_of_energy(Bench& bench, const Vec3& at_m) {
-  const auto feel = [&bench](const Vec3& p_m, const Vec3& from_m) {
+  const auto render_force = [&bench](const Vec3& p_m, const Vec3& from_m) {
     contact::Contact contact = bench.contact();
     for (int i = 0; i <= 400; ++i)
       contact.detect_contact({.position_m = from_m + (i / 400.0) * (p_m - from_m)}),

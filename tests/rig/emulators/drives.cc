@@ -67,7 +67,7 @@ void add_cia402(CLI::App& app, Cia402Settings& cia402) {
   app.add_flag("--no-request-stays", cia402.habits.no_request_stays,
                "CiA 402: bit 30 of 1800:01 may not be cleared");
   app.add_flag("--watch-off-first", cia402.habits.watch_off_first,
-               "CiA 402: 1016:01 is not written anew while it is on");
+               "CiA 402: 1016:01 is not written again while it is on");
   app.add_flag("--sizes-unsaid", cia402.habits.sizes_unsaid, "CiA 402: uploads without their size");
   app.add_option("--absent", cia402.habits.absent,
                  "CiA 402: indices of objects that it does not have")

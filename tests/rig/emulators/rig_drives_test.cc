@@ -137,7 +137,7 @@ TEST(RigDrives, ACia402DriveStopsWhenTheHostsHeartbeatIsLost) {
   const auto wait = [&](int ms) {
     for (int i = 0; i < ms; ++i) drive.tick(now += kMs);
   };
-  const auto tell = [&](std::uint32_t id, std::vector<std::uint8_t> data) {
+  const auto report = [&](std::uint32_t id, std::vector<std::uint8_t> data) {
     return drive.receive(frame_of(id, std::move(data)), now);
   };
   wait(25);
@@ -210,7 +210,7 @@ TEST(RigDrives, ACia402DriveAnswersItsGuardAndMissesItAfterTheFirstRequest) {
   }
 }
 
-TEST(RigDrives, AMoteusHoldsPositionUnlessBothGainsAreScaledAwayAndEndsWithItsWatchdog) {
+TEST(RigDrives, AMoteusHoldsPositionUnlessBothGainsAreZero) {
   FaultPlan faults = ordered("lost@1000");
   Cable cable(faults, 0x100);
   const Motor motor{.position_turns = 0.25};
@@ -219,7 +219,7 @@ TEST(RigDrives, AMoteusHoldsPositionUnlessBothGainsAreScaledAwayAndEndsWithItsWa
   const auto wait = [&](int ms) {
     for (int i = 0; i < ms; ++i) drive.tick(now += kMs);
   };
-  const auto tell = [&](std::vector<std::uint8_t> data) {
+  const auto report = [&](std::vector<std::uint8_t> data) {
     return drive.receive(frame_of(0x8001 | CAN_EFF_FLAG, std::move(data)), now);
   };
   EXPECT_TRUE(report({0x01, 0x00, 0x0A}));

@@ -151,7 +151,7 @@ TEST(RigEmulators, TheEventCharacterBringsAReportBeforeTheLatencyTimer) {
     ASSERT_TRUE(chip.control({0x40, 9, 1, 0, 0}, now));  // 1 ms
     const std::uint16_t on = event ? 0x100 : 0;
     ASSERT_TRUE(chip.control({0x40, 6, static_cast<std::uint16_t>(on | 0x3E), 0, 0}, now));
-    chip.packet(now);  // the timer starts anew
+    chip.packet(now);  // the timer starts again
     chip.write(bytes_of_hex("3c41414141414141414141414142413e"), now);
     std::int64_t arrived = 0;
     while (arrived == 0) {

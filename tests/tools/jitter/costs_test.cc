@@ -58,7 +58,7 @@ TEST_F(FilesOfAPc, CostsAreThoseOfTheLoopsCoreAndThread) {
   EXPECT_NE(words.find("4 us"), std::string::npos) << words;
 }
 
-TEST_F(FilesOfAPc, SystemManagementInterruptsAreThoseOfTheLoopsCoreWhereTheyCanBeRead) {
+TEST_F(FilesOfAPc, SystemManagementInterruptsAreThoseOfTheLoopsCore) {
   const firmware::pc::PcFiles files(scratch.path());
   const auto put_msr = [this](int core, std::uint64_t count) {
     std::string registers(0x34, '\x7f');

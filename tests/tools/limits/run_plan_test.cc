@@ -122,7 +122,7 @@ TEST(RunPlan, AGateWithOneLimitTooLargeFails) {
   }
 }
 
-TEST(RunPlan, LateTicksAreBorneForTwentyWithHardRealTimeAndForLongerWithout) {
+TEST(RunPlan, TwentyLateTicksAreAllowedInHardRealTimeMoreWithout) {
   const auto cases = choose_cases("late-ticks");
   ASSERT_TRUE(cases);
   EXPECT_NEAR(*at_rate(cases->at(0), 0.001, true).expected.zero_within_s, 0.042, 1e-12);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fewer faces of a rough surface: what VTK leaves open or folded then is mended, or refused.
+// Fewer faces of a rough surface: what VTK leaves open or folded then is repaired, or refused.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

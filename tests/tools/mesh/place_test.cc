@@ -132,7 +132,7 @@ TEST_F(Place, RefusesWhatItCannotWriteAndLeavesTheSceneAsItWas) {
   EXPECT_EQ(tests::read_text(scene_), before_);
 }
 
-TEST_F(Place, APointFarFromTheOrganIsRefusedWithTheDistanceAndWhereTheOrganLies) {
+TEST_F(Place, APointFarFromTheOrganIsRefusedWithItsDistance) {
   const std::string cube =
       temp_.write("cube.obj", tests::kCubeVertices + tests::kCubeFaces);  // 10 units each way
   const auto point = [&](const std::string& xyz, const std::string& more = "") {
@@ -182,7 +182,7 @@ TEST_F(Place, TellsWhatOfTheSceneWasMadeForAnotherOrgan) {
     const std::size_t from = held.find(key), at = text.find(key);
     text.replace(at, text.find(']', at) + 1 - at, held, from, held.find(']', from) + 1 - from);
   }
-  const json left = misfits(organ_, temp_.write("mended.toml", text));
+  const json left = misfits(organ_, temp_.write("repaired.toml", text));
   ASSERT_EQ(left.size(), 1u) << left;
   EXPECT_EQ(left[0]["keys"], "compliance.map");
 }

@@ -108,7 +108,7 @@ TEST_F(NewScene, AScanBecomesASceneThatIsFelt) {
   EXPECT_LT(rendered_N, 5.0);
 }
 
-TEST_F(NewScene, ASoundObjFileIsTakenAsItIsAndAnEarlierSceneIsKeptUnlessForced) {
+TEST_F(NewScene, ASoundObjIsTakenAsItIsAndAnEarlierSceneIsKept) {
   const std::string organ = temp_.write("organ.obj", as_obj(ellipsoid_mm(2)));
   const std::string arguments = organ + " --out " + out_;
   Ran ran = run(arguments);

@@ -140,7 +140,7 @@ void add_to(Costs& sum, const Costs& more) {
 
 std::string describe(const Costs& delta) {
   std::string out;
-  const auto tell = [&](const std::string& part) { out += (out.empty() ? "" : "; ") + part; };
+  const auto report = [&](const std::string& part) { out += (out.empty() ? "" : "; ") + part; };
   if (delta.steal_ms.value_or(0) > 0) report(fmt::format("hypervisor {} ms", *delta.steal_ms));
   if (delta.smi.value_or(0) > 0) report(fmt::format("{} SMI", *delta.smi));
   if (delta.waited_ns.value_or(0) > 0)

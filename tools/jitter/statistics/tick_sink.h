@@ -40,7 +40,7 @@ class TickSink {
 
   explicit TickSink(const SinkSettings& settings) : settings_(settings) {}
 
-  /// A loop starts anew: its ticks count from 0 again, on another grid.
+  /// A loop starts again: its ticks count from 0 again, on another grid.
   void begin_slice();
   void add(const firmware::loop::TickRecord& record);
 

@@ -91,7 +91,7 @@ report::Row run(std::size_t job, Grid grid) {
   // holds
   const double low = named.remembers() ? 0.85 : 0.02, high = named.remembers() ? 500.0 : 50.0;
   const double factor = largest_factor(loop, fresh, Verdict::kGrow, low * guess, high * guess);
-  // Settled anew: each run of the search had one of its own.
+  // Settled again: each run of the search had one of its own.
   const TissueForce tissue = fresh();
   GateWatch gate(loop.rate_Hz);
   run_gated(loop, [&](double depth_m) { return 3.0 * factor * tissue(depth_m); }, gate);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // scene_picker.ts - another scene, other numbers of its law. It asks; who has started the simulation
-// starts tactd anew, or says why not. What is good is decided there, not here.
+// starts tactd again, or says why not. What is good is decided there, not here.
 
 import { by_id } from "../document/dom";
 import type { OfferedScene, Parameter, Picker, SceneWish } from "../link/protocol";

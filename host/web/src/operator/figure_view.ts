@@ -25,7 +25,7 @@ class Part {
   place(a: THREE.Vector3, b: THREE.Vector3, side: THREE.Vector3): void {
     const along = b.clone().sub(a);
     const length_m = along.length();
-    // Bones keep their length; only what spans two of them is made anew.
+    // Bones keep their length; only what spans two of them is made again.
     if (Math.abs(length_m - this.length_m) > 0.002) this.shape(length_m);
     along.normalize();
     const x = new THREE.Vector3(...across(along.toArray(), side.toArray()));

@@ -21,7 +21,7 @@ export class FoldGuard {
     this.touched = new Uint32Array(triangle.length / 3);
   }
 
-  /** Mends out_m; returns the passes that this took. */
+  /** Repairs out_m; returns the passes that this took. */
   hold(out_m: Float32Array): number {
     const touched = this.find_touched(out_m);
     for (let pass = 0; pass < kMaxPasses; ++pass) {

@@ -119,7 +119,7 @@ bool Cia402Drive::receive(const canfd_frame& frame, std::int64_t now_ns) {
     if (written == consumer) return false;
     const bool ends = (written & 0xFFFF) == 0 && dictionary_.get(0x1001) != 0;
     if (ends && !misses_sync_) emergency(0, now_ns);
-    // A watch that was set anew begins with the next heartbeat (CiA 301, 7.5.2.19).
+    // A watch that was set again begins with the next heartbeat (CiA 301, 7.5.2.19).
     if (settings_.habits.watch_off_first && written == 0) return false;
     watch_ = written;
     host_ns_ = 0;

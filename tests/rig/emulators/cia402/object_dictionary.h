@@ -54,7 +54,7 @@ Sdo sdo_abort(std::uint16_t index, std::uint8_t sub, SdoAbort code);
 struct ObjectHabits {
   bool no_request_stays =
       false;  // 1800:01: bit 30, no remote request, is set and may not be cleared
-  bool watch_off_first = false;  // 1016:01: a watch that is on is not written anew (0x06040043)
+  bool watch_off_first = false;  // 1016:01: a watch that is on is not written again (0x06040043)
   bool sizes_unsaid = false;     // uploads by 42
   std::vector<std::uint16_t> absent{};          // indices that it does not have
   int mode_shown = 10;                          // 6061, once 10 was written to 6060

@@ -49,7 +49,7 @@ FalconCommand decode_command(const FalconFrame& frame) {
 }
 
 std::optional<FalconFrame> FalconScanner::push(std::uint8_t byte) {
-  // Neither mark can stand inside a frame: a start begins anew, any other misfit drops what was.
+  // Neither mark can stand inside a frame: a start begins again, any other misfit drops what was.
   if (byte == kStart) {
     buffer_[0] = byte;
     size_ = 1;
