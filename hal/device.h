@@ -125,8 +125,8 @@ class Device {
 
   // Any thread, at any time.
 
-  /// What lies behind the latched fault, for a person: which part, why, the remedy. Empty when there
-  /// is no more to say than the fault's own words.
+  /// What lies behind the latched fault, for a person: which part, why, the remedy. Empty when
+  /// there is no more to say than the fault's own words.
   virtual std::string trouble() const { return {}; }
 
   // When the loop has ended.

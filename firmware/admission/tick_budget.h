@@ -20,9 +20,9 @@ struct LawTime {
   double p999_us = 0.0;  // 99.9 % of the ticks are at most this long
 };
 
-/// All spheres pressed, each on its way round a small circle, so that a patch gathers again; a blade
-/// that stands still is asked for too. What it presses is forgotten: a law that remembers must be
-/// measured on a twin, not on the one that will be felt. About 0.2 s at most.
+/// All spheres pressed, each on its way round a small circle, so that a patch gathers again; a
+/// blade that stands still is asked for too. What it presses is forgotten: a law that remembers
+/// must be measured on a twin, not on the one that will be felt. About 0.2 s at most.
 LawTime measure_law(const model::scene::Scene& scene, model::contact::SiteLaw& twin,
                     double deepest_m);
 

@@ -2,8 +2,8 @@
 // service_manager.h - what systemd is told of a tactd that it has started, by sd_notify(3): text to
 // the socket that NOTIFY_SOCKET names. Where nobody listens nothing happens.
 //
-// A service never arms. Nobody holds the tool when a machine boots, or when a crash is remedied by a
-// restart: also the simulated device waits for a person then.
+// A service never arms. Nobody holds the tool when a machine boots, or when a crash is remedied by
+// a restart: also the simulated device waits for a person then.
 #pragma once
 
 #include <sys/socket.h>

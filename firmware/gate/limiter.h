@@ -6,10 +6,10 @@
 //     approach    |F - F_before| <= step, |F| <= radius    or `shrink` nearer to radius than before
 //     surplus     F . d + T . a <= most                    least change of each, along its motion
 //
-// Approach first reduces the magnitude, then uses the remaining slew for the direction: on a straight
-// line to the goal the magnitude would fall more slowly than the slew allows. After ticks that
-// were skipped `shrink` is the step of all the time that passed: a force catches up when it gets
-// smaller, never when it grows or turns. Guards are written so that NaN falls to zero.
+// Approach first reduces the magnitude, then uses the remaining slew for the direction: on a
+// straight line to the goal the magnitude would fall more slowly than the slew allows. After ticks
+// that were skipped `shrink` is the step of all the time that passed: a force catches up when it
+// gets smaller, never when it grows or turns. Guards are written so that NaN falls to zero.
 #pragma once
 
 #include <limits>

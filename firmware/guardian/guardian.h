@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // guardian.h - tactd's side of the process that zeroes the device when tactd has died.
 //
-//     start      the program tact-guardian beside this one gets shutdown frames, descriptor, lifeline
+//     start      the program tact-guardian next to this one gets shutdown frames, descriptor,
+//                lifeline
 //     tact-guard a thread of tactd that holds the lifeline (lifeline.h) for its whole life, and
 //                hears at once when the guardian ends
 //     destructor lets go, after the device is off: the guardian ends and has sent nothing

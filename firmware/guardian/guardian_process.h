@@ -3,7 +3,8 @@
 // the device.
 //
 //     tactd lets go   it ends, and has sent nothing
-//     tactd died      it says the device's shutdown frames (hal/shutdown_frames.h), tells a person, ends
+//     tactd died      it sends the device's shutdown frames (hal/shutdown_frames.h), tells a
+//                     person, ends
 //
 // It can do no more: its memory is locked, its system calls are filtered down to those, on the
 // device's descriptor alone, and it takes no signal but those that nobody can refuse.

@@ -48,7 +48,8 @@ struct LoopParts {
 /// Opens the device of the scene and checks that the law may be felt on it.
 model::Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsSetup& setup);
 
-/// The process that zeroes this device if its program dies; null: the device has no shutdown frames.
+/// The process that zeroes this device if its program dies; null: the device has no shutdown
+/// frames.
 model::Result<std::unique_ptr<guardian::Guardian>> start_guardian(hal::Device& device,
                                                                   const pc::RtSettings& rt);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// drive_settings.h - what is written to a CiA 402 drive before the loop, as vendors' drives take it.
+// drive_settings.h - what is written to a CiA 402 drive before the loop, as vendors' drives take
+// it.
 //
 //     1800:01  bit 30, "no remote request", stays as the drive has it
 //     1016:01, 1017  heartbeat, theirs and ours: a drive without is refused

@@ -26,8 +26,8 @@ struct OdriveVelocityLimit {
 OdriveVelocityLimit odrive_velocity_limit(const model::DeltaSettings& delta,
                                           double limit_turns_per_s);
 
-/// What a person should know, with numbers and the remedy; empty: nothing. An error for a scene whose
-/// own limit may cut torque at rest.
+/// What a person should know, with numbers and the remedy; empty: nothing. An error for a scene
+/// whose own limit may cut torque at rest.
 model::Result<std::string> check_odrive_velocity_limit(const model::DeviceSettings& settings);
 
 }  // namespace tact::hal::odrive

@@ -16,8 +16,8 @@
 // kFarthestPlace_m of the default. A bone without a tracker stays neutral; the head looks down at
 // the device, the feet stand. A body that is held, lost or back: bound_bone.h.
 //
-// Time is an argument, s, of any clock; a step back begins again, binding and all. No number that is
-// not finite comes out. Frame W, m. For display, not for the force loop. Source: CC-10,
+// Time is an argument, s, of any clock; a step back begins again, binding and all. No number that
+// is not finite comes out. Frame W, m. For display, not for the force loop. Source: CC-10,
 // TR-1 to TR-6.
 #pragma once
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// replay_request.h - what a page may ask of a recording that is shown: where, whether and how fast it
-// plays.
+// replay_request.h - what a page may ask of a recording that is shown: where, whether and how fast
+// it plays.
 //
 //     {"replay": {"playing": true, "at_s": 1.5, "step_frames": -1,
 //                 "speed_ratio": 0.25, "repeats": false}}

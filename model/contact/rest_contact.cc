@@ -172,8 +172,8 @@ void RestContact::couple_new_spheres() RT_SAFE {
     }
 }
 
-// A new contact on tissue displaced by its neighbour would gain energy: that depth is offset. Of the
-// two spheres only one presses so far.
+// A new contact on tissue displaced by its neighbour would gain energy: that depth is offset. Of
+// the two spheres only one presses so far.
 void RestContact::couple_pair(std::size_t i, std::size_t j) RT_SAFE {
   const SiteCoupling along = scene_.law->coupling(indentation(i), indentation(j),
                                                   norm(sphere_[i].centre_m - sphere_[j].centre_m));

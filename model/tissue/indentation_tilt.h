@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// indentation_tilt.h - how the dent of a site leans: an organ sinks more towards a free lobe than towards
-// the side where it is held.
+// indentation_tilt.h - how the dent of a site leans: an organ sinks more towards a free lobe than
+// towards the side where it is held.
 //
 //     CF-5   u(x) = u(rho) + T(rho) F t . (x - s)
 //     CF-6   t = grad r / 2
