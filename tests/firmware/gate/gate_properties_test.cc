@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // What gate.h promises, over random sequences (gate_tempers.h), for every setting of
-// gate_settings.h. Seeds are fixed; TACT_LONG=1 runs a hundred times as many long ones.
+// gate_settings.h. Seeds are fixed; extent.h says how many.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <string>
 #include <vector>
 
 #include "tests/firmware/gate/gate_tempers.h"
+#include "tests/support/extent.h"
 #include "tests/support/no_alloc.h"
 
 namespace tact::tests::gate_properties_test {
-
-std::uint64_t times() { return std::getenv("TACT_LONG") != nullptr ? 100 : 1; }
 
 /// Many short sequences of one temper on one gate; the rule that broke, with its seed and tick.
 std::string run(Temper temper, const GateSetting& setting, GateRules& rules,
@@ -45,24 +43,24 @@ std::uint64_t count(const GateRules& rules, firmware::gate::Stage stage) {
 }
 
 TEST(GateProperties, EveryRuleHoldsForEverySequence) {
-  run_all(400 * times(), 150 * times(), 1000);
+  run_all(share_of(400, 40'000), share_of(150, 15'000), 1000);
 }
 
 // What the one before left behind is where the next one starts: each begins with a jump.
 TEST(GateProperties, EveryRuleHoldsForMoreThanAMillionShortSequences) {
-  run_all(150'000, 12'000, 8);
+  run_all(share_of(150'000, 150'000), share_of(12'000, 12'000), 8);
 }
 
 TEST(GateProperties, WhoFleesWithTheForceGetsNoMoreThanTheBudgetAndMostOfIt) {
   GateRules rules;
-  EXPECT_EQ(run(Temper::kFollow, {}, rules, 50 * times(), 2000), "");
+  EXPECT_EQ(run(Temper::kFollow, {}, rules, 50, 2000), "");
   EXPECT_GT(rules.most_given_J(), 0.5 * kRulesLimits.energy_J);
   EXPECT_GT(count(rules, firmware::gate::Stage::kPassivity), 1000u);
 }
 
 TEST(GateProperties, EnergyBoundHoldsWhenHandReverses) {
   GateRules rules;
-  EXPECT_EQ(run(Temper::kRattle, {}, rules, 50 * times(), 2000), "");
+  EXPECT_EQ(run(Temper::kRattle, {}, rules, 50, 2000), "");
   EXPECT_GT(rules.most_given_J(), 0.5 * kRulesLimits.energy_J);
 }
 
