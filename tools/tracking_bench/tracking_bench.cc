@@ -236,13 +236,13 @@ Result<std::vector<MotionFrame>> scene_motion(const tact::model::scene::Scene& s
   SimulatedLoop loop((*tissue)->contact_scene(), scene.limits, scene.rate_Hz, **device);
   tracking::OperatorTracker tracker(*setup);
   std::vector<MotionFrame> out;
-  auto next = seen->lines.begin();
+  auto next = seen->seen.begin();
   for (double tick = 0.0; static_cast<double>(out.size()) < kMotion_s * kFrames_Hz; ++tick) {
     const tact::model::Tool& tool = loop.step().input.sample.tool;
     const double due_s = static_cast<double>(out.size()) / kFrames_Hz;
     if (tick < due_s * scene.rate_Hz) continue;
-    for (; next != seen->lines.end() && next->seen.time_s <= due_s; ++next)
-      if (const auto error = tracker.take(next->seen, due_s)) return *error;
+    for (; next != seen->seen.end() && next->time_s <= due_s; ++next)
+      if (const auto error = tracker.take(*next, due_s)) return *error;
     const auto& [w, x, y, z] = tool.orientation;
     const auto& p_m = tool.position_m;
     out.push_back({due_s, {{w, x, y, z}, {p_m.x, p_m.y, p_m.z}}, tracker.at(due_s)});
