@@ -115,12 +115,12 @@ model::Result<TimeMargin> check_budget(const model::scene::Scene& scene,
     pc::flush_denormals();
     margin.measured = measure_law(scene, (*twin)->site_law(), (*twin)->range().press_m);
   }).join();
-  margin.judged_us = margin.tail_counts ? margin.measured.p999_us : margin.measured.median_us;
-  if (margin.judged_us <= margin.budget_us) return margin;
+  margin.checked_us = margin.tail_counts ? margin.measured.p999_us : margin.measured.median_us;
+  if (margin.checked_us <= margin.budget_us) return margin;
   return model::Error{fmt::format(
       "{}: {} needs {:.1f} us a tick here ({}), {} {:g} us; choose a smaller model (tact-lab plan "
       "names one), {} or take a faster machine",
-      scene.path, (*twin)->title(), margin.judged_us,
+      scene.path, (*twin)->title(), margin.checked_us,
       margin.tail_counts ? "p99.9" : "median: without hard real time the tail is the kernel's",
       scene.tolerance ? "tolerance.tick_budget_us is" : "half a period of rate_Hz is",
       margin.budget_us, scene.tolerance ? "raise the budget" : "lower rate_Hz")};

@@ -29,7 +29,7 @@ LawTime measure_law(const model::scene::Scene& scene, model::contact::SiteLaw& t
 struct TimeMargin {
   LawTime measured;
   bool tail_counts = false;  // p99.9 was judged, else the median
-  double judged_us = 0.0;
+  double checked_us = 0.0;
   double budget_us = 0.0;  // [tolerance] tick_budget_us, or half a period without one
 };
 

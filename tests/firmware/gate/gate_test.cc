@@ -102,9 +102,9 @@ TEST(Gate, TwentyMissedSamplesInARowLoseTheDevice) {
   EXPECT_EQ(gate.limit(stale).fault, Fault::kDeviceLost);
   // One good sample in between starts the count again.
   Gate other = open_gate();
-  for (int i = 0; i < 19; ++i) other.check(stale);
-  other.check(wanting({}));
-  EXPECT_EQ(other.check(stale).fault, Fault::kNone);
+  for (int i = 0; i < 19; ++i) other.limit(stale);
+  other.limit(wanting({}));
+  EXPECT_EQ(other.limit(stale).fault, Fault::kNone);
 }
 
 // A loop of so many periods a tick, without samples.
@@ -118,14 +118,14 @@ GateInput late_and_missing(const Vec3& force_N, std::uint32_t skipped_periods) {
 TEST(Gate, ALoopThatIsLateFadesInTenMillisecondsOfTimeNotOfTicks) {
   Gate two = open_gate({4, 0, 0});  // two periods a tick: 2, 4, .. samples are missing
   for (const double left : {0.9, 0.7, 0.5, 0.3, 0.1, 0.0}) {
-    const LimitedForce v = two.check(late_and_missing({4, 0, 0}, 1));
+    const LimitedForce v = two.limit(late_and_missing({4, 0, 0}, 1));
     EXPECT_NEAR(v.wrench.force_N.x, 4.0 * left, 1e-12);
     EXPECT_EQ(v.acting, Fault::kSampleStale);
     EXPECT_EQ(v.fault, Fault::kNone);
   }
   Gate five = open_gate({8, 0, 0});  // more than one period's slew in a tick, as more time passed
   for (const double left : {0.6, 0.1, 0.0})
-    EXPECT_LE(five.check(late_and_missing({8, 0, 0}, 4)).wrench.force_N.x, 8.0 * left + 1e-12);
+    EXPECT_LE(five.limit(late_and_missing({8, 0, 0}, 4)).wrench.force_N.x, 8.0 * left + 1e-12);
 }
 
 TEST(Gate, AForceFarAboveItsLimitFadesInTenMillisecondsToo) {
@@ -144,14 +144,14 @@ TEST(Gate, AForceFarAboveItsLimitFadesInTenMillisecondsToo) {
 TEST(Gate, TwentyPeriodsWithoutASampleLoseTheDeviceInHoweverFewTicks) {
   Gate two = open_gate();
   for (int tick = 1; tick < 10; ++tick)
-    EXPECT_EQ(two.check(late_and_missing({}, 1)).fault, Fault::kNone) << tick;
-  EXPECT_EQ(two.check(late_and_missing({}, 1)).fault, Fault::kDeviceLost);
+    EXPECT_EQ(two.limit(late_and_missing({}, 1)).fault, Fault::kNone) << tick;
+  EXPECT_EQ(two.limit(late_and_missing({}, 1)).fault, Fault::kDeviceLost);
   Gate once = open_gate({1, 0, 0});
-  EXPECT_EQ(once.check(late_and_missing({1, 0, 0}, 19)).fault, Fault::kDeviceLost);
+  EXPECT_EQ(once.limit(late_and_missing({1, 0, 0}, 19)).fault, Fault::kDeviceLost);
   Gate late = open_gate({1, 0, 0});
   GateInput fresh = wanting({1, 0, 0});
   fresh.skipped_periods = 19;
-  EXPECT_EQ(late.check(fresh).acting, Fault::kNone) << "a sample after all: nothing is missing";
+  EXPECT_EQ(late.limit(fresh).acting, Fault::kNone) << "a sample after all: nothing is missing";
 }
 
 TEST(Gate, AfterALateTickAForceGrowsByOnePeriodsSlew) {
@@ -161,9 +161,9 @@ TEST(Gate, AfterALateTickAForceGrowsByOnePeriodsSlew) {
   EXPECT_LE(gate.limit(late).wrench.force_N.x, 1.0);
   GateInput back = wanting({8, 0, 0});
   Gate faded = open_gate({8, 0, 0});
-  for (int i = 0; i < 11; ++i) faded.check(late_and_missing({8, 0, 0}, 0));
+  for (int i = 0; i < 11; ++i) faded.limit(late_and_missing({8, 0, 0}, 0));
   back.skipped_periods = 4;
-  EXPECT_LE(faded.check(back).wrench.force_N.x, 1.0);
+  EXPECT_LE(faded.limit(back).wrench.force_N.x, 1.0);
 }
 
 TEST(Gate, ALoopThatIsLateFadesOutsideTheWorkspaceInFiftyMilliseconds) {

@@ -88,13 +88,13 @@ TEST(GripSwitch, TheLinesTellItAsTheirFaultBehindTheEmergencyStop) {
   const tests::NoAlloc guard;
   for (; now_ns < 150 * kMs; now_ns += kMs) {
     levels.grip = !levels.grip;
-    const Fault fault = logic.check(levels, now_ns);
+    const Fault fault = logic.evaluate(levels, now_ns);
     EXPECT_EQ(fault, now_ns < 100 * kMs ? Fault::kNone : Fault::kGripFlaps) << now_ns;
   }
   EXPECT_EQ(guard.calls(), 0u);
   EXPECT_EQ(logic.cause(), LinesCause::kGripFlaps);
   levels.estop_a = levels.estop_b = false;
-  EXPECT_EQ(logic.check(levels, now_ns), Fault::kEmergencyStop);
+  EXPECT_EQ(logic.evaluate(levels, now_ns), Fault::kEmergencyStop);
   EXPECT_EQ(logic.cause(), LinesCause::kBothOpen);
 }
 
@@ -103,7 +103,7 @@ TEST(ClutchSwitch, AFlappingLineCountsAsPressedUntilQuietForASecond) {
   std::int64_t now_ns = 0;
   const auto ticks = [&](int n, bool pressed) {
     for (int i = 0; i < n; ++i)
-      EXPECT_EQ(logic.check({.clutch = pressed}, now_ns += kMs), Fault::kNone);
+      EXPECT_EQ(logic.evaluate({.clutch = pressed}, now_ns += kMs), Fault::kNone);
   };
   ticks(20, false);
   EXPECT_EQ(logic.clutch(), false);

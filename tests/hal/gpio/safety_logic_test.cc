@@ -24,7 +24,7 @@ struct Bench {
   SafetyOutputs outputs;
 
   void tick(const SafetyLevels& levels, bool in_time = true) {
-    fault = logic.check(levels, now_ns);
+    fault = logic.evaluate(levels, now_ns);
     const bool faulted = fault != Fault::kNone;
     outputs = logic.drive({.healthy = in_time && !faulted, .armed = true, .faulted = faulted});
     now_ns += kMs;
@@ -73,7 +73,7 @@ TEST(SafetyLogic, EitherChannelStopsInTheSameTick) {
 TEST(SafetyLogic, PermissionIsGoneBeforeTheOutputsAreWritten) {
   Bench bench;
   bench.ticks(200, kGood);
-  bench.logic.check({.estop_a = false, .estop_b = true, .dead_man = true}, bench.now_ns);
+  bench.logic.evaluate({.estop_a = false, .estop_b = true, .dead_man = true}, bench.now_ns);
   EXPECT_FALSE(bench.logic.enabled());
 }
 
@@ -154,7 +154,7 @@ TEST(SafetyLogic, AShortPressIsRememberedAsWhatItWas) {
 TEST(SafetyLogic, AFaultOfAnotherPartDropsEnableAndTakesANew100ms) {
   Bench bench;
   bench.ticks(200, kGood);
-  bench.logic.check(kGood, bench.now_ns);
+  bench.logic.evaluate(kGood, bench.now_ns);
   EXPECT_FALSE(bench.logic.drive({.healthy = false, .armed = false, .faulted = true}).enable);
   bench.now_ns += kMs;
   bench.ticks(100, kGood);
@@ -186,14 +186,14 @@ TEST(SafetyLogic, ALoopThatWasStoppedComesBackWithoutPower) {
 
 TEST(SafetyLogic, WhatIsNotWiredIsGood) {
   SafetyLogic bare({});
-  EXPECT_EQ(bare.check({}, 0), Fault::kNone);
+  EXPECT_EQ(bare.evaluate({}, 0), Fault::kNone);
   SafetyLogic estop({.estop = true, .dead_man = false});
-  EXPECT_EQ(estop.check({.estop_a = true, .estop_b = true, .dead_man = false}, 0), Fault::kNone);
+  EXPECT_EQ(estop.evaluate({.estop_a = true, .estop_b = true, .dead_man = false}, 0), Fault::kNone);
 }
 
 TEST(SafetyLogic, TheLightShowsArmed) {
   SafetyLogic logic({});
-  logic.check({}, 0);
+  logic.evaluate({}, 0);
   EXPECT_TRUE(logic.drive({.healthy = true, .armed = true}).led);
   EXPECT_FALSE(logic.drive({.healthy = true, .armed = false}).led);
 }

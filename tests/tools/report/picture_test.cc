@@ -21,7 +21,7 @@ class PictureFiles : public testing::Test {
   PictureFiles() : folder_(testing::TempDir() + "tact's pictures " + std::to_string(getpid())) {
     fs::remove_all(folder_);
     fs::create_directories(folder_);
-    Table table("curve", {{"x_m"}, {"force_N"}}, 5);
+    Table table("curve", {{"x_m"}, {"force_N"}});
     for (int i = 0; i < 5; ++i) table.add({0.1 * i, 0.3 * i * i});
     EXPECT_TRUE(table.write(folder_));
   }
