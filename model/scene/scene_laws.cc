@@ -152,7 +152,7 @@ void visit_spring_patch(reader::Keys& k, Scene& scene) {
 void visit_compliance(reader::Keys& k, SceneText& out) {
   ComplianceSettings& c = out.scene.compliance;
   out.compliance_map.place = k.place_of("map");
-  k.text("map", "file of tact-lab condense, absolute or from the folder of the scene",
+  k.text("map", "file of tact-lab condense, absolute or from the scene's folder",
          out.compliance_map.file);
   k.number("working_depth_m", kDepth_m, "press and pull up to here", c.working_depth_m);
   k.count("curves", {2, 65}, "of the family, soft to stiff", c.curves, reader::Need::kOptional);

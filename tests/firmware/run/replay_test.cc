@@ -154,7 +154,7 @@ TEST_F(ReplayTest, TheTableHasEveryTickAndSaysWhichRunItWas) {
   EXPECT_EQ(rows, 3000);
   for (const char* name :
        {"tick,time_s,", ",tool_x_m,", ",tool_z_m,", ",wanted_x_N,", ",force_x_N,", ",acted,",
-        ",given_energy_J,contact_losses,", ",judge_us,"})
+        ",given_energy_J,contact_losses,", ",limit_us,"})
     EXPECT_NE(names.find(name), std::string::npos) << name;
   EXPECT_EQ(std::count(names.begin(), names.end(), ','), std::count(row.begin(), row.end(), ','));
   EXPECT_EQ(row.find("1800,"), 0u) << row;

@@ -32,7 +32,7 @@ TEST(LoadLibrary, NamesTheFirstFunctionThatIsMissingAndNoneThatMayBe) {
   const auto error = library->lacks();
   ASSERT_TRUE(error);
   EXPECT_EQ(error->sentence,
-            "libm.so.6 has no function exampleOpen, so it is not A vendor SDK or too old a "
+            "libm.so.6 has no function exampleOpen, so it is not A vendor's library or too old a "
             "one; let device.example.library name libexample.so.1 of a current SDK");
 }
 
