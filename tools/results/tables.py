@@ -54,7 +54,8 @@ def goals_of(law):
 
 def laws(load):
     """Each law in the liver: the whole tool, one sphere, and what a tick costs."""
-    yield from ("| law | scenes | tool, RMS of the peak | own force, worst place | one sphere, RMS | tick: detect, render, limit |",
+    yield from ("| law | scenes | tool, RMS of the peak | own force, worst place | one sphere, RMS "
+                "| tick: detect, render, limit |",
                 "|---|---|---|---|---|---|")
     chart, tools = load("chart"), load("tool")
     for law, scenes in SCENES.items():
