@@ -43,8 +43,8 @@ void stub_hd_lean(double rad) {
 void stub_hd_turn(const double r[3][3]) {
   const Locked locked;
   // The stylus' x, y, z are the tool's y, -x, z; the device's are y, z, x of W.
-  for (int i = 0; i < 3; ++i) {
-    const int w = (i + 1) % 3;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t w = (i + 1) % 3;
     state.turn[i] = r[w][1], state.turn[4 + i] = -r[w][0], state.turn[8 + i] = r[w][2];
   }
   state.turned = true;
