@@ -59,8 +59,8 @@ def ticks():
     row("wake-up, median", us(wake["p50_ns"]), "us", "", command)
     row("wake-up, p99.9", us(wake["p99.9_ns"]), "us", "", command)
     row("wake-up, worst seen", us(wake["max_ns"]), "us", "", command)
-    for phase in ("read", "touch", "feel", "judge", "write", "tell"):
-        what, goal = ("judge: gate and supervisor", "<= 300") if phase == "judge" else (phase, "")
+    for phase in ("read", "detect", "render", "limit", "write", "publish"):
+        what, goal = ("limit: gate and supervisor", "<= 300") if phase == "limit" else (phase, "")
         row(f"  {what}, median", report["phases"][phase]["p50_ns"], "ns", goal, command)
     row("ticks late", report["late"], f"of {report['ticks']}", "", command)
     thread = report["thread"]

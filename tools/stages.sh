@@ -24,7 +24,9 @@ once_more() {
 # one, alone, if nothing else has failed.
 ctest_twice() {
   local failed clocks name
+  rm -f "$1/Testing/Temporary/LastTestsFailed.log"
   ctest --test-dir "$1" --output-on-failure --no-tests=error "${@:2}" && return
+  [ -e "$1/Testing/Temporary/LastTestsFailed.log" ] || return 1  # no test has run
   mapfile -t failed < <(sed 's/^[0-9]*://' "$1/Testing/Temporary/LastTestsFailed.log")
   clocks=$(ctest --test-dir "$1" -N -L '[+]clock' | sed -nE 's/^ +Test +#[0-9]+: (.*)/\1/p')
   for name in "${failed[@]}"; do

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// controller.h - a tick without its device and its clock: touch, feel, judge.
+// controller.h - a tick without its device and its clock: detect, render, limit.
 //
 // Everything that decides the force is in TickInput, so a recorded run gives the same bits again
 // (replay.h). The loop (rt_loop.h) calls the three phases and measures them.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// rt_loop.h - the haptic loop: read, touch, feel, judge, write, tell, on a fixed grid of deadlines.
+// rt_loop.h - the haptic loop: read, detect, render, limit, write, publish, at fixed deadlines.
 //
 // Deadlines are absolute (grid.h). A tick that ends after its own period is late; the
 // periods it has eaten are skipped and counted, the grid never shifts (RT-14). Whatever ends the

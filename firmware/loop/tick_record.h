@@ -63,7 +63,7 @@ struct TickRecord {
   TickInput input;
   TickOutput output;
   std::array<std::int32_t, kPhaseCount>
-      phase_ns{};  // up to write; tell and total of the tick before
+      phase_ns{};  // up to write; publish and total of the tick before
   SphereContacts contacts;
 };
 

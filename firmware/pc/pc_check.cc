@@ -54,7 +54,7 @@ std::string name_red_rows(const std::vector<PcRow>& rows) {
   }
   if (red == 0) return {};
   return fmt::format(
-      "{} of {} checks of this PC are red ({}); tact-doctor tells why and the remedy", red,
+      "{} of {} checks of this PC are red ({}); tact-doctor says why and names the remedy", red,
       rows.size(), names);
 }
 

@@ -50,7 +50,7 @@ void LoopExecutor::take(const LoopTurn& turn) {
 bool LoopExecutor::hangs() {
   if (!guarded_.requests.stop.load() || ended_.load()) return false;
   const std::int64_t now_ns = loop::MonotonicClock().now_ns();
-  // The patience begins when the request is seen, whoever made it.
+  // The timeout begins when the request is seen, whoever made it.
   if (asked_ns_ == 0) asked_ns_ = now_ns;
   return now_ns - asked_ns_ > kTimeout_ns;
 }

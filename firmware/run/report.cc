@@ -84,7 +84,8 @@ json to_json(const loop::StopTimes& t) {
 }
 
 /// The largest that a hand was given, beside its limits.
-json rendered(const RunFacts& facts, const loop::LoopStatistics& loop, const gate::Gate& gate) {
+json largest_forces(const RunFacts& facts, const loop::LoopStatistics& loop,
+                    const gate::Gate& gate) {
   return {{"force_max_N", loop.max_force_N},
           {"force_limit_N", facts.force_limit_N},
           {"torque_max_Nm", loop.max_torque_Nm},
@@ -133,7 +134,7 @@ std::string make_report(const RunFacts& facts, const loop::LoopStatistics& loop,
                  {"resident_peak_kB", facts.resident_peak_kB},
                  {"law_table_bytes", facts.law_table_bytes},
                  {"environment", to_json(environment)}};
-  report.update(rendered(facts, loop, gate));
+  report.update(largest_forces(facts, loop, gate));
   return model::io::text_of(report, 2);
 }
 

@@ -37,7 +37,7 @@ Frame frame_of_tick(const Frame& picture, const LoggedTick& tick, std::int64_t t
 /// Gathers records; a frame shows the newest and the extremes since the frame before.
 class FrameBuilder {
  public:
-  /// `dents` and `shapes` outlive the builder; profiles are solved here, far from the loop.
+  /// `indentations` and `shapes` outlive the builder; profiles are solved here, far from the loop.
   FrameBuilder(const model::contact::IndentationView& indentations, loop::ShapeSlot& shapes,
                bool non_rt)
       : indentations_(indentations), shapes_(shapes), non_rt_(non_rt) {}

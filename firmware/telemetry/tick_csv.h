@@ -4,8 +4,8 @@
 // Columns have the names of the viewer's CSV where they are the same thing (recording_csv.h), with
 // every digit: force_* is what was written to the device after the gate, wanted_* what the law
 // asked for, limit and acted the number and name of what last limited it: a stage of the gate, the
-// end of the law, a tool inside the organ, or lost contact. Phases are us; tell and total are those
-// of the tick before. Lines that begin with # say which run it was.
+// end of the law, a tool inside the organ, or lost contact. Phases are us; publish and total are
+// those of the tick before. Lines that begin with # say which run it was.
 #pragma once
 
 #include <string>

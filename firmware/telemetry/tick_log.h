@@ -42,7 +42,7 @@ struct LoggedTick {
   std::uint8_t non_rt = 0;  // stamped on every record of a PC without hard real time
   std::int64_t due_ns = 0;
   std::int64_t margin_ns = 0;                              // of the tick before
-  std::array<std::int32_t, loop::kPhaseCount> phase_ns{};  // tell and total of the tick before
+  std::array<std::int32_t, loop::kPhaseCount> phase_ns{};  // publish and total of the tick before
   loop::TickInput input;
   loop::TickOutput output;
 

@@ -34,11 +34,12 @@ std::optional<pc::Shortfall> lift_rttime_limit() {
   const rlimit most{.rlim_cur = limit.rlim_max, .rlim_max = limit.rlim_max};
   setrlimit(RLIMIT_RTTIME, &most);
   if (limit.rlim_max == RLIM_INFINITY) return std::nullopt;
-  return pc::Shortfall{fmt::format(
-      "the kernel kills a real-time thread of this session after {} us without a sleep "
-      "(RLIMIT_RTTIME), without a word; start tactd after ulimit -R unlimited, or repair rttime in "
-      "/etc/security/limits.d/",
-      limit.rlim_max)};
+  return pc::Shortfall{
+      fmt::format("the kernel kills a real-time thread of this session after {} us without a sleep "
+                  "(RLIMIT_RTTIME), without a word; start tactd after ulimit -R unlimited, or take "
+                  "rttime out of "
+                  "/etc/security/limits.d/",
+                  limit.rlim_max)};
 }
 
 RunawayGuard::RunawayGuard(loop::Requests& requests, rlim_t longest_us) {

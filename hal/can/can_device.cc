@@ -74,7 +74,7 @@ class CanDevice final : public Device {
     }
     follow_permission();
     const bool ready = loop_.power == CanPower::kReady;
-    loop_.rendered = loop_.rendered || (ready && wrench.force_N != Vec3{});
+    loop_.has_shown_force = loop_.has_shown_force || (ready && wrench.force_N != Vec3{});
     drives_.push(loop_, ready ? delta_.motor_torques_Nm(wrench.force_N, gap_.torque_ratio())
                               : delta::Joints{});
     bus_->send();

@@ -67,11 +67,11 @@ struct BasicCanLoop {
   BasicCanBus<Frame>& bus;
   std::array<CanAxis, 3> axes{};
   CanPower power = CanPower::kOff;
-  std::int64_t now_ns = 0;     // of the last read; 0: none yet
-  std::int64_t before_ns = 0;  // of the read before
-  std::int64_t first_ns = 0;   // of the first one
-  std::int64_t asked_ns = 0;   // for torque, since starting; 0: not yet
-  bool rendered = false;       // a force has reached the drives: power that goes is a fault now
+  std::int64_t now_ns = 0;       // of the last read; 0: none yet
+  std::int64_t before_ns = 0;    // of the read before
+  std::int64_t first_ns = 0;     // of the first one
+  std::int64_t asked_ns = 0;     // for torque, since starting; 0: not yet
+  bool has_shown_force = false;  // a force has reached the drives: power that goes is a fault now
   FaultLatch latch{};
   WaitNote waits{};             // for power, before that
   std::int64_t ask_again_ns{};  // for it
@@ -109,7 +109,7 @@ struct BasicCanLoop {
   }
 };
 
-/// The rules of one kind of drives. All but words(), tally() and the two of
+/// The rules of one kind of drives. All but words(), counters() and the two of
 /// the end, push_stop() and push_leave(), belong to the loop.
 template <class Frame>
 class BasicCanDrives {

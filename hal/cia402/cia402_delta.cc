@@ -77,7 +77,7 @@ class Cia402s final : public can::CanDrives {
       if (!lost && !late) continue;
       if (!lost && !axis.guard.on()) loop.fail(i, Cia402Cause::kUnguarded, state);
       // Before any force reached the hand the drive is asked again until it has power.
-      if (loop.rendered)
+      if (loop.has_shown_force)
         loop.fail(i, lost ? Cia402Cause::kLeftEnabled : Cia402Cause::kNotStarted, state);
       else
         loop.wait_for_power(i, Cia402Cause::kWaits, axis.statusword);

@@ -189,7 +189,7 @@ class Moteuses final : public can::CanFdDrives {
     const auto mode = static_cast<std::uint32_t>(axis.mode);
     // The first reply after a stop may still tell of the time before it.
     const bool asked = before.ns != 0 && loop.axes[i].heartbeat_ns > before.ns;
-    if (asked && axis.has_low_supply() && !loop.rendered)
+    if (asked && axis.has_low_supply() && !loop.has_shown_force)
       return loop.wait_for_power(i, MoteusCause::kLowSupply, kLowSupplyFault);
     if (asked && axis.is_in(MoteusMode::kFault))
       loop.fail(i, MoteusCause::kFault, static_cast<std::uint32_t>(axis.fault));

@@ -175,7 +175,7 @@ class Odrives final : public can::CanDrives {
         arrival_ns < loop.first_ns + kOdriveSilence_ns && loop.power != CanPower::kReady;
     const bool is_06 = generation_ == OdriveGeneration::k06;
     const std::uint32_t error = beat->axis_error;
-    if (error == (is_06 ? kUnderVoltage06 : kUnderVoltage05) && !loop.rendered)
+    if (error == (is_06 ? kUnderVoltage06 : kUnderVoltage05) && !loop.has_shown_force)
       return loop.wait_for_power(at, OdriveCause::kNoSupply, 0);
     if (error != 0 && !(was_silent && error == (is_06 ? kWatchdog06 : kWatchdog05)))
       loop.fail(at, is_06 ? OdriveCause::kErrors06 : OdriveCause::kErrors05, error);

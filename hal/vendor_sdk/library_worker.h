@@ -72,7 +72,7 @@ class LibraryWorker {
   std::string words(std::int64_t now_ns) const;
 
   /// Ends the threads, zeroes the force and closes the device; false when the library did not
-  /// return within `patience`: then it is not closed, its last force may stay, and the process,
+  /// return within `timeout`: then it is not closed, its last force may stay, and the process,
   /// while the library hangs, ends without the destructors that would wait for it. Once.
   [[nodiscard]] bool stop(std::chrono::milliseconds timeout = std::chrono::seconds(2));
 

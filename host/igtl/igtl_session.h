@@ -5,7 +5,7 @@
 // is damaged is left out; the connection goes on. Bytes that are no header, or a length that
 // nothing has, end it. Out: while one batch is on its way the next waits, and a newer one takes
 // its place: a slow client skips batches and costs no memory. One that reads nothing for
-// kPatience is disconnected.
+// kTimeout is disconnected.
 #pragma once
 
 #include <array>

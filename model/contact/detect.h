@@ -7,7 +7,7 @@
 //                                    an open surface
 //     inside          -> free        wholly outside: phi >= r
 //     touching        -> free        r - phi - slack <= 0 at the proxy; at once touching again,
-//                                    with slack, where some part of the organ is nearer than r
+//                                    with an offset, where some part of the organ is nearer than r
 //     touching        -> lets go     wholly outside, and either beyond its law or with nothing of
 //                                    the organ between it and its place: its depth shrinks to 0
 //     lets go         -> free

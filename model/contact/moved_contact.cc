@@ -85,7 +85,7 @@ void MovedContact::leave(std::size_t sphere) RT_SAFE {
   const OrganSphere* gone = find(sphere);
   if (gone == nullptr) return;
   const auto slot = static_cast<std::size_t>(gone - organ_.sphere.data());
-  // What has crept under it lifts the others: that depth is slack.
+  // What has crept under it lifts the others: that depth is offset.
   for (std::size_t i = 0; i < organ_.count; ++i) {
     OrganSphere& b = organ_.sphere[i];
     const Vec3 lifted_m = organ_.compliance_m_per_N[i][slot] * gone->crept_N;
@@ -148,7 +148,7 @@ double MovedContact::pull_N(std::size_t sphere) const RT_SAFE {
 
 // W(d) <= W_held, d no larger than it was held
 // It goes back to the nearest surface point, without a tangential spring. If that stores more than
-// before, slack halves the depth until it does not.
+// before, an offset halves the depth until it does not.
 bool MovedContact::release(std::size_t sphere) RT_SAFE {
   constexpr int kHalvings = 12;  // each one solves the whole tool
   OrganSphere* b = at(sphere);
@@ -164,7 +164,7 @@ bool MovedContact::release(std::size_t sphere) RT_SAFE {
   const double deepest_m = b->radius_m - local_position(b->at, b->y_m).height_m;
   double share = 1.0;
   for (int i = 0; i <= kHalvings; ++i, share = i < kHalvings ? 0.5 * share : 0.0) {
-    // y moves while it is solved: what it gains on the way is slack, too.
+    // y moves while it is solved: what it gains on the way is offset, too.
     b->depth_offset_m = std::max(deepest_m - share * held_m, 0.0);
     status_.is_solved = solve_fixed();
     b->depth_offset_m += std::max(b->indentation_m - share * held_m, 0.0);

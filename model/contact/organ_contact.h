@@ -28,7 +28,7 @@ class OrganContact {
   /// No sphere touches.
   virtual void reset() RT_SAFE = 0;
   /// A sphere begins to touch near a site of the organ at rest. Its depth there beyond `paid_m` is
-  /// slack.
+  /// offset.
   virtual void begin(const Sphere& sphere, const Site& site, double paid_m) RT_SAFE = 0;
   virtual void leave(std::size_t sphere) RT_SAFE = 0;
 
@@ -39,7 +39,7 @@ class OrganContact {
   /// Is it outside, and either beyond its law or with nothing of the organ between it and its
   /// place?
   virtual bool must_let_go(Sphere& sphere) RT_SAFE = 0;
-  /// Depth beyond the law's range becomes slack; returns the depth that is left, m.
+  /// Depth beyond the law's range becomes offset; returns the depth that is left, m.
   virtual double cut_to_law_m(std::size_t sphere) RT_SAFE = 0;
   /// Its depth becomes smaller, and so it stays.
   virtual void add_depth_offset(std::size_t sphere, double depth_m) RT_SAFE = 0;

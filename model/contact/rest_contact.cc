@@ -201,7 +201,7 @@ void RestContact::press() RT_SAFE {
 
 // MC-6   C <- q C,   slack_i <- slack_i + (1 - q) sum over j of C_ij F_j
 // Sites that are too stiff for their coupling could have two solutions at some depth. Then C
-// becomes smaller, and what presses gets slack for it: its force stays, and the change gives no
+// becomes smaller, and what presses gets an offset for it: its force stays, and the change gives no
 // energy.
 void RestContact::keep_definite() RT_SAFE {
   if (std::count(is_coupled_.begin(), is_coupled_.end(), true) < 2) return;

@@ -239,10 +239,10 @@ void visit_device(reader::Keys& k, DeviceSettings& out) {
       "falcon", "a Novint Falcon", [&](reader::Keys& falcon) { visit_falcon(falcon, out.falcon); },
       kOptional);
   k.section(
-      "force_dimension", "a Force Dimension device, by its vendor SDK",
+      "force_dimension", "a Force Dimension device, by its vendor's SDK",
       [&](reader::Keys& keys) { visit_force_dimension(keys, out.force_dimension); }, kOptional);
   k.section(
-      "phantom", "a PHANTOM or 3D Systems Touch, by its vendor SDK",
+      "phantom", "a PHANTOM or 3D Systems Touch, by its vendor's SDK",
       [&](reader::Keys& keys) { visit_phantom(keys, out.phantom); }, kOptional);
   k.section(
       "lines", "safety lines", [&](reader::Keys& lines) { visit_lines(lines, out.lines); },

@@ -13,15 +13,15 @@ PatchMemory::PatchMemory(const law::Relaxation& relaxation, std::size_t nodes)
   fade_ = relaxation.after(stretched, 0.0, true).stretch_m;
   for (std::size_t i = 0; i < relaxation.terms(); ++i)
     for (Terms* terms : {&stretched_, &old_stretched_}) (*terms)[i].resize(nodes);
-  for (auto* v : {&rendered_m_, &still_mps_, &opening_N_}) v->resize(nodes);
+  for (auto* v : {&relaxed_rest_m_, &still_mps_, &opening_N_}) v->resize(nodes);
 }
 
 std::size_t PatchMemory::memory_bytes() const {
-  return rendered_m_.size() * (3 + 2 * relaxation_.terms()) * sizeof(Vec3);
+  return relaxed_rest_m_.size() * (3 + 2 * relaxation_.terms()) * sizeof(Vec3);
 }
 
 Vec3 PatchMemory::flowed_m(std::size_t node, const Vec3& position_m) const RT_SAFE {
-  return is_on() ? position_m - rendered_m_[node] : Vec3{};
+  return is_on() ? position_m - relaxed_rest_m_[node] : Vec3{};
 }
 
 void PatchMemory::keep(std::size_t node, std::size_t old_node) RT_SAFE {
@@ -46,7 +46,7 @@ void PatchMemory::renew(const SpringNetwork& network, std::span<const Vec3> posi
   if (!is_on()) return;
   const std::size_t n = position_m.size();
   const std::span<const Vec3> rest_m = network.node.rest_m;
-  for (std::size_t i = 0; i < n; ++i) rendered_m_[i] = blend_m(i, position_m[i], rest_m[i]);
+  for (std::size_t i = 0; i < n; ++i) relaxed_rest_m_[i] = blend_m(i, position_m[i], rest_m[i]);
   // c: what springs and loads leave over at rest. The tool is no part of it.
   SpringNetwork alone = network;
   alone.probe = {};
@@ -57,13 +57,13 @@ void PatchMemory::flow(std::span<Vec3> position_m, std::span<const Vec3> rest_m)
   if (!is_on()) return;
   for (std::size_t n = 0; n < position_m.size(); ++n) {
     // du: what the steps have added to z, for within a tick nothing flows and z moves as u does.
-    const Vec3 moved_m = rendered_m_[n] - blend_m(n, position_m[n], rest_m[n]);
+    const Vec3 moved_m = relaxed_rest_m_[n] - blend_m(n, position_m[n], rest_m[n]);
     position_m[n] += moved_m;
     for (std::size_t i = 0; i < relaxation_.terms(); ++i) {
       Vec3& stretched = stretched_[i][n];
       stretched = rest_m[n] + fade_[i] * (stretched + moved_m - rest_m[n]);
     }
-    rendered_m_[n] = blend_m(n, position_m[n], rest_m[n]);
+    relaxed_rest_m_[n] = blend_m(n, position_m[n], rest_m[n]);
   }
 }
 

@@ -32,7 +32,7 @@ class PatchMemory {
 
   bool is_on() const RT_SAFE { return relaxation_.terms() > 0; }
   /// X + z of the first n nodes: what is stepped.
-  std::span<Vec3> rendered_m(std::size_t n) RT_SAFE { return {rendered_m_.data(), n}; }
+  std::span<Vec3> relaxed_rest_m(std::size_t n) RT_SAFE { return {relaxed_rest_m_.data(), n}; }
   /// u - z of a node.
   Vec3 flowed_m(std::size_t node, const Vec3& position_m) const RT_SAFE;
 
@@ -55,9 +55,9 @@ class PatchMemory {
   Vec3 blend_m(std::size_t node, const Vec3& position_m, const Vec3& rest_m) const RT_SAFE;
 
   law::Relaxation relaxation_;
-  std::array<double, law::kMaxPronyTerms> fade_{};        // a_i
-  Terms stretched_, old_stretched_;                       // X + e_i
-  std::vector<Vec3> rendered_m_, still_mps_, opening_N_;  // X + z, zero velocities, c
+  std::array<double, law::kMaxPronyTerms> fade_{};            // a_i
+  Terms stretched_, old_stretched_;                           // X + e_i
+  std::vector<Vec3> relaxed_rest_m_, still_mps_, opening_N_;  // X + z, zero velocities, c
 };
 
 }  // namespace tact::model::springs

@@ -47,16 +47,16 @@ std::size_t PatchRegion::memory_bytes() const {
 
 SpringNetwork PatchRegion::network(std::span<const ProbeSpring> probes) RT_SAFE {
   const std::size_t n = count_;
-  return {
-      .node = {.position_m = relaxes() ? memory_.rendered_m(n) : std::span(position_m_.data(), n),
-               .velocity_mps = {velocity_mps_.data(), n},
-               .rest_m = {rest_m_.data(), n},
-               .load_N = {load_N_.data(), n},
-               .inverse_mass_per_kg = {node_inverse_mass_per_kg_.data(), n},
-               .anchor_N_per_m = {anchor_N_per_m_.data(), n},
-               .drag_Ns_per_m = {drag_Ns_per_m_.data(), n}},
-      .spring = {spring_.data(), springs_},
-      .probe = probes};
+  return {.node = {.position_m =
+                       relaxes() ? memory_.relaxed_rest_m(n) : std::span(position_m_.data(), n),
+                   .velocity_mps = {velocity_mps_.data(), n},
+                   .rest_m = {rest_m_.data(), n},
+                   .load_N = {load_N_.data(), n},
+                   .inverse_mass_per_kg = {node_inverse_mass_per_kg_.data(), n},
+                   .anchor_N_per_m = {anchor_N_per_m_.data(), n},
+                   .drag_Ns_per_m = {drag_Ns_per_m_.data(), n}},
+          .spring = {spring_.data(), springs_},
+          .probe = probes};
 }
 
 Vec3 PatchRegion::moved_m(std::uint32_t vertex) const RT_SAFE {
@@ -199,7 +199,7 @@ double PatchRegion::stored_energy_J() RT_SAFE {
 void PatchRegion::take_from_velocities(double energy_J) RT_SAFE {
   if (!(energy_J > 0.0)) return;
   const double moving_J = kinetic_energy_J(network({}));
-  // Speeds scale as the root of energy; what is not there is debt.
+  // Speeds scale as the root of energy; what is not there is the deficit.
   const double left = moving_J > energy_J ? std::sqrt(1.0 - energy_J / moving_J) : 0.0;
   for (std::size_t i = 0; i < count_; ++i) velocity_mps_[i] *= left;
   if (energy_J > moving_J) energy_deficit_J_ += energy_J - moving_J;

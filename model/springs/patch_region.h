@@ -6,7 +6,7 @@
 // so every vertex that moves has all its springs. A vertex that leaves the region returns to rest,
 // except on the lips of a cut, which keep the displacement that they had. The energy that a return
 // adds is taken from the kinetic energy of those that stay. What that cannot cover is kept as
-// handover_debt_J; it is small, since hardly anything moves at the rim. With relaxation
+// energy_deficit_J; it is small, since hardly anything moves at the rim. With relaxation
 // (patch_memory.h) a vertex that leaves also forgets how it was stretched, lips too.
 //
 // Gathering costs the region, not the mesh. Cuts are marks on edges; the list of cut triangles and

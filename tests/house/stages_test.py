@@ -12,7 +12,7 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 RUN = """logs=$PWD
 . "$0"
-tests() { inner() { ctest_twice "$PWD" -j 2; }; inner; }
+tests() { inner() { ctest_twice "$PWD" -j 2 -L "$which"; }; inner; }
 begin_counts
 run_stage tests
 tell_counts tests"""
@@ -20,23 +20,25 @@ tell_counts tests"""
 COUNTS = """add_test(Suite.Waits/"a" sh "-c" "echo >>tries; test $(wc -l <tries) -gt {fails}")
 set_tests_properties(Suite.Waits/"a" PROPERTIES LABELS room{label})
 add_test(Suite.Good true)
+set_tests_properties(Suite.Good PROPERTIES LABELS room)
 """
-# (how often it fails, its label, --long): exit status, the sum, is it called flaky?
+# (how often it fails, its label, --long, whose label is asked for): exit status, the sum, is it called flaky?
 ENDS = {
-    (0, "+clock", "no"): (0, "2 passed, 0 failed", False),
-    (1, "+clock", "no"): (0, "2 passed, 0 failed", True),
-    (2, "+clock", "no"): (1, "1 passed, 1 failed", False),
-    (1, "+clock", "yes"): (1, "1 passed, 1 failed", False),
-    (1, "", "no"): (1, "1 passed, 1 failed", False),
+    (0, "+clock", "no", "."): (0, "2 passed, 0 failed", False),
+    (1, "+clock", "no", "."): (0, "2 passed, 0 failed", True),
+    (2, "+clock", "no", "."): (1, "1 passed, 1 failed", False),
+    (1, "+clock", "yes", "."): (1, "1 passed, 1 failed", False),
+    (1, "", "no", "."): (1, "1 passed, 1 failed", False),
+    (0, "+clock", "no", "nobody"): (1, "0 passed, 1 failed", False),
 }
 
 
 def main():
     found = []
-    for (fails, label, long), wanted in ENDS.items():
+    for (fails, label, long, which), wanted in ENDS.items():
         with tempfile.TemporaryDirectory() as folder:
             (pathlib.Path(folder) / "CTestTestfile.cmake").write_text(COUNTS.format(fails=fails, label=label))
-            done = subprocess.run(["bash", "-c", f"long={long}\n{RUN}", ROOT / "tools/stages.sh"], cwd=folder, text=True,
+            done = subprocess.run(["bash", "-c", f"long={long} which={which}\n{RUN}", ROOT / "tools/stages.sh"], cwd=folder, text=True,
                                   capture_output=True, check=False)
         lines = done.stdout.splitlines()
         ended = (done.returncode, lines[-1] if lines else "", 'flaky: Suite.Waits/"a"' in lines)

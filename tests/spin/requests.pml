@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// requests.pml - the operator's desk (firmware/console/request_handler.cc) as Spin sees it, beside a loop.
+// requests.pml - the request handler (firmware/console/request_handler.cc) as Spin sees it, beside a loop.
 //
-// A person asks at any moment, and what was asked waits until the desk takes it. The loop changes
-// its state at any moment, so what the desk was shown may be over. A request is `news` when it was
+// A person asks at any moment, and what was asked waits until the handler takes it. The loop changes
+// its state at any moment, so what the handler was shown may be over. A request is `news` when it was
 // made after the words "ready, force is off" of this time of being ready.
 //
 // Properties, each an assertion by its number:
@@ -20,7 +20,7 @@
 #define STOPPED 3
 
 byte loop_state = OFF;   // the truth
-byte shown = OFF;        // what the desk was shown last
+byte shown = OFF;        // what the handler was shown last
 bool told = false;       // the words stand
 bit asks_arm = 0;        // a request that waits
 bit arm_is_news = 0;     // made after the words

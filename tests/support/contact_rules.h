@@ -127,8 +127,8 @@ class ContactRules {
 
   std::optional<Breach> b(const Tick& now) {
     const model::Vec3& q_m = now.sphere_contact.surface_point_m;
-    const bool contacts = now.sphere_contact.state == ContactState::kTouching ||
-                          now.sphere_contact.state == ContactState::kHeld;
+    const bool has_contact = now.sphere_contact.state == ContactState::kTouching ||
+                             now.sphere_contact.state == ContactState::kHeld;
     bool is_lag = is_outside_ && force_N_ > 0.0;
     if (is_lag && contacts) {
       const double way_m = norm(now.centre_m - q_m);

@@ -198,8 +198,8 @@ struct PathCounts {
     std::vector<model::contact::ProbeSphere> spheres{{{}, c.radius_m}};
     if (c.is_forceps) spheres = {{{0, -4e-3, 0}, c.radius_m}, {{0, 4e-3, 0}, c.radius_m}};
     SoftBody soft(surface, spheres, c.friction);
-    PathMaker vendor(surface.mesh.vertex_m, surface.mesh.triangle, body, c.radius_m, c.seed);
-    const Path path = vendor.make(6);
+    PathMaker maker(surface.mesh.vertex_m, surface.mesh.triangle, body, c.radius_m, c.seed);
+    const Path path = maker.make(6);
     const PathResult result = run_path(soft, body, path);
     ++paths;
     ticks += result.ticks;

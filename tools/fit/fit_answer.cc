@@ -23,7 +23,7 @@ constexpr int kMaxTicks = 4000;      // for a body with inertia to come to rest
 constexpr int kRestTicks = 25;       // the force stands still for so long
 constexpr double kRestRatio = 1e-6;  // a tick, of the force
 
-Indentation detect_contact(const FitSite& site, const FitSample& sample) {
+Indentation indentation_at(const FitSite& site, const FitSample& sample) {
   Indentation in{.indentation_m = sample.depth_m, .held = sample.depth_m < 0.0};
   if (site.at) in.place = site.at->place, in.normal = site.at->normal;
   return in;
@@ -147,7 +147,7 @@ Result<std::vector<FitAnswer>> answers_of(const model::scene::Scene& scene,
   std::vector<FitAnswer> out;
   for (const FitSite& site : data.sites) {
     for (const FitSample& sample : site.samples) {
-      const Indentation in = detect_contact(site, sample);
+      const Indentation in = indentation_at(site, sample);
       FitAnswer& answer = out.emplace_back();
       // From rest: what the sample before left behind must not act on this one.
       law.leave(0);

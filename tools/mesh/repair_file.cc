@@ -76,7 +76,7 @@ std::string remedy_of(const std::vector<std::string>& options) {
   for (const char* option : {"--weld", "--drop-degenerate"})
     if (std::find(options.begin(), options.end(), option) == options.end())
       missing += fmt::format(" {}", option);
-  return missing.empty() ? "remedy it in a mesh editor" : "add" + missing;
+  return missing.empty() ? "repair it in a mesh editor" : "add" + missing;
 }
 
 /// What repair.py says, line by line.

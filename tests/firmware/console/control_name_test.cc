@@ -17,15 +17,15 @@ class ControlNames : public testing::Test {
  protected:
   void SetUp() override { std::filesystem::create_directory(folder); }
   void TearDown() override { std::filesystem::remove_all(folder); }
-  void detect_contact(const std::string& path) const { std::ofstream(path) << ""; }
+  void touch_file(const std::string& path) const { std::ofstream(path) << ""; }
   std::string folder = testing::TempDir() + "tact-names-" + std::to_string(getpid());
 };
 
 TEST_F(ControlNames, AreFoundByTheSceneWhateverPathNamesIt) {
   const std::string scene = folder + "/liver.toml";
-  detect_contact(scene);
-  for (const pid_t process : {41, 7}) detect_contact(control_path(folder, scene, process));
-  detect_contact(control_path(folder, folder + "/other.toml", 8));
+  touch_file(scene);
+  for (const pid_t process : {41, 7}) touch_file(control_path(folder, scene, process));
+  touch_file(control_path(folder, folder + "/other.toml", 8));
   const auto found = find_controls(
       folder, folder + "/../" + folder.substr(folder.rfind('/') + 1) + "/./liver.toml");
   ASSERT_EQ(found.size(), 2u);
@@ -37,7 +37,7 @@ TEST_F(ControlNames, AreFoundByTheSceneWhateverPathNamesIt) {
 
 TEST_F(ControlNames, WhatDeadOnesLeftGoesAndTheLivingAndOtherFilesStay) {
   const std::string dead = control_path(folder, "a.toml", 7), file = folder + "/control-x.sock.txt";
-  detect_contact(file);
+  touch_file(file);
   auto living = ControlSocket::open(control_path(folder, "a.toml", 8));
   ASSERT_TRUE(living) << living.error().sentence;
   {

@@ -155,7 +155,7 @@ TEST_F(Requests, ALoopThatDoesNotAnswerIsNotAskedLater) {
 }
 
 TEST_F(Requests, ARequestThatWasDoneBeforeItWasTakenBackIsToldAsDone) {
-  std::uint32_t taken = 0;  // by a tick that ends after the desk has given up
+  std::uint32_t taken = 0;  // by a tick that ends after the handler has given up
   request_handler = make_handler(view, [&] {
     const std::uint32_t asked = requests.asked.load();
     if ((asked & 3U) != 0) taken = asked;

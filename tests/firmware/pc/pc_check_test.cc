@@ -231,7 +231,7 @@ TEST(ShortForm, IsToldByTactdWhenItStartsInRealTime) {
                                         "/model/scenes/liver.toml --no-telemetry --ticks 10" + how)
             .output;
     return said.find(" checks of this PC are red (") != std::string::npos &&
-           said.find("); tact-doctor tells why and the remedy\n") != std::string::npos;
+           said.find("); tact-doctor says why and names the remedy\n") != std::string::npos;
   };
   EXPECT_EQ(reports(""), !red.empty()) << red;
   EXPECT_FALSE(reports(" --free-run")) << "simulated time is never late";

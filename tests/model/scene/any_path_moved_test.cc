@@ -164,9 +164,9 @@ TEST(AnyPathMoved, TheShippedLiverKeepsTheRulesOfContact) {
   for (const Scene& s : scene) tissue.push_back(std::move(*make_tissue(s)));
   for (std::uint32_t seed = 1; counts.ticks < most_ticks; ++seed) {
     const std::size_t i = seed % scene.size();
-    tests::PathMaker vendor(whole->organ_mesh.vertex_m, whole->organ_mesh.triangle, body,
-                            whole->tool.spheres[0].radius_m, seed);
-    run(scene[i], *tissue[i], body, vendor.make(6),
+    tests::PathMaker maker(whole->organ_mesh.vertex_m, whole->organ_mesh.triangle, body,
+                           whole->tool.spheres[0].radius_m, seed);
+    run(scene[i], *tissue[i], body, maker.make(6),
         "seed " + std::to_string(seed) + ", " + std::to_string(scene[i].tool.spheres.size()) +
             " jaws, friction " + std::to_string(scene[i].contact.friction_ratio),
         counts);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tact-rig-gate: how many instructions Gate::judge takes while each of its stages acts.
+// tact-rig-gate: how many instructions Gate::limit takes while each of its stages acts.
 //
 //     alone     what comes in makes this stage act, and others only as it does: the longest tick
 //     longest   ticks of chance in which anything may act: the longest in which this stage did
@@ -201,7 +201,7 @@ json measure() {
 
 int main(int argc, char** argv) {
   CLI::App app{
-      "tact-rig-gate: time of Gate::judge while each stage acts, ns, as JSON; on the virtual bench "
+      "tact-rig-gate: time of Gate::limit while each stage acts, ns, as JSON; on the virtual bench "
       "one instruction is one ns."};
   try {
     app.parse(argc, argv);

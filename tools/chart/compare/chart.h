@@ -4,7 +4,7 @@
 //
 // First all rows are made and judged on all cores, then timed one after the other, so that they do
 // not disturb each other. The errors are the same on every machine; times belong to the row's
-// machine. The time of a law is the tick that a user gets: touch, feel and judge of the scene's
+// machine. The time of a law is the tick that a user gets: detect, render and limit of the scene's
 // whole tool (tool_check.h).
 #pragma once
 

@@ -11,7 +11,7 @@
 namespace tact::tools::jitter {
 
 /// The same absolute deadlines as firmware/loop/rt_loop.h; late ticks skip whole periods. Wake,
-/// tell and total are measured, all other phases are 0.
+/// publish and total are measured, all other phases are 0.
 class BareLoop {
  public:
   BareLoop(std::int64_t period_ns, std::uint64_t max_periods, firmware::loop::Clock& clock,

@@ -83,7 +83,7 @@ class TickSink {
   std::uint64_t ticks_ = 0, skipped_ = 0, late_ = 0, unseen_ = 0, over_threshold_ = 0;
   std::uint64_t base_ = 0;  // number of the slice's first tick
   std::int64_t first_due_ns_ = 0;
-  std::optional<TickTimes> unfinished_;    // tell and total come with the next record
+  std::optional<TickTimes> unfinished_;    // publish and total come with the next record
   std::optional<std::int64_t> handed_ns_;  // a force that no sample has followed yet
   std::map<std::uint64_t, TickTimes> newest_, around_late_;  // by tick
   std::uint64_t keep_until_ = 0;

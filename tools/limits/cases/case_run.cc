@@ -162,7 +162,7 @@ CaseRun::CaseRun(const Case& c, const LimitsBench& bench)
 bool CaseRun::play() {
   const int ticks = static_cast<int>(std::lround(case_.duration_s / moment_.period_s));
   firmware::loop::TickRecord record;
-  bool contacts = false;
+  bool has_contact = false;
   int waited = 0, open = 0;
   bool going = true;
   while (going && waited < most_wait_ticks_ && open < lead_ticks_ + ticks) {
@@ -171,9 +171,9 @@ bool CaseRun::play() {
     const bool cause = in_trouble(case_, moment_);
     loop_->step();
     while (ring_->pop(record)) keep(record, cause);
-    if (!contacts && record.input.sample.fresh) {
+    if (!has_contact && record.input.sample.fresh) {
       approach(record.input);
-      contacts = true;
+      has_contact = true;
       requests_.arm_at_start.store(true);
     }
     rows_.empty() ? ++waited : ++open;

@@ -22,7 +22,7 @@ class ActiveSet {
   ActiveSet(const Eigen::MatrixXd& compliance, const Eigen::VectorXd& overlap)
       : compliance_(compliance),
         overlap_(overlap),
-        contacts_(static_cast<std::size_t>(overlap.size())),
+        in_contact_(static_cast<std::size_t>(overlap.size())),
         pressure_(Eigen::VectorXd::Zero(overlap.size())) {
     // To begin with, all that would overlap touches.
     for (Eigen::Index i = 0; i < overlap.size(); ++i) set(i, overlap[i] > 0.0);
@@ -32,7 +32,7 @@ class ActiveSet {
   bool solve() {
     std::vector<Eigen::Index> in;
     for (Eigen::Index i = 0; i < overlap_.size(); ++i)
-      if (contacts(i)) in.push_back(i);
+      if (is_in_contact(i)) in.push_back(i);
     pressure_.setZero();
     residual_ = -overlap_;
     if (in.empty()) return true;
@@ -53,20 +53,20 @@ class ActiveSet {
     const double least_m = -kZero * overlap_.lpNorm<Eigen::Infinity>();
     std::vector<Eigen::Index> out;
     for (Eigen::Index i = 0; i < overlap_.size(); ++i)
-      if (contacts(i) ? pressure_[i] < least_Pa : residual_[i] < least_m) out.push_back(i);
+      if (is_in_contact(i) ? pressure_[i] < least_Pa : residual_[i] < least_m) out.push_back(i);
     return out;
   }
 
-  void flip(Eigen::Index i) { set(i, !contacts(i)); }
+  void flip(Eigen::Index i) { set(i, !is_in_contact(i)); }
   const Eigen::VectorXd& pressure() const { return pressure_; }
 
  private:
-  bool contacts(Eigen::Index i) const { return contacts_[static_cast<std::size_t>(i)]; }
-  void set(Eigen::Index i, bool yes) { contacts_[static_cast<std::size_t>(i)] = yes; }
+  bool is_in_contact(Eigen::Index i) const { return in_contact_[static_cast<std::size_t>(i)]; }
+  void set(Eigen::Index i, bool yes) { in_contact_[static_cast<std::size_t>(i)] = yes; }
 
   const Eigen::MatrixXd& compliance_;
   const Eigen::VectorXd& overlap_;
-  std::vector<bool> contacts_;
+  std::vector<bool> in_contact_;
   Eigen::VectorXd pressure_, residual_;
 };
 
