@@ -130,7 +130,7 @@ class ContactRules {
     const bool has_contact = now.sphere_contact.state == ContactState::kTouching ||
                              now.sphere_contact.state == ContactState::kHeld;
     bool is_lag = is_outside_ && force_N_ > 0.0;
-    if (is_lag && contacts) {
+    if (is_lag && has_contact) {
       const double way_m = norm(now.centre_m - q_m);
       const double share = way_m > 0.0 ? std::min(1.0, 1e-6 / way_m) : 1.0;
       is_lag = !body_.crosses(q_m + share * (now.centre_m - q_m), now.centre_m);
