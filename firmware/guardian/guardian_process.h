@@ -3,7 +3,7 @@
 // the device.
 //
 //     tactd lets go   it ends, and has sent nothing
-//     tactd died      it sends the device's shutdown frames (hal/shutdown_frames.h), tells a
+//     tactd died      it sends the device's shutdown frames (hal/shutdown_frames.h), informs a
 //                     person, ends
 //
 // It can do no more: its memory is locked, its system calls are filtered down to those, on the

@@ -156,7 +156,7 @@ void check_devices(const PcFiles& files, std::vector<PcRow>& rows) {
                     .verdict = Verdict::kUnknown,
                     .found = "none is plugged in",
                     .why = "only the simulated device can be felt",
-                    .remedy = "build/tactd --list-devices tells what is looked for"});
+                    .remedy = "build/tactd --list-devices lists what is looked for"});
 }
 
 }  // namespace

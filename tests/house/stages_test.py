@@ -38,7 +38,8 @@ def main():
     for (fails, label, long, which), wanted in ENDS.items():
         with tempfile.TemporaryDirectory() as folder:
             (pathlib.Path(folder) / "CTestTestfile.cmake").write_text(COUNTS.format(fails=fails, label=label))
-            done = subprocess.run(["bash", "-c", f"long={long} which={which}\n{RUN}", ROOT / "tools/stages.sh"], cwd=folder, text=True,
+            command = f"long={long} which={which}\n{RUN}"
+            done = subprocess.run(["bash", "-c", command, ROOT / "tools/stages.sh"], cwd=folder, text=True,
                                   capture_output=True, check=False)
         lines = done.stdout.splitlines()
         ended = (done.returncode, lines[-1] if lines else "", 'flaky: Suite.Waits/"a"' in lines)

@@ -42,7 +42,7 @@ void add_options(CLI::App& app, Options& o) {
                  "--tool --out FILE. Alone: the scene's laws as they are; with --reference: every "
                  "size too");
   app.add_option("--accuracy", o.accuracy,
-                 "with it alone: also this file, SCENE.accuracy, which tactd --check tells")
+                 "with it alone: also this file, SCENE.accuracy, which tactd --check prints")
       ->needs("--tool-reference")
       ->excludes("--reference");
   app.add_option("--laws", o.chart.request.laws, "only these laws")
@@ -85,7 +85,7 @@ Result<int> check_whole_tool(const program::Program& program, const Options& o,
   std::vector<ToolRow> rows;
   for (const auto& name : model::scene::kLawNames) {
     const auto& laws = o.chart.request.laws;
-    // Laws without a section of their own would be judged with numbers that nobody wrote.
+    // Laws without a section of their own would be measured with numbers that nobody wrote.
     if (!scene.describes(name.kind)) continue;
     if (!laws.empty() && std::find(laws.begin(), laws.end(), name.name) == laws.end()) continue;
     auto row = check_tool(scene, name.kind, *reference, o.chart.timing);

@@ -170,7 +170,7 @@ Result<int> run(const program::Program& program, Options& o) {
 void add_plan(program::Program& lab) {
   lab.add<Options>(
       "plan", "the fastest law and size within the scene's [tolerance] on this machine",
-      R"(No more model than the scene needs. A reference is linear elastic: compliance is judged
+      R"(No more model than the scene needs. A reference is linear elastic: compliance is checked
 with large_strain off. Time is detect, render and limit of the whole tool; shape is that
 under one sphere. The plan is kept in $XDG_CACHE_HOME/tact/plan (or ~/.cache); tactd
 reads it when the scene says law = "auto". When no law is good enough there is no plan.

@@ -122,7 +122,7 @@ void verify_socketcan(const json& file, Report& report) {
   }
 }
 
-/// Messages that no ODrive hears or tells here, by the numbers of their commands.
+/// Messages that no ODrive here receives or sends, by the numbers of their commands.
 const json& never_used() {
   static const json numbers{{"get_error", 0x03},
                             {"address", 0x06},

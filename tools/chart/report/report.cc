@@ -103,9 +103,10 @@ Result<report::Table> with_peers(const report::Table& laws, const std::string& p
   for (const report::Row& row : laws.rows()) out.add(row);
   for (const report::Row& row : peers->rows()) {
     if (peers->word(row, "kind") != "peer" || peers->word(row, "reference_hash") != reference_hash)
-      return Error{fmt::format(
-          "{}: the row {} {} is no peer that was judged by this --reference; leave out --peers",
-          path, peers->word(row, "family"), peers->word(row, "size"))};
+      return Error{
+          fmt::format("{}: the row {} {} is no peer that was measured against this --reference; "
+                      "leave out --peers",
+                      path, peers->word(row, "family"), peers->word(row, "size"))};
     out.add(row);
   }
   return out;
@@ -165,7 +166,7 @@ std::string chart_text(const report::Table& table) {
   if (const std::string peers = source_of_peers(table); !peers.empty()) out += peers + "\n";
   return out +
          "* on the front of tact: no other law is both faster and nearer to the reference.\n"
-         "The reference is linear: compliance is judged with large_strain off.\n"
+         "The reference is linear: compliance is checked with large_strain off.\n"
          "force, worst: one sphere, of the peak; 1 mm and so on: of the own force at the worst "
          "site.\n"
          "tool: the whole tool, RMS of the peak. Time of a law: detect, render, limit of the whole "

@@ -25,7 +25,7 @@ model::Result<std::vector<std::string>> write_chart(const report::Table& table,
 /// The rows of a chart.json.
 model::Result<report::Table> read_chart(const std::string& path);
 /// `laws`, and behind them the rows of kind "peer" of another chart.json, each with the revision
-/// and machine that it was measured on. An error: they were judged by another reference.
+/// and machine that it was measured on. An error: they were measured against another reference.
 model::Result<report::Table> with_peers(const report::Table& laws, const std::string& path,
                                         const std::string& reference_hash);
 /// Where and when the peers were measured, for text and picture; empty without peers.
