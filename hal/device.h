@@ -2,7 +2,7 @@
 // device.h - one interface for every haptic device, simulated or real.
 //
 // Only frame W leaves a device (types.h). What can be found out before the loop is found out while
-// opening, with a sentence; drives are powered by the loop alone, so that none is ever without
+// opening, with a message; drives are powered by the loop alone, so that none is ever without
 // commands (one that must be on to tell where it is gets zero torque all the while). A fault of the
 // device stays until it is opened again: a bus that comes back by itself moves nothing.
 #pragma once

@@ -61,7 +61,7 @@ pid_t ask_who_listens(const Address& address) {
   return peer.pid;
 }
 
-std::string words_of(pid_t process) {
+std::string text_of(pid_t process) {
   if (process == 0) return "another program";
   const auto comm = model::io::read_file(fmt::format("/proc/{}/comm", process));
   const std::string name = comm ? comm->substr(0, comm->find('\n')) : "";
@@ -79,7 +79,7 @@ Error taken(const std::string& name, const Address& address) {
   return Error{
       fmt::format("{} is driven by {} already, and two would push against each other: end "
                   "that one first",
-                  name, words_of(ask_who_listens(address)))};
+                  name, text_of(ask_who_listens(address)))};
 }
 
 }  // namespace

@@ -16,7 +16,7 @@
 namespace tact::hal {
 
 /// Takes the device of this name, such as "can0, node 1", for this process until it ends; once more
-/// is no error. Else a sentence with the pid of the program that has it.
+/// is no error. Else a message with the pid of the program that has it.
 std::optional<model::Error> lock_device(const std::string& name);
 
 }  // namespace tact::hal

@@ -67,7 +67,7 @@ Mounting mounting_of(const model::DeviceSettings& settings) {
           .scale = settings.motion_scale};
 }
 
-std::string words_of(const Mounting& m) {
+std::string text_of(const Mounting& m) {
   const Stance* const stance = stance_of(m);
   const std::string stands = stance != nullptr
                                  ? stance->words

@@ -50,7 +50,7 @@ struct Mounting {
 Mounting mounting_of(const model::DeviceSettings& settings);
 
 /// "the base hangs from above, its axis points down; down is (1, 0, 0) in its own axes".
-std::string words_of(const Mounting& mounting);
+std::string text_of(const Mounting& mounting);
 
 /// What a device that is mounted so can do, in W. Its workspace is the largest cylinder about x of
 /// W around the origin, in the proportions of the device's own, that the device surely reaches.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// udev_rules.h - the rules of tools/deploy/60-tact.rules, word for word, for the sentences that say
+// udev_rules.h - the rules of tools/deploy/60-tact.rules, word for word, for the messages that say
 // why something may not be opened. Source: man 7 udev.
 #pragma once
 

@@ -46,12 +46,12 @@ const char* LimitWitness::check(const WrittenTick& tick) {
   periods_ += passed;
   held_periods_ += passed;
   is_paused_ = is_paused_ || tick.skipped_periods > 0;
-  add_heat(periods);
+  add_thermal(periods);
   add_energy(tick, periods);
   keep_worst(tick, periods, stopped);
   const char* broken = broken_peak(tick, stopped);
   if (broken == nullptr) broken = broken_step(tick, periods, stopped);
-  if (broken == nullptr) broken = broken_heat();
+  if (broken == nullptr) broken = broken_thermal();
   if (broken == nullptr) broken = broken_energy(stopped);
   before_ = tick.written;
   return broken;
@@ -84,10 +84,11 @@ void LimitWitness::add_energy(const WrittenTick& tick, double periods) {
 }
 
 // First order, as a motor warms: dh/dt = (F^2 - h) / thermal_time_s.
-void LimitWitness::add_heat(double periods) {
+void LimitWitness::add_thermal(double periods) {
   const double share = std::min(periods * period_s_ / limits_.thermal_time_s, 1.0);
-  heat_N2_ += share * (dot(before_.force_N, before_.force_N) - heat_N2_);
-  torque_heat_N2m2_ += share * (dot(before_.torque_Nm, before_.torque_Nm) - torque_heat_N2m2_);
+  mean_square_N2_ += share * (dot(before_.force_N, before_.force_N) - mean_square_N2_);
+  torque_mean_square_N2m2_ +=
+      share * (dot(before_.torque_Nm, before_.torque_Nm) - torque_mean_square_N2m2_);
   is_overheated_ = is_overheated_ || is_paused_;
   longest_s_ = is_overheated_ ? std::max(longest_s_, periods * period_s_) : 0.0;
 }
@@ -106,8 +107,8 @@ void LimitWitness::keep_worst(const WrittenTick& tick, double periods, bool stop
     raise(worst_.step_Nm, norm(w.torque_Nm - before_.torque_Nm) / periods);
   }
   if (is_finite(tick.tool)) raise(worst_.power_W, given_power_W(w, tick.tool));
-  raise(worst_.rms_N, std::sqrt(heat_N2_));
-  raise(worst_.rms_Nm, std::sqrt(torque_heat_N2m2_));
+  raise(worst_.rms_N, std::sqrt(mean_square_N2_));
+  raise(worst_.rms_Nm, std::sqrt(torque_mean_square_N2m2_));
   raise(worst_.given_J, given_J_);
   raise(worst_.overdrawn_J, given_J_ - most_given_J() * kRounding_ratio);
 }
@@ -144,17 +145,17 @@ const char* LimitWitness::broken_step(const WrittenTick& tick, double periods, b
   return nullptr;
 }
 
-const char* LimitWitness::broken_heat() const {
+const char* LimitWitness::broken_thermal() const {
   const double most_N2 = continuous_N_ * continuous_N_ * kRounding_ratio;
   const double lever2_m2 = lever_m_ * lever_m_;
-  if (!is_overheated_ && heat_N2_ > most_N2) return "RMS <= continuous_force_N";
-  if (!is_overheated_ && torque_heat_N2m2_ > lever2_m2 * most_N2)
+  if (!is_overheated_ && mean_square_N2_ > most_N2) return "RMS <= continuous_force_N";
+  if (!is_overheated_ && torque_mean_square_N2m2_ > lever2_m2 * most_N2)
     return "RMS of T <= continuous_force_N torque_Nm / force_N";
   // The third exception of firmware/gate/README.md; until the force has come down at the slew
   // another 10 ms pass.
   const double more = (2.0 * longest_s_ + 0.010) / limits_.thermal_time_s;
   const double late_N2 = most_N2 + more * limits_.force_N * limits_.force_N * kRounding_ratio;
-  if (heat_N2_ > late_N2 || torque_heat_N2m2_ > lever2_m2 * late_N2)
+  if (mean_square_N2_ > late_N2 || torque_mean_square_N2m2_ > lever2_m2 * late_N2)
     return "RMS^2 <= continuous^2 + force^2 (2 times the longest wait + 10 ms) / thermal_time_s";
   return nullptr;
 }
@@ -176,8 +177,8 @@ void LimitWitness::disarm() {
   is_placed_ = false;
   is_permitted_ = true;
   const double most_N2 = continuous_N_ * continuous_N_;
-  is_overheated_ =
-      is_overheated_ && (heat_N2_ > most_N2 || torque_heat_N2m2_ > lever_m_ * lever_m_ * most_N2);
+  is_overheated_ = is_overheated_ && (mean_square_N2_ > most_N2 ||
+                                      torque_mean_square_N2m2_ > lever_m_ * lever_m_ * most_N2);
 }
 
 }  // namespace tact::model

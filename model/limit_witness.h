@@ -71,11 +71,11 @@ class LimitWitness {
   static double ratio(double rms, double most) { return rms > 0.0 ? rms / most : 0.0; }
   double most_given_J() const;
   void add_energy(const WrittenTick& tick, double periods);
-  void add_heat(double periods);
+  void add_thermal(double periods);
   void keep_worst(const WrittenTick& tick, double periods, bool stopped);
   const char* broken_peak(const WrittenTick& tick, bool stopped) const;
   const char* broken_step(const WrittenTick& tick, double periods, bool stopped) const;
-  const char* broken_heat() const;
+  const char* broken_thermal() const;
   const char* broken_energy(bool stopped) const;
   void disarm();
 
@@ -84,7 +84,7 @@ class LimitWitness {
   LimitExtremes worst_;
   Wrench before_;
   bool was_armed_ = false;
-  double heat_N2_ = 0.0, torque_heat_N2m2_ = 0.0;
+  double mean_square_N2_ = 0.0, torque_mean_square_N2m2_ = 0.0;
   bool is_overheated_ = false;  // a force was held for longer than could be known
   double longest_s_ = 0.0;      // that one was held meanwhile
   double given_J_ = 0.0, lately_J_ = 0.0;

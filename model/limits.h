@@ -10,7 +10,7 @@ struct Limits {
   double force_N = 0.0;                  // vector magnitude
   double torque_Nm = 0.0;                // vector magnitude
   double slew_N_per_s = 0.0;             // largest change of the force vector
-  double ramp_s = 0.0;                   // fade-in after arming
+  double ramp_s = 0.0;                   // ramp-up after arming
   double workspace_radius_m = 0.0;       // cylinder about the W x axis
   double workspace_half_length_m = 0.0;  // along the W x axis
   double speed_mps = 1.5;                // of the tool
@@ -32,8 +32,9 @@ constexpr Limits limits_in_use(Limits limits, double force_share) {
   return limits;
 }
 
-/// Without a sample the force fades to zero in this time (RT-15), and no slew may hold that up.
-inline constexpr double kStaleFade_s = 0.010;
+/// Without a sample the force ramps down to zero in this time (RT-15), and no slew may hold that
+/// up.
+inline constexpr double kStaleRampDown_s = 0.010;
 
 /// GT-6: |d(r F)| <= r |dF| + F dr <= s dt. The change of force in a period that the ramp,
 /// dr = dt/tr, leaves for everything else: (s - Fm/tr) dt. A scene whose slew is too slow for its
@@ -55,7 +56,7 @@ inline double brake_energy_J(double speed_mps, double force_N, double slew_N_per
 }
 
 /// GT-4: kappa = 2 (Fp^2 / Fc^2 - 1), of forces or of torques.
-inline double heat_steepness(double peak, double continuous) {
+inline double thermal_steepness(double peak, double continuous) {
   return continuous > 0.0 ? 2.0 * (peak * peak / (continuous * continuous) - 1.0) : 0.0;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// result.h - a value, or an error with the sentence that a person needs. As std::expected of C++23,
-// but an Error converts by itself, and value() of an error ends the program with its sentence.
+// result.h - a value, or an error with the message that a person needs. As std::expected of C++23,
+// but an Error converts by itself, and value() of an error ends the program with its message.
 // Set-up code only. What gives no value returns std::optional<Error>: empty is good.
 #pragma once
 
@@ -14,7 +14,7 @@ namespace tact::model {
 
 /// One line: what, where (file:line where there is one), and the remedy.
 struct Error {
-  std::string sentence;
+  std::string message;
 };
 
 /// A mistake of the code, so the program ends, with NDEBUG too: nothing reads a value that is none.
@@ -34,7 +34,7 @@ class [[nodiscard]] Result {
   T& value() { return const_cast<T&>(std::as_const(*this).value()); }
   const T& value() const {
     if (const T* value = std::get_if<T>(&content_)) return *value;
-    end_with("value() of an error: " + error().sentence);
+    end_with("value() of an error: " + error().message);
   }
   T& operator*() { return value(); }
   const T& operator*() const { return value(); }

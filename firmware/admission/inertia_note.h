@@ -9,7 +9,7 @@
 
 namespace tact::firmware::admission {
 
-/// A sentence for people where the hand's own strokes press so fast that the inertia of tissue,
+/// A message for people where the hand's own strokes press so fast that the inertia of tissue,
 /// which the law leaves out, would be felt (IN-2); empty where they do not, or the law has masses.
 std::string inertia_note(const model::scene::Scene& scene, const model::scene::TissueLaw& law);
 

@@ -8,7 +8,7 @@
 
 namespace tact::firmware::admission {
 
-/// A sentence for people where the surface of the organ is open, with the number of its boundary
+/// A message for people where the surface of the organ is open, with the number of its boundary
 /// edges and the rule of contact beside them (model/contact/triangle_tree.h); empty where it is
 /// closed.
 std::string open_organ_note(const model::scene::Scene& scene);

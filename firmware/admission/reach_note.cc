@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "model/contact/site.h"
+#include "model/contact/contact_point.h"
 #include "model/mesh/mesh.h"
 
 namespace tact::firmware::admission {

@@ -8,7 +8,7 @@
 
 namespace tact::firmware::admission {
 
-/// A sentence for people where the organ is a hundred times too large or too small for the
+/// A message for people where the organ is a hundred times too large or too small for the
 /// workspace, or where no stroke of the hand brings a sphere of the tool to its surface; else
 /// empty. It names the keys to change.
 std::string reach_note(const model::scene::Scene& scene);

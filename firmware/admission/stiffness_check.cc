@@ -29,17 +29,18 @@ double rounded_down(double value) {
   return value > 0.0 ? unit * std::floor(value / unit) : 0.0;
 }
 
-std::string spheres_in_words(std::size_t n) {
+std::string spheres_text(std::size_t n) {
   return n == 1 ? "1 sphere" : fmt::format("{} spheres", n);
 }
 
 // Of a held sphere at the stiffest place; 0: the law does not tell.
 double stiffest_sideways_N_per_m(const model::scene::Scene& scene,
-                                 const model::contact::SiteLaw& law) {
+                                 const model::contact::ContactLaw& law) {
   // Set by hand: the tissue's own does not count (contact/contact_scene.h).
   if (scene.contact.sliding_stiffness_N_per_m > 0.0) return scene.contact.sliding_stiffness_N_per_m;
   double most_N_per_m = 0.0;
-  const auto ask = [&](const model::contact::Place& place, const model::contact::Axes& axes) {
+  const auto ask = [&](const model::contact::SurfacePoint& place,
+                       const model::contact::Axes& axes) {
     const model::contact::TangentCompliance give = law.tangent_compliance(place, true, axes);
     for (const model::contact::ProbeSphere& sphere : scene.tool.spheres) {
       const double compliance_m_per_N = give.at(sphere.radius_m).least_eigenvalue();
@@ -50,7 +51,7 @@ double stiffest_sideways_N_per_m(const model::scene::Scene& scene,
   for (std::uint32_t t = 0; t < scene.organ_mesh.triangle.size(); ++t) {
     const model::contact::Axes axes = model::contact::axes_of(scene.organ_mesh.face_normal[t]);
     for (std::size_t corner = 0; corner < 3; ++corner) {
-      model::contact::Place place{.triangle = t, .weight = {}};
+      model::contact::SurfacePoint place{.triangle = t, .weight = {}};
       place.weight[corner] = 1.0;
       ask(place, axes);
     }
@@ -76,7 +77,7 @@ Error damps_too_much(const model::scene::Scene& scene, const Demand& demand, dou
       "{}: law {} damps too much: {:.4g} N s/m on {}, where this device has {:.4g} N s/m of its "
       "own and {:.4g} N/m to show at {:g} Hz; lower the damping of [{}] to {:.4g} N s/m or less",
       scene.path, model::scene::name_of(scene.law), demand.damping_Ns_per_m,
-      spheres_in_words(scene.tool.spheres.size()), own_Ns_per_m, needed_N_per_m, scene.rate_Hz,
+      spheres_text(scene.tool.spheres.size()), own_Ns_per_m, needed_N_per_m, scene.rate_Hz,
       model::scene::name_of(scene.law),
       rounded_down(own_Ns_per_m * (1.0 - needed_N_per_m / demand.undamped_limit_N_per_m) /
                    demand.spheres))};
@@ -104,7 +105,7 @@ Error too_stiff(const model::scene::Scene& scene, const model::scene::TissueLaw&
   return Error{fmt::format(
       "{}: {} is too stiff: {:.4g} N/m on {} is {:.4g} N/m, this device is stable to {:.4g} N/m at "
       "{:g} Hz; {} to {:.4g} N/m or less, raise rate_Hz, or take a device with more damping{}",
-      scene.path, what, one_N_per_m, spheres_in_words(scene.tool.spheres.size()),
+      scene.path, what, one_N_per_m, spheres_text(scene.tool.spheres.size()),
       demand.spheres * one_N_per_m, demand.limit_N_per_m, scene.rate_Hz, remedy,
       rounded_down(demand.limit_N_per_m / demand.spheres), damping_hint(device))};
 }
@@ -118,7 +119,7 @@ double limit_with_N_per_m(const model::scene::Scene& scene, const hal::DeviceInf
 constexpr std::size_t kSampled = 16;  // vertices each way; chosen: 50 ms
 
 /// Where the scene's own hand presses.
-model::scene::PressPlace hand_place(const model::scene::Scene& scene) {
+model::scene::PressPoint hand_place(const model::scene::Scene& scene) {
   const auto& vertices_m = scene.organ_mesh.vertex_m;
   const auto nearest = std::ranges::min_element(
       vertices_m, {}, [&](const model::Vec3& v) { return norm(v - scene.hand_site_m); });
@@ -156,12 +157,13 @@ model::Result<StiffnessMargin> check_renderable(const model::scene::Scene& scene
         "device {} does not tell its damping at the tool: fill DeviceInfo::at_tool", device.name)};
   const auto spheres = static_cast<double>(scene.tool.spheres.size());
   const double damping_Ns_per_m = tissue.law().damping_Ns_per_m();
-  const Demand demand{.law_N_per_m = tissue.law().stiffness_N_per_m(),
-                      .sliding_N_per_m = stiffest_sideways_N_per_m(scene, tissue.law().site_law()),
-                      .damping_Ns_per_m = damping_Ns_per_m,
-                      .spheres = spheres,
-                      .limit_N_per_m = stiffness_limit_N_per_m(scene, tissue.law(), device),
-                      .undamped_limit_N_per_m = limit_with_N_per_m(scene, device, 0.0)};
+  const Demand demand{
+      .law_N_per_m = tissue.law().stiffness_N_per_m(),
+      .sliding_N_per_m = stiffest_sideways_N_per_m(scene, tissue.law().contact_law()),
+      .damping_Ns_per_m = damping_Ns_per_m,
+      .spheres = spheres,
+      .limit_N_per_m = stiffness_limit_N_per_m(scene, tissue.law(), device),
+      .undamped_limit_N_per_m = limit_with_N_per_m(scene, device, 0.0)};
   const double needed_N_per_m = demand.needed_N_per_m();
   if (demand.fits(demand.law_N_per_m) && demand.fits(demand.sliding_N_per_m))
     return StiffnessMargin{.needed_N_per_m = needed_N_per_m, .limit_N_per_m = demand.limit_N_per_m};
@@ -195,9 +197,9 @@ model::Result<PressCheck> check_sweep(const model::scene::Scene& scene,
 model::Result<PressCheck> check_presses(const model::scene::Scene& scene,
                                         const model::scene::TissueLaw& law,
                                         const hal::DeviceInfo& device, double limit_N_per_m) {
-  std::vector<model::scene::PressPlace> places{hand_place(scene)};
+  std::vector<model::scene::PressPoint> places{hand_place(scene)};
   if (law.curve() != nullptr) {
-    const auto others = press_places(scene, kSampled, true, true);
+    const auto others = press_points(scene, kSampled, true, true);
     places.insert(places.end(), others.begin(), others.end());
   }
   const auto sweep =

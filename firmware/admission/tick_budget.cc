@@ -25,15 +25,15 @@ constexpr std::int64_t kLongest_ns = 150'000'000;
 constexpr double kCircleEdges = 5.0;  // radius: further than a patch bears before it gathers again
 
 /// One turn about the middle of a triangle, in its plane, each point brought to the surface.
-std::vector<model::contact::Site> circle(const model::mesh::SurfaceMesh& mesh,
-                                         std::uint32_t start) {
+std::vector<model::contact::ContactPoint> circle(const model::mesh::SurfaceMesh& mesh,
+                                                 std::uint32_t start) {
   const auto& corner = mesh.triangle[start];
   const Vec3 a_m = mesh.vertex_m[corner[0]], b_m = mesh.vertex_m[corner[1]];
   const Vec3 middle_m = (1.0 / 3.0) * (a_m + b_m + mesh.vertex_m[corner[2]]);
   const Vec3 along = normalized(b_m - a_m);
   const Vec3 across = cross(mesh.face_normal[start], along);
   const double radius_m = kCircleEdges * norm(b_m - a_m);
-  std::vector<model::contact::Site> way;
+  std::vector<model::contact::ContactPoint> way;
   std::uint32_t triangle = start;
   for (std::size_t i = 0; i < kTurnTicks; ++i) {
     const double angle_rad =
@@ -42,7 +42,7 @@ std::vector<model::contact::Site> circle(const model::mesh::SurfaceMesh& mesh,
         middle_m + radius_m * (std::cos(angle_rad) * along + std::sin(angle_rad) * across);
     // Each walk starts where the one before ended, as contact does.
     way.push_back(follow(mesh.view(), triangle, p_m));
-    triangle = way.back().place.triangle;
+    triangle = way.back().surface_point.triangle;
   }
   return way;
 }
@@ -61,11 +61,11 @@ double at_share(const std::vector<double>& ascending, double share) {
 
 }  // namespace
 
-LawTime measure_law(const model::scene::Scene& scene, model::contact::SiteLaw& twin,
+LawTime measure_law(const model::scene::Scene& scene, model::contact::ContactLaw& twin,
                     double deepest_m) {
   const std::size_t spheres = scene.tool.spheres.size();
   const std::size_t triangles = scene.organ_mesh.triangle.size();
-  std::vector<std::vector<model::contact::Site>> ways;
+  std::vector<std::vector<model::contact::ContactPoint>> ways;
   ways.reserve(spheres);
   for (std::size_t i = 0; i < spheres; ++i)
     ways.push_back(circle(scene.organ_mesh, static_cast<std::uint32_t>((triangles * i) / spheres)));
@@ -80,10 +80,10 @@ LawTime measure_law(const model::scene::Scene& scene, model::contact::SiteLaw& t
     // From no depth to half of the deepest and back, in 314 ticks.
     const double wave = std::sin(0.02 * static_cast<double>(tick));
     for (std::size_t i = 0; i < spheres; ++i) {
-      const model::contact::Site& site = ways[i][tick % kTurnTicks];
+      const model::contact::ContactPoint& site = ways[i][tick % kTurnTicks];
       // Summed, so that no answer can be left out, and a law that blew up is seen.
       unused_N += twin.respond({.sphere = i,
-                                .place = site.place,
+                                .surface_point = site.surface_point,
                                 .normal = site.normal,
                                 .indentation_m = 0.25 * deepest_m * (1.0 + wave)})
                       .law.force_N;
@@ -113,7 +113,7 @@ model::Result<TimeMargin> check_budget(const model::scene::Scene& scene,
     std::vector<pc::Shortfall> known;  // told before, by probe_rt_threads
     if (hard_real_time) pc::enter_rt_thread(*hard_real_time, known);
     pc::flush_denormals();
-    margin.measured = measure_law(scene, (*twin)->site_law(), (*twin)->range().press_m);
+    margin.measured = measure_law(scene, (*twin)->contact_law(), (*twin)->range().press_m);
   }).join();
   margin.checked_us = margin.tail_counts ? margin.measured.p999_us : margin.measured.median_us;
   if (margin.checked_us <= margin.budget_us) return margin;

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "firmware/pc/rt_setup.h"
-#include "model/contact/site_law.h"
+#include "model/contact/contact_law.h"
 #include "model/result.h"
 #include "model/scene/scene.h"
 #include "model/scene/tissue.h"
@@ -23,7 +23,7 @@ struct LawTime {
 /// All spheres pressed, each on its way round a small circle, so that a patch gathers again; a
 /// blade that stands still is asked for too. What it presses is forgotten: a law that remembers
 /// must be measured on a twin, not on the one that will be felt. About 0.2 s at most.
-LawTime measure_law(const model::scene::Scene& scene, model::contact::SiteLaw& twin,
+LawTime measure_law(const model::scene::Scene& scene, model::contact::ContactLaw& twin,
                     double deepest_m);
 
 struct TimeMargin {

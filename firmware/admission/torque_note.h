@@ -9,7 +9,7 @@
 
 namespace tact::firmware::admission {
 
-/// A sentence for people where the tool has a lever and the device no torque; else empty.
+/// A message for people where the tool has a lever and the device no torque; else empty.
 std::string torque_note(const model::scene::Scene& scene, const hal::DeviceInfo& device);
 
 }  // namespace tact::firmware::admission

@@ -62,7 +62,7 @@ void BlackBox::write(const Kept& kept) {
   const auto path = write_black_box(run_, kept);
   const std::lock_guard lock(reported_mutex_);
   if (!path) {
-    news_.push_back("black box: " + path.error().sentence);
+    news_.push_back("black box: " + path.error().message);
     return;
   }
   files_.push_back(*path);

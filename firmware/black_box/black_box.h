@@ -4,7 +4,7 @@
 // The telemetry thread adds ticks and frames, far from the loop; a thread of its own writes, so a
 // slow disk costs neither ticks nor frames. A file waits for 0.25 s after its fault, so that it
 // shows the force going; a loop that gives no more ticks is not waited for. Several faults of a run
-// give several files. A disk that takes nothing is told in a sentence, and the run goes on.
+// give several files. A disk that takes nothing is told in a message, and the run goes on.
 #pragma once
 
 #include <atomic>
@@ -35,7 +35,7 @@ class BlackBox final : public telemetry::Recorder {
   /// Writes what still waits.
   void finish() override;
 
-  /// What happened since the last call, one sentence each. Any thread.
+  /// What happened since the last call, one message each. Any thread.
   std::vector<std::string> news();
   /// All files so far. Any thread.
   std::vector<std::string> files() const;

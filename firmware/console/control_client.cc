@@ -35,7 +35,7 @@ int connect_to(const std::string& path) {
   return good ? fd : (close(fd), -1);
 }
 
-/// One word there, one sentence back.
+/// One word there, one message back.
 Result<Answer> talk(int fd, const ControlName& control, const std::string& word) {
   std::array<char, kLongestControlMessage> message{};
   const bool sent =

@@ -35,7 +35,7 @@ bool watch_it(int watch, int fd) {
   return epoll_ctl(watch, EPOLL_CTL_ADD, fd, &event) == 0;
 }
 
-/// It listens before it has its name: whoever finds the name is heard.
+/// It listens before it has its name: any user finds the name is heard.
 Result<int> listen_at(const std::string& path) {
   const std::string before = path + ".new";
   const auto listener =
@@ -50,11 +50,11 @@ Result<int> listen_at(const std::string& path) {
 }  // namespace
 
 std::string pack_answer(const Answer& answer) {
-  return ((answer.done ? "+" : "-") + answer.sentence).substr(0, kLongestControlMessage);
+  return ((answer.done ? "+" : "-") + answer.message).substr(0, kLongestControlMessage);
 }
 
 Answer unpack_answer(const std::string& message) {
-  return {.done = message.starts_with('+'), .sentence = message.empty() ? "" : message.substr(1)};
+  return {.done = message.starts_with('+'), .message = message.empty() ? "" : message.substr(1)};
 }
 
 ControlRequest::ControlRequest(ControlRequest&& other) noexcept
@@ -123,8 +123,7 @@ bool ControlSocket::accept_one() {
   }
   if (!model::io::has_trusted_peer(client) || !watch_it(watch_, client)) {
     const ControlRequest stranger(client, "");
-    stranger.answer(
-        {.done = false, .sentence = "only the user of this tactd, and root, are heard"});
+    stranger.answer({.done = false, .message = "only the user of this tactd, and root, are heard"});
     return true;
   }
   // Whoever connects and says nothing makes room for the next.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// control_socket.h - what a person asks of a running tactd by tactctl: one word, one sentence back.
+// control_socket.h - what a person asks of a running tactd by tactctl: one word, one message back.
 //
 // A Unix socket of its owner alone, 0600, in a folder that nobody else can write to. The kernel
 // says who asks (SO_PEERCRED); the same user and root are heard. No way leads here from a network.
@@ -19,10 +19,10 @@ namespace tact::firmware::console {
 /// What was done, or the reason why not.
 struct Answer {
   bool done = false;
-  std::string sentence;
+  std::string message;
 };
 
-/// As it goes over the socket, one message: '+' done or '-' refused, then the sentence.
+/// As it goes over the socket, one message: '+' done or '-' refused, then the message.
 std::string pack_answer(const Answer& answer);
 Answer unpack_answer(const std::string& message);
 

@@ -51,9 +51,9 @@ int main(int argc, char** argv) {
   if (folder) question.folder = *folder;
   const auto answer = folder ? console::ask_tactd(question) : folder.error();
   if (!answer) {
-    console::say(stderr, "tactctl: {}\n", answer.error().sentence);
+    console::say(stderr, "tactctl: {}\n", answer.error().message);
     return 2;
   }
-  console::say(answer->done ? stdout : stderr, "{}\n", answer->sentence);
+  console::say(answer->done ? stdout : stderr, "{}\n", answer->message);
   return answer->done ? 0 : 1;
 }

@@ -123,8 +123,8 @@ std::string OperatorView::status() const {
   return out;
 }
 
-void OperatorView::report(const std::string& sentence) const {
-  say(stderr, "{}tactd: {}\n", terminal_ ? "\n" : "", sentence);
+void OperatorView::report(const std::string& message) const {
+  say(stderr, "{}tactd: {}\n", terminal_ ? "\n" : "", message);
 }
 
 void OperatorView::end() const {

@@ -25,12 +25,12 @@ class OperatorView {
   /// Empty where the person may ask for it, by what was told last.
   std::string why_not_arm() const;
   std::string why_not_reset() const;
-  /// One sentence: device, state, force, the fault if there is one, a tool inside the organ, and
+  /// One message: device, state, force, the fault if there is one, a tool inside the organ, and
   /// how often contact was lost.
   std::string status() const;
   const std::string& device() const { return name_; }
-  /// One sentence to standard error, beside the live line.
-  void report(const std::string& sentence) const;
+  /// One message to standard error, beside the live line.
+  void report(const std::string& message) const;
   /// Ends the live line.
   void end() const;
 

@@ -49,15 +49,15 @@ Answer RequestHandler::do_word(const std::string& word, bool too_early) {
   if (word == "reset") return reset(too_early);
   if (word == "disarm") return disarm();
   if (word == "stop") return stop();
-  if (word == "status") return {.done = true, .sentence = view_.status()};
-  return {.done = false, .sentence = "arm, disarm, reset, stop and status are known, nothing else"};
+  if (word == "status") return {.done = true, .message = view_.status()};
+  return {.done = false, .message = "arm, disarm, reset, stop and status are known, nothing else"};
 }
 
 Answer RequestHandler::arm(bool too_early) {
   if (too_early) return refuse("armed", kTooEarly);
   if (const std::string why = view_.why_not_arm(); !why.empty()) return refuse("armed", why);
   const auto armed = ask_loop(loop::Request::kArm);
-  if (armed == true) return {.done = true, .sentence = view_.device() + ": armed, force is on"};
+  if (armed == true) return {.done = true, .message = view_.device() + ": armed, force is on"};
   return not_done("armed", armed,
                   "no power, or no good sample in that moment; look, and arm again");
 }
@@ -67,7 +67,7 @@ Answer RequestHandler::reset(bool too_early) {
   if (const std::string why = view_.why_not_reset(); !why.empty()) return refuse("reset", why);
   const auto ready = ask_loop(loop::Request::kReset);
   if (ready != true) return not_done("reset", ready, "its cause is not gone, or no good sample");
-  return {.done = true, .sentence = view_.device() + ": reset, ready; arm it"};
+  return {.done = true, .message = view_.device() + ": reset, ready; arm it"};
 }
 
 // Force goes away by it: never too early, and asked of the loop whatever was shown last.
@@ -82,8 +82,8 @@ Answer RequestHandler::disarm() {
   const bool stopped = newest_().state == loop::State::kStopped;
   return {
       .done = true,
-      .sentence = view_.device() + (stopped ? ": no force; it has stopped: reset it, then arm it"
-                                            : ": no force; arm it again when it shall have one")};
+      .message = view_.device() + (stopped ? ": no force; it has stopped: reset it, then arm it"
+                                           : ": no force; arm it again when it shall have one")};
 }
 
 // A loop that does not tick by then shall not do it later: the request is taken back. What a tick
@@ -108,20 +108,20 @@ Answer RequestHandler::not_done(const char* what, const std::optional<bool>& ans
                                 const char* why) const {
   const auto words = fmt::format("not {}: {}", what, answer ? why : "the loop gives no answer");
   view_.report(words);
-  return {.done = false, .sentence = fmt::format("{}: {}", view_.device(), words)};
+  return {.done = false, .message = fmt::format("{}: {}", view_.device(), words)};
 }
 
 Answer RequestHandler::stop() {
   // The one request that is never refused.
   requests_.stop.store(true);
-  return {.done = true, .sentence = view_.device() + ": force to zero, then tactd ends"};
+  return {.done = true, .message = view_.device() + ": force to zero, then tactd ends"};
 }
 
 Answer RequestHandler::refuse(const char* what, const std::string& why) const {
   // Counted with those that the loop refuses: the report has one number.
   requests_.refused.fetch_add(1);
   view_.report(fmt::format("not {}: {}", what, why));
-  return {.done = false, .sentence = fmt::format("{}: not {}: {}", view_.device(), what, why)};
+  return {.done = false, .message = fmt::format("{}: not {}: {}", view_.device(), what, why)};
 }
 
 std::unique_ptr<ControlSocket> open_control(const std::string& scene_path,
@@ -131,7 +131,7 @@ std::unique_ptr<ControlSocket> open_control(const std::string& scene_path,
                         : model::Result<std::unique_ptr<ControlSocket>>(folder.error());
   if (control) return std::move(*control);
   view.report(fmt::format("tactctl does not reach this tactd, so nobody can arm it: {}",
-                          control.error().sentence));
+                          control.error().message));
   return nullptr;
 }
 

@@ -9,11 +9,11 @@
 namespace tact::firmware::gate {
 namespace {
 
-using model::kStaleFade_s;
+using model::kStaleRampDown_s;
 using model::slew_beside_ramp_N;
 
 // Chosen: nothing is wrong with the device, it may be gentler than without a sample.
-constexpr double kWorkspaceFade_s = 0.050;
+constexpr double kWorkspaceRampDown_s = 0.050;
 constexpr std::int64_t kLostAfter = 20;  // missed samples in a row
 // Room for the tool to speed up while the force falls at its slew:
 //
@@ -64,14 +64,14 @@ Gate::Gate(const model::Limits& limits, double period_s, double force_share)
       lever_m_(force_limit_N_ > 0.0 ? torque_limit_Nm_ / force_limit_N_ : 0.0),
       force_step_N_(slew_beside_ramp_N(limits, force_limit_N_, period_s)),
       torque_step_Nm_(lever_m_ * force_step_N_),
-      fresh_(kStaleFade_s),
-      workspace_(kWorkspaceFade_s),
-      speed_(kWorkspaceFade_s),
+      fresh_(kStaleRampDown_s),
+      workspace_(kWorkspaceRampDown_s),
+      speed_(kWorkspaceRampDown_s),
       ramp_(limits.ramp_s),
       tank_(tank_settings(limits, force_limit_N_, lever_m_, period_s)),
-      warm_force_(thermal_limit(limits, force_limit_N_, period_s)),
-      warm_torque_(thermal_limit(limits, torque_limit_Nm_, period_s)) {
-  // Closed at the start, and after each stop: a force is always faded in.
+      thermal_force_(thermal_limit(limits, force_limit_N_, period_s)),
+      thermal_torque_(thermal_limit(limits, torque_limit_Nm_, period_s)) {
+  // Closed at the start, and after each stop: a force is always ramped up.
   ramp_.set(0.0);
 }
 
@@ -81,13 +81,13 @@ LimitedForce Gate::limit(const GateInput& input) RT_SAFE {
   book_last_write(input, periods);
   // In the order of gate.h; each stage keeps what the ones before it promised (README.md).
   check_finite(input, verdict);
-  fade_missed_samples(input, verdict);
+  ramp_down_missed_samples(input, verdict);
   check_energy(input.armed, verdict);
   if (!check_armed(input.armed, verdict)) return without_force(verdict);
-  fade_outside(input.tool, periods, verdict);
+  ramp_down_outside(input.tool, periods, verdict);
   const Permitted permitted = permitted_now();
   keep_passive(permitted, verdict);
-  limit_magnitudes(permitted.heat, verdict);
+  limit_magnitudes(permitted.thermal, verdict);
   limit_slew(permitted.all, periods, verdict);
   limit_power(input.tool, permitted.all, periods, verdict);
   ramp_up(verdict);
@@ -108,8 +108,8 @@ void Gate::note(Stage stage, Fault reason, LimitedForce& verdict) RT_SAFE {
 // What was written before this tick has done its work by now: its energy and its heat.
 void Gate::book_last_write(const GateInput& input, double periods) RT_SAFE {
   tank_.observe(input.tool, input.fresh && is_finite(input.tool), periods, written_);
-  warm_force_.heat(written_.force_N, periods);
-  warm_torque_.heat(written_.torque_Nm, periods);
+  thermal_force_.add(written_.force_N, periods);
+  thermal_torque_.add(written_.torque_Nm, periods);
 }
 
 void Gate::check_finite(const GateInput& input, LimitedForce& verdict) RT_SAFE {
@@ -120,7 +120,7 @@ void Gate::check_finite(const GateInput& input, LimitedForce& verdict) RT_SAFE {
 }
 
 // A period that was skipped has missed its sample, unless a fresh one tells in the end.
-void Gate::fade_missed_samples(const GateInput& input, LimitedForce& verdict) RT_SAFE {
+void Gate::ramp_down_missed_samples(const GateInput& input, LimitedForce& verdict) RT_SAFE {
   // Closes by the periods missed since the last tick, the first of a row not among them.
   const std::int64_t held = std::max<std::int64_t>(missed_, 1);  // the first one is held
   const bool missing = !input.fresh && input.armed;  // a device may take its time to wake
@@ -144,7 +144,8 @@ bool Gate::check_armed(bool armed, LimitedForce& verdict) RT_SAFE {
   return false;
 }
 
-void Gate::fade_outside(const model::Tool& tool, double periods, LimitedForce& verdict) RT_SAFE {
+void Gate::ramp_down_outside(const model::Tool& tool, double periods,
+                             LimitedForce& verdict) RT_SAFE {
   const double inside = workspace_.step(is_inside(limits_, tool.position_m), period_s_, periods);
   const double slow = speed_.step(is_slow(limits_, tool), period_s_, periods);
   if (slow < 1.0) note(Stage::kWorkspace, Fault::kTooFast, verdict);
@@ -155,34 +156,36 @@ void Gate::fade_outside(const model::Tool& tool, double periods, LimitedForce& v
 
 Gate::Permitted Gate::permitted_now() const RT_SAFE {
   const double passive_N = tank_.allowed_N(), passive_Nm = lever_m_ * passive_N;
-  const double warm_N = warm_force_.allowed(), warm_Nm = warm_torque_.allowed();
-  Magnitude all{.force_N = std::fmin(warm_N, passive_N),
-                .torque_Nm = std::fmin(warm_Nm, passive_Nm)};
+  const double thermal_N = thermal_force_.allowed(), thermal_Nm = thermal_torque_.allowed();
+  Magnitude all{.force_N = std::fmin(thermal_N, passive_N),
+                .torque_Nm = std::fmin(thermal_Nm, passive_Nm)};
   if (const double fresh = fresh_.level(); fresh < 1.0) {  // however much is wanted
     all.force_N = std::fmin(all.force_N, fresh * force_limit_N_);
     all.torque_Nm = std::fmin(all.torque_Nm, fresh * torque_limit_Nm_);
   }
-  return {.energy = {passive_N, passive_Nm}, .heat = {warm_N, warm_Nm}, .all = all};
+  return {.energy = {passive_N, passive_Nm}, .thermal = {thermal_N, thermal_Nm}, .all = all};
 }
 
 void Gate::keep_passive(const Permitted& permitted, LimitedForce& verdict) RT_SAFE {
-  const Magnitude &energy = permitted.energy, &heat = permitted.heat;
+  const Magnitude &energy = permitted.energy, &thermal = permitted.thermal;
   Wrench& w = verdict.wrench;
   // Of energy and heat the tighter one shortens and is told: here, or in the next stage.
   const bool damped = tank_.damp(w);
-  const bool braked = energy.force_N < heat.force_N && limit_magnitude(w.force_N, energy.force_N);
+  const bool braked =
+      energy.force_N < thermal.force_N && limit_magnitude(w.force_N, energy.force_N);
   const bool turn_braked =
-      energy.torque_Nm < heat.torque_Nm && limit_magnitude(w.torque_Nm, energy.torque_Nm);
+      energy.torque_Nm < thermal.torque_Nm && limit_magnitude(w.torque_Nm, energy.torque_Nm);
   if (damped || braked || turn_braked) note(Stage::kPassivity, Fault::kEnergyLimited, verdict);
 }
 
-void Gate::limit_magnitudes(const Magnitude& heat, LimitedForce& verdict) RT_SAFE {
-  if (limit_magnitude(verdict.wrench.force_N, heat.force_N))
+void Gate::limit_magnitudes(const Magnitude& thermal, LimitedForce& verdict) RT_SAFE {
+  if (limit_magnitude(verdict.wrench.force_N, thermal.force_N))
     note(Stage::kMagnitude,
-         heat.force_N < force_limit_N_ ? Fault::kContinuousLimited : Fault::kForceLimited, verdict);
-  if (limit_magnitude(verdict.wrench.torque_Nm, heat.torque_Nm))
+         thermal.force_N < force_limit_N_ ? Fault::kContinuousLimited : Fault::kForceLimited,
+         verdict);
+  if (limit_magnitude(verdict.wrench.torque_Nm, thermal.torque_Nm))
     note(Stage::kMagnitude,
-         heat.torque_Nm < torque_limit_Nm_ ? Fault::kContinuousLimited : Fault::kTorqueLimited,
+         thermal.torque_Nm < torque_limit_Nm_ ? Fault::kContinuousLimited : Fault::kTorqueLimited,
          verdict);
 }
 

@@ -3,15 +3,15 @@
 // this order, until one makes it zero:
 //
 //   finite     NaN or infinity in force or sample: zero, latches
-//   fresh      one missed sample holds, from the second the force fades to zero in 10 ms, and so
-//              does the largest that is allowed; 20 latch
+//   fresh      one missed sample holds, from the second the force ramps down to zero in 10 ms, and
+//              so does the largest that is allowed; 20 latch
 //   armed      zero unless the supervisor says armed
-//   workspace  outside the permitted cylinder, or faster than permitted, it fades to zero in 50 ms
-//   passivity  gives no more energy than it took and has a budget for (GT-1 to GT-3)
+//   workspace  outside the permitted cylinder, or faster than permitted, it ramps down to zero in
+//   50 ms passivity  gives no more energy than it took and has a budget for (GT-1 to GT-3)
 //   magnitude  |F| and |T| as vectors: peak, and RMS over a time (GT-4)
 //   slew       |dF| and |dT| in the time since the last write
 //   power      F . v + T . w (GT-5)
-//   ramp       fades in after arming
+//   ramp       ramps up after arming
 //
 // Two checks that latch run elsewhere than their stage: overdrawn energy (passivity) before armed,
 // and the power of what would be written (power) after ramp.
@@ -22,20 +22,20 @@
 //   energy given since arming <= energy_J + recovery_W t        (torque likewise)
 //
 // dt is the time since the force before was written, skipped periods included: a loop that was late
-// fades and shortens by all the time that passed, so that 10 ms are 10 ms and 20 samples are 20
-// periods. A force grows and turns by one period's slew at most, and no fade opens faster.
+// ramps down and shortens by all the time that passed, so that 10 ms are 10 ms and 20 samples are
+// 20 periods. A force grows and turns by one period's slew at most, and no ramp-down opens faster.
 //
-// Each stage has a reason code (model/fault.h) and a counter. Saturates and fades, never cuts to
-// zero in one step unless stopped. Why the limits hold together, and the three that must latch or
-// wait: README.md.
+// Each stage has a reason code (model/fault.h) and a counter. Saturates and ramps down, never cuts
+// to zero in one step unless stopped. Why the limits hold together, and the three that must latch
+// or wait: README.md.
 #pragma once
 
 #include <array>
 #include <cstdint>
 
 #include "firmware/gate/energy_tank.h"
-#include "firmware/gate/fader.h"
 #include "firmware/gate/limiter.h"
+#include "firmware/gate/ramp_down.h"
 #include "firmware/gate/thermal_limit.h"
 #include "model/fault.h"
 #include "model/limits.h"
@@ -87,11 +87,11 @@ class Gate {
   const std::array<std::uint64_t, kStageCount>& counters() const RT_SAFE { return counter_; }
   double force_limit_N() const RT_SAFE { return force_limit_N_; }
   double torque_limit_Nm() const RT_SAFE { return torque_limit_Nm_; }
-  double continuous_force_N() const RT_SAFE { return warm_force_.continuous(); }
+  double continuous_force_N() const RT_SAFE { return thermal_force_.continuous(); }
   double energy_budget_J() const RT_SAFE { return limits_.energy_J; }
   /// Since arming, more than was taken; below zero: more was taken.
   double given_energy_J() const RT_SAFE { return tank_.given_J(); }
-  double rms_force_N() const RT_SAFE { return warm_force_.rms(); }
+  double rms_force_N() const RT_SAFE { return thermal_force_.rms(); }
   double speed_limit_mps() const RT_SAFE { return limits_.speed_mps; }
   double turn_limit_radps() const RT_SAFE { return limits_.turn_radps; }
   double period_s() const RT_SAFE { return period_s_; }
@@ -102,18 +102,18 @@ class Gate {
   };
   /// The longest force and torque of this tick: by energy, by heat, by all that limits them.
   struct Permitted {
-    Magnitude energy, heat, all;
+    Magnitude energy, thermal, all;
   };
 
   void note(Stage stage, Fault reason, LimitedForce& verdict) RT_SAFE;
   // The stages, one function each; passivity and power have a check that latches besides.
   void check_finite(const GateInput& input, LimitedForce& verdict) RT_SAFE;
-  void fade_missed_samples(const GateInput& input, LimitedForce& verdict) RT_SAFE;
+  void ramp_down_missed_samples(const GateInput& input, LimitedForce& verdict) RT_SAFE;
   void check_energy(bool armed, LimitedForce& verdict) RT_SAFE;
   bool check_armed(bool armed, LimitedForce& verdict) RT_SAFE;  // false: no force
-  void fade_outside(const model::Tool& tool, double periods, LimitedForce& verdict) RT_SAFE;
+  void ramp_down_outside(const model::Tool& tool, double periods, LimitedForce& verdict) RT_SAFE;
   void keep_passive(const Permitted& permitted, LimitedForce& verdict) RT_SAFE;
-  void limit_magnitudes(const Magnitude& heat, LimitedForce& verdict) RT_SAFE;
+  void limit_magnitudes(const Magnitude& thermal, LimitedForce& verdict) RT_SAFE;
   void limit_slew(const Magnitude& most, double periods, LimitedForce& verdict) RT_SAFE;
   void limit_power(const model::Tool& tool, const Magnitude& most, double periods,
                    LimitedForce& verdict) RT_SAFE;
@@ -130,9 +130,9 @@ class Gate {
   double force_limit_N_, torque_limit_Nm_;
   double lever_m_;                        // torque limit over force limit; 0: no torque
   double force_step_N_, torque_step_Nm_;  // slew per tick, less the room that the ramp needs
-  Fader fresh_, workspace_, speed_, ramp_;
+  RampDown fresh_, workspace_, speed_, ramp_;
   EnergyTank tank_;
-  ThermalLimit warm_force_, warm_torque_;
+  ThermalLimit thermal_force_, thermal_torque_;
   std::int64_t missed_ = 0;  // samples in a row, one a period
   Wrench before_ramp_;       // after power, before ramp
   Wrench written_;

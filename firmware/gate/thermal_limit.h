@@ -25,26 +25,26 @@ class ThermalLimit {
       : peak_(peak),
         continuous_(continuous),
         continuous_squared_(continuous * continuous),
-        steepness_(model::heat_steepness(peak, continuous)),
+        steepness_(model::thermal_steepness(peak, continuous)),
         share_(share_per_period) {}
 
   /// A: what may be written now.
   double allowed() const RT_SAFE {
-    const double room = continuous_squared_ - heat_;
+    const double room = continuous_squared_ - mean_square_;
     const double squared = continuous_squared_ + steepness_ * std::fmax(room, 0.0);
     return squared < peak_ * peak_ ? std::sqrt(squared) : peak_;
   }
   /// GT-4 for a force or torque that was held for this many periods.
-  void heat(const model::Vec3& held, double periods) RT_SAFE {
-    heat_ += std::fmin(share_ * periods, 1.0) * (dot(held, held) - heat_);
+  void add(const model::Vec3& held, double periods) RT_SAFE {
+    mean_square_ += std::fmin(share_ * periods, 1.0) * (dot(held, held) - mean_square_);
   }
   double continuous() const RT_SAFE { return continuous_; }
   /// Of what was written, over tau.
-  double rms() const RT_SAFE { return std::sqrt(heat_); }
+  double rms() const RT_SAFE { return std::sqrt(mean_square_); }
 
  private:
   double peak_, continuous_, continuous_squared_, steepness_, share_;
-  double heat_ = 0.0;  // h
+  double mean_square_ = 0.0;  // h
 };
 
 }  // namespace tact::firmware::gate

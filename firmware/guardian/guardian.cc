@@ -59,17 +59,18 @@ bool is_hung_up(const pollfd& file) { return (file.revents & (POLLHUP | POLLERR 
 model::Result<std::unique_ptr<Guardian>> Guardian::start(const hal::ShutdownFrames& words,
                                                          const GuardianSettings& settings) {
   const std::string program = settings.program.empty() ? beside_this_program() : settings.program;
-  auto lifeline = Lifeline::make();
-  if (!lifeline) return lifeline.error();
-  std::unique_ptr<Guardian> guardian(new Guardian(std::move(*lifeline)));
+  auto liveness = LivenessLock::make();
+  if (!liveness) return liveness.error();
+  std::unique_ptr<Guardian> guardian(new Guardian(std::move(*liveness)));
   if (const auto why = guardian->spawn(program)) return refused(program, std::strerror(*why));
   guardian->thread_ =
       std::thread([self = guardian.get(), settings] { self->keep(settings.priority); });
-  // The lifeline must be held before the guardian has it: one that it finds free means "let go".
+  // The liveness lock must be held before the guardian has it: one that it finds free means "let
+  // go".
   guardian->held_.acquire();
-  // getpid() is for the sentence that a person reads; nothing is sent to that number.
+  // getpid() is for the message that a person reads; nothing is sent to that number.
   const Orders orders{.words = words, .priority = settings.priority, .process = getpid()};
-  if (!give_orders(guardian->socket_, orders, guardian->lifeline_.descriptor()))
+  if (!give_orders(guardian->socket_, orders, guardian->liveness_.descriptor()))
     return refused(program, std::strerror(errno));
   if (!guardian->is_ready()) return refused(program, "it does not answer");
   return guardian;
@@ -118,7 +119,7 @@ void Guardian::keep(int priority) {
   pthread_setname_np(pthread_self(), "tact-guard");
   const sigset_t all = all_signals();
   pthread_sigmask(SIG_BLOCK, &all, nullptr);
-  lifeline_.hold();
+  liveness_.hold();
   held_.release();
   become_fifo(priority);
   std::array<pollfd, 2> either{{{.fd = dismiss_, .events = POLLIN, .revents = 0},
@@ -130,14 +131,14 @@ void Guardian::keep(int priority) {
     either[1].fd = -1;  // looked at no more
     either[1].revents = 0;
   }
-  lifeline_.let_go();
+  liveness_.let_go();
   // A thread that gives its memory back at FIFO priority holds up all others (pc/rt_setup.h).
   become_fifo(0);
 }
 
 Guardian::~Guardian() {
-  // In this order: the lifeline is let go in good order, the guardian ends by itself, and only one
-  // that does not is killed. Either way it has sent nothing.
+  // In this order: the liveness lock is let go in good order, the guardian ends by itself, and only
+  // one that does not is killed. Either way it has sent nothing.
   if (thread_.joinable()) {
     const std::uint64_t one = 1;
     static_cast<void>(::write(dismiss_, &one, sizeof one));

@@ -2,13 +2,14 @@
 // guardian.h - tactd's side of the process that zeroes the device when tactd has died.
 //
 //     start      the program tact-guardian next to this one gets shutdown frames, descriptor,
-//                lifeline
-//     tact-guard a thread of tactd that holds the lifeline (lifeline.h) for its whole life, and
+//                liveness lock
+//     tact-guard a thread of tactd that holds the liveness lock (liveness lock.h) for its whole
+//     life, and
 //                hears at once when the guardian ends
 //     destructor lets go, after the device is off: the guardian ends and has sent nothing
 //
 // It is spawned, not forked: a fork would make the loop's locked pages faults again. Nothing of it
-// is in the loop: the watch looks at is_lost() (watch/loop_watch.h).
+// is in the loop: the watch looks at is_lost() (watch/loop_monitor.h).
 #pragma once
 
 #include <atomic>
@@ -18,7 +19,7 @@
 #include <string>
 #include <thread>
 
-#include "firmware/guardian/lifeline.h"
+#include "firmware/guardian/liveness_lock.h"
 #include "hal/shutdown_frames.h"
 #include "model/result.h"
 
@@ -43,12 +44,12 @@ class Guardian {
   pid_t process() const { return process_; }
 
  private:
-  explicit Guardian(Lifeline lifeline) : lifeline_(std::move(lifeline)) {}
+  explicit Guardian(LivenessLock liveness) : liveness_(std::move(liveness)) {}
   [[nodiscard]] std::optional<int> spawn(const std::string& program);
   bool is_ready() const;
   void keep(int priority);
 
-  Lifeline lifeline_;
+  LivenessLock liveness_;
   int socket_ = -1;   // its death hangs this up
   int dismiss_ = -1;  // eventfd
   pid_t process_ = -1;

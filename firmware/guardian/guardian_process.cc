@@ -17,7 +17,7 @@
 #include <cstdio>
 #include <string_view>
 
-#include "firmware/guardian/lifeline.h"
+#include "firmware/guardian/liveness_lock.h"
 #include "firmware/guardian/orders.h"
 
 namespace tact::firmware::guardian {
@@ -62,8 +62,8 @@ void enter_real_time(int priority) {
 }
 
 /// Written before it is needed: after a death nothing is formatted.
-struct Sentence {
-  Sentence(int process, const char* what) {
+struct Message {
+  Message(int process, const char* what) {
     std::snprintf(text.data(), text.size(), "tact-guardian: tactd (process %d) died; %s\n", process,
                   what);
   }
@@ -90,7 +90,7 @@ void filter_calls(int device, int socket) {
   void* filter = seccomp_init(kRefuse);
   if (filter == nullptr) return;
   bool good = true;
-  // Waiting for the lifeline, a millisecond between two
+  // Waiting for the liveness lock, a millisecond between two
   // steps, the end, and what a signal leaves behind.
   for (const int call : {SYS_futex, SYS_clock_nanosleep, SYS_exit_group, SYS_exit,
                          SYS_restart_syscall, SYS_rt_sigreturn})
@@ -109,23 +109,23 @@ void filter_calls(int device, int socket) {
 
 int stand_guard(int socket) {
   const auto taken = take_orders(socket);
-  auto lifeline = taken ? Lifeline::take(taken->lifeline_fd)
-                        : model::Result<Lifeline>(model::Error{"no orders"});
-  if (!lifeline) {
+  auto liveness = taken ? LivenessLock::take(taken->liveness_fd)
+                        : model::Result<LivenessLock>(model::Error{"no orders"});
+  if (!liveness) {
     write_all(STDERR_FILENO, "tact-guardian: tactd starts this program; nobody else can\n");
     return 2;
   }
   // In this order: what needs a file or a priority comes before the filter, which then refuses it;
   // "r", that it stands guard, comes last.
   const Orders orders = taken->orders;
-  const Sentence sent(orders.process, "zero force and power off were sent to its device");
-  const Sentence unsent(orders.process,
-                        "its device did not take zero force and power off: switch it off now");
+  const Message sent(orders.process, "zero force and power off were sent to its device");
+  const Message unsent(orders.process,
+                       "its device did not take zero force and power off: switch it off now");
   outlive_short_memory();
   enter_real_time(orders.priority);
   filter_calls(orders.words.fd, socket);
   write_all(socket, "r");
-  if (lifeline->await() == Lifeline::End::kLetGo) return 0;
+  if (liveness->await() == LivenessLock::End::kLetGo) return 0;
   const bool taken_all = hal::say_all(orders.words) == 0;
   write_all(STDERR_FILENO, (taken_all ? sent : unsent).text.data());
   return 1;

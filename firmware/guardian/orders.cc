@@ -9,7 +9,7 @@
 namespace tact::firmware::guardian {
 namespace {
 
-constexpr std::size_t kFds = 2;  // lifeline, device
+constexpr std::size_t kFds = 2;  // liveness lock, device
 
 /// Orders and room for two descriptors, as sendmsg and recvmsg take them.
 class Message {
@@ -33,7 +33,7 @@ class Message {
 
 }  // namespace
 
-bool give_orders(int socket, const Orders& orders, int lifeline_fd) {
+bool give_orders(int socket, const Orders& orders, int liveness_fd) {
   // sendmsg takes no const.
   Orders copy = orders;
   Message message(copy);
@@ -41,7 +41,7 @@ bool give_orders(int socket, const Orders& orders, int lifeline_fd) {
   header->cmsg_level = SOL_SOCKET;
   header->cmsg_type = SCM_RIGHTS;
   header->cmsg_len = CMSG_LEN(kFds * sizeof(int));
-  const std::array<int, kFds> fds{lifeline_fd, orders.words.fd};
+  const std::array<int, kFds> fds{liveness_fd, orders.words.fd};
   std::memcpy(CMSG_DATA(header), fds.data(), sizeof fds);
   return sendmsg(socket, message.header(), MSG_NOSIGNAL) == static_cast<ssize_t>(sizeof copy);
 }
@@ -60,7 +60,7 @@ std::optional<TakenOrders> take_orders(int socket) {
   if (!whole) return std::nullopt;
   std::array<int, kFds> fds{};
   std::memcpy(fds.data(), CMSG_DATA(header), sizeof fds);
-  taken.lifeline_fd = fds[0];
+  taken.liveness_fd = fds[0];
   // The number that came inside the words is one of tactd's table; here it has another.
   taken.orders.words.fd = fds[1];
   return taken;

@@ -23,10 +23,10 @@ struct Orders {
 
 struct TakenOrders {
   Orders orders;
-  int lifeline_fd = -1;
+  int liveness_fd = -1;
 };
 
-bool give_orders(int socket, const Orders& orders, int lifeline_fd);
+bool give_orders(int socket, const Orders& orders, int liveness_fd);
 /// None: nobody gave whole ones of this build.
 std::optional<TakenOrders> take_orders(int socket);
 

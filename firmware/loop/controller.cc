@@ -15,7 +15,7 @@ bool lets_go(Fault limit) RT_SAFE {
          limit == Fault::kOutsideWorkspace || limit == Fault::kTooFast;
 }
 
-// More latch on hard real time (late_watch.h), and each period that is followed costs time.
+// More latch on hard real time (overrun_counter.h), and each period that is followed costs time.
 constexpr std::uint32_t kMaxPeriods = 20;
 // The reach of a tool goes beyond its speed limit by 5 %, as a period may be longer by the jitter
 // of the device's samples, and by 0.1 mm, the noise and the steps of its encoders.
@@ -38,7 +38,7 @@ Controller::Controller(const model::contact::ContactScene& scene, const gate::Ga
     : contact_(scene),
       gate_(gate),
       grip_gate_(grip_gate),
-      late_watch_(hard_real_time),
+      overruns_(hard_real_time),
       fastest_mps_(fastest_sphere_mps(scene, gate)) {}
 
 // In the periods since the last sample, or in the time between both samples: a tick that woke late
@@ -124,7 +124,7 @@ gate::LimitedGrip Controller::limit_grip(const TickInput& input) RT_SAFE {
 
 TickOutput Controller::limit(const TickInput& input) RT_SAFE {
   const bool finite = is_finite(input.sample.tool);
-  const bool too_late = late_watch_.step(input.skipped_periods);
+  const bool too_late = overruns_.step(input.skipped_periods);
   const Fault fault = find_fault(input, finite, too_late);
   // The supervisor before the gate: a fault found in this tick has zero force in this tick.
   supervisor_.step(

@@ -10,7 +10,7 @@
 #include "firmware/gate/gate.h"
 #include "firmware/gate/grip_gate.h"
 #include "firmware/loop/clutch.h"
-#include "firmware/loop/late_watch.h"
+#include "firmware/loop/overrun_counter.h"
 #include "firmware/loop/supervisor.h"
 #include "hal/device.h"
 #include "hal/latest_slot.h"
@@ -84,7 +84,7 @@ class Controller {
   model::contact::Contact contact_;
   gate::Gate gate_;
   std::optional<gate::GripGate> grip_gate_;  // where the device presses against the fingers
-  LateWatch late_watch_;
+  OverrunCounter overruns_;
   Supervisor supervisor_;
   model::contact::ContactResponse rendered_;  // of this tick
   double jaw_force_N_ = 0.0;                  // of this tick

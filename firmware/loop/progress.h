@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// progress.h - where the loop is, told by the loop, read by the watch above it (loop_watch.h).
+// progress.h - where the loop is, told by the loop, read by the watch above it (loop_monitor.h).
 //
 // Plain stores on the loop's side: a tick costs a handful of them, and never waits.
 #pragma once

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "firmware/loop/grid.h"
+#include "firmware/loop/release_schedule.h"
 
 namespace tact::firmware::loop {
 
@@ -198,8 +198,8 @@ void RtLoop::cycle(std::int64_t due_ns) RT_SAFE {
   lines_.scope(false);
   const std::int64_t written_ns = end_phase(Phase::kWrite, limited_ns);
   const bool stopped = record_.output.state == State::kStopped;  // a stop is timed by the clock
-  stop_watch_.step(input, record_.output, wake_ns, stopped ? clock_.now_ns() : written_ns);
-  statistics_.stop = stop_watch_.times();
+  stop_timer_.step(input, record_.output, wake_ns, stopped ? clock_.now_ns() : written_ns);
+  statistics_.stop = stop_timer_.times();
 
   publish();
   const std::int64_t end_ns = end_phase(Phase::kPublish, written_ns);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // rt_loop.h - the haptic loop: read, detect, render, limit, write, publish, at fixed deadlines.
 //
-// Deadlines are absolute (grid.h). A tick that ends after its own period is late; the
-// periods it has eaten are skipped and counted, the grid never shifts (RT-14). Whatever ends the
-// loop, zero force is written last; a fault of that write is told, too.
+// Deadlines are absolute (release_schedule.h). A tick that ends after its own period is late; the
+// periods it has eaten are skipped and counted, the release schedule never shifts (RT-14). Whatever
+// ends the loop, zero force is written last; a fault of that write is told, too.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@
 #include "firmware/loop/progress.h"
 #include "firmware/loop/requests.h"
 #include "firmware/loop/ring.h"
-#include "firmware/loop/stop_times.h"
+#include "firmware/loop/stop_timer.h"
 #include "firmware/loop/tick_record.h"
 #include "hal/device.h"
 #include "hal/safety_lines.h"
@@ -28,7 +28,7 @@ namespace tact::firmware::loop {
 struct LoopStatistics {
   std::uint64_t ticks = 0;
   std::uint64_t late_ticks = 0;     // ended after their own period
-  std::uint64_t skipped_ticks = 0;  // grid points that had no tick
+  std::uint64_t skipped_ticks = 0;  // releases that had no tick
   std::uint64_t contact_losses = 0;
   std::uint32_t clutches = 0;       // times that the clutch has opened
   std::uint64_t inside_ticks = 0;   // a sphere was inside the organ and felt nothing
@@ -109,7 +109,7 @@ class RtLoop {
   std::uint32_t heard_ = 0;           // the newest request of a person that a tick has taken
   bool answers_ = false;              // this tick has taken it
   Fault write_fault_ = Fault::kNone;  // judged in the next tick
-  StopWatch stop_watch_;
+  StopTimer stop_timer_;
   Progress progress_;
 };
 

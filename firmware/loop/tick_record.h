@@ -56,7 +56,7 @@ class SphereContacts {
 
 struct TickRecord {
   std::uint64_t tick = 0;
-  std::int64_t due_ns = 0;          // the deadline that woke it, on the fixed grid
+  std::int64_t due_ns = 0;          // the deadline that woke it, on the fixed release schedule
   std::uint64_t late_ticks = 0;     // so far
   std::uint64_t skipped_ticks = 0;  // so far
   std::int64_t margin_ns = 0;       // of the tick before: next deadline minus its end

@@ -134,7 +134,7 @@ void enter_watch_thread(const RtSettings& loop, std::vector<Shortfall>& shortfal
   const int wanted = loop.priority + kWatchAboveLoop;
   const sched_param priority{.sched_priority = wanted};
   // In a probe this thread has been the loop's before:
-  // what that was refused needs no second sentence.
+  // what that was refused needs no second message.
   const bool loop_may = sched_getscheduler(0) == SCHED_FIFO;  // else that is told already
   const int refused = pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);
   if (refused != 0 && loop_may)

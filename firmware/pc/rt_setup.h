@@ -14,7 +14,7 @@ namespace tact::firmware::pc {
 
 /// One thing this PC does not give: what is missing, and the remedy.
 struct Shortfall {
-  std::string sentence;
+  std::string message;
 };
 
 struct RtSettings {

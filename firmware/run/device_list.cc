@@ -30,7 +30,7 @@ std::string devices_as_text(const std::vector<FoundPart>& parts) {
   for (const PartKind kind : hal::list::kPartKinds) {
     const bool there = std::any_of(parts.begin(), parts.end(),
                                    [&](const FoundPart& part) { return part.kind == kind; });
-    if (!there) fmt::format_to(out, "{}\n", hal::list::words_of_absence(kind));
+    if (!there) fmt::format_to(out, "{}\n", hal::list::absence_text(kind));
   }
   text += "sim-delta: the simulated device\n  ready: device.kind = \"sim-delta\"\n";
   return text;

@@ -22,12 +22,12 @@ constexpr unsigned kShutdownFrames_s = 6;
 
 LoopExecutor::LoopExecutor(const GuardedLoop& guarded)
     : guarded_(guarded), runaway_(guarded.requests) {
-  keeper_ = std::thread(&LoopExecutor::keep, this);
+  executor_ = std::thread(&LoopExecutor::keep, this);
 }
 
 // Outside the loop's thread, whose filter would let a device's stop do nothing.
 void LoopExecutor::keep() {
-  for (const LoopTurn& turn : guarded_.turns) {
+  for (const LoopRun& turn : guarded_.turns) {
     take(turn);
     if (guarded_.requests.stop.load()) break;
   }
@@ -35,11 +35,11 @@ void LoopExecutor::keep() {
   ended_.store(true);
 }
 
-void LoopExecutor::take(const LoopTurn& turn) {
+void LoopExecutor::take(const LoopRun& turn) {
   // It starts before the loop's thread and stops after it: no tick is without its watch.
-  watch::LoopWatch watch(watch::StallWatch(guarded_.period_ns, guarded_.hard_real_time),
-                         turn.progress, guarded_.requests, guarded_.lines,
-                         guarded_.guardian == nullptr ? nullptr : &guarded_.guardian->is_lost());
+  watch::LoopMonitor watch(watch::StallDetector(guarded_.period_ns, guarded_.hard_real_time),
+                           turn.progress, guarded_.requests, guarded_.lines,
+                           guarded_.guardian == nullptr ? nullptr : &guarded_.guardian->is_lost());
   watch.start(guarded_.rt);
   std::thread([&] {
     add_to(costs_, run_as_loop_thread(guarded_.rt, turn.run, guarded_.filter));
@@ -50,13 +50,13 @@ void LoopExecutor::take(const LoopTurn& turn) {
 bool LoopExecutor::hangs() {
   if (!guarded_.requests.stop.load() || ended_.load()) return false;
   const std::int64_t now_ns = loop::MonotonicClock().now_ns();
-  // The timeout begins when the request is seen, whoever made it.
+  // The timeout begins when the request is seen, any user made it.
   if (asked_ns_ == 0) asked_ns_ = now_ns;
   return now_ns - asked_ns_ > kTimeout_ns;
 }
 
 void LoopExecutor::join() {
-  if (keeper_.joinable()) keeper_.join();
+  if (executor_.joinable()) executor_.join();
 }
 
 // The device may hang in a call, so its stop may hang, too, and so may the disk: SIGALRM ends both.

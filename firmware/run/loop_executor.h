@@ -3,7 +3,7 @@
 // rest.
 //
 //     tact-loop    the loop behind its call filter (watch/call_filter.h)
-//     tact-watch   above it (watch/loop_watch.h)
+//     tact-watch   above it (watch/loop_monitor.h)
 //     keeper       starts the loop; stops the device as soon as it has ended
 //     main         signals, status line, hangs (serve_operator in session.cc)
 //
@@ -19,19 +19,19 @@
 #include "firmware/guardian/guardian.h"
 #include "firmware/run/thread_costs.h"
 #include "firmware/watch/call_filter.h"
-#include "firmware/watch/loop_watch.h"
+#include "firmware/watch/loop_monitor.h"
 #include "firmware/watch/runaway.h"
 
 namespace tact::firmware::run {
 
 /// One loop from its first tick to its letting go.
-struct LoopTurn {
+struct LoopRun {
   const loop::Progress& progress;
   std::function<void()> run;
 };
 
 struct GuardedLoop {
-  std::vector<LoopTurn> turns;  // one after the other, until a stop request
+  std::vector<LoopRun> turns;  // one after the other, until a stop request
   hal::Device& device;
   hal::SafetyLines& lines;
   loop::Requests& requests;
@@ -64,14 +64,14 @@ class LoopExecutor {
 
  private:
   void keep();
-  void take(const LoopTurn& turn);
+  void take(const LoopRun& turn);
 
   GuardedLoop guarded_;
   watch::RunawayGuard runaway_;
   std::atomic<bool> ended_{false};
   std::int64_t asked_ns_ = 0;  // when the stop request was first seen; 0: not yet
   ThreadCosts costs_;
-  std::thread keeper_;
+  std::thread executor_;
 };
 
 }  // namespace tact::firmware::run

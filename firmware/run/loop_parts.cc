@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "firmware/admission/heat_check.h"
+#include "firmware/admission/thermal_check.h"
 #include "firmware/gate/limits_for.h"
 #include "hal/gpio/gpio_lines.h"
 #include "model/io/limits_checksum.h"
@@ -50,7 +50,7 @@ Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsS
         scene.path, scene.device.kind)};
   // The enable line before the device: it is low, so no drive has power while it opens.
   auto lines = hal::gpio::open_safety_lines(scene.device.lines);
-  if (!lines) return Error{fmt::format("{}: {}", scene.path, lines.error().sentence)};
+  if (!lines) return Error{fmt::format("{}: {}", scene.path, lines.error().message)};
   parts.lines = std::move(*lines);
   auto device = hal::registry::open_device(scene);
   if (!device) return device.error();
@@ -61,7 +61,7 @@ Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsS
   parts.guardian = std::move(*guardian);
   if (auto error = admit(scene, setup, parts)) return *error;
   parts.limits = gate::limits_for(scene.limits, parts.device->info());
-  if (auto error = admission::check_heat(scene, parts.limits)) return *error;
+  if (auto error = admission::check_thermal(scene, parts.limits)) return *error;
   // Of the limits as they act: a quarter of the force on this PC is another checksum.
   parts.limits_checksum =
       model::io::limits_checksum(model::limits_in_use(parts.limits, setup.force_share()));

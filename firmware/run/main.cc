@@ -25,8 +25,8 @@ namespace {
 using namespace tact;
 using firmware::console::say;
 
-int complain(const std::string& sentence, int status) {
-  say(stderr, "tactd: {}\n", sentence);
+int complain(const std::string& message, int status) {
+  say(stderr, "tactd: {}\n", message);
   return status;
 }
 
@@ -60,7 +60,7 @@ int write_json(const std::string& path, const std::string& json) {
   if (path == "-")
     say(stdout, "{}", json);
   else if (const auto error = model::io::write_file(path, json))
-    return complain(error->sentence, 2);
+    return complain(error->message, 2);
   return 0;
 }
 
@@ -77,7 +77,7 @@ int print_devices(const std::string& json_path) {
 
 int print_parameters(const model::scene::Scene& scene, const firmware::run::Options& options) {
   const auto numbers = model::scene::law_numbers(scene, options.overrides);
-  if (!numbers) return complain(numbers.error().sentence, 2);
+  if (!numbers) return complain(numbers.error().message, 2);
   if (options.json_path != "-") say(stdout, "{}", firmware::run::parameters_as_text(*numbers));
   return write_json(options.json_path, firmware::run::parameters_as_json(scene, *numbers));
 }
@@ -85,9 +85,9 @@ int print_parameters(const model::scene::Scene& scene, const firmware::run::Opti
 /// Exit status 0 only where every force has the same bits and nothing is missing.
 int run_replay(const model::scene::Scene& scene, const std::string& path) {
   const auto tissue = model::scene::make_tissue(scene);
-  if (!tissue) return complain(tissue.error().sentence, 2);
+  if (!tissue) return complain(tissue.error().message, 2);
   const auto outcome = firmware::run::replay(path, scene, **tissue);
-  if (!outcome) return complain(outcome.error().sentence, 2);
+  if (!outcome) return complain(outcome.error().message, 2);
   say(stdout, "{}: {} ticks computed again, {} differ, force hash {:016x}\n", path, outcome->ticks,
       outcome->different, outcome->force_hash);
   if (!outcome->damage.empty())
@@ -150,12 +150,12 @@ int main(int argc, char** argv) {
   // A table of a log needs no scene: only a replay does.
   if (!options.csv_path.empty()) {
     const auto damage = firmware::telemetry::write_tick_csv(options.replay_path, options.csv_path);
-    if (!damage) return complain(damage.error().sentence, 2);
+    if (!damage) return complain(damage.error().message, 2);
     if (!damage->empty()) return complain(options.replay_path + ": " + *damage, 1);
     if (options.scene_path.empty()) return 0;
   }
   auto scene = load(options);
-  if (!scene) return complain(scene.error().sentence, 2);
+  if (!scene) return complain(scene.error().message, 2);
   if (options.parameters) return print_parameters(*scene, options);
   // Of the command line alone: no scene may name a library and call it trusted.
   scene->device.trust_library = options.trust_library;
@@ -163,6 +163,6 @@ int main(int argc, char** argv) {
   if (!options.replay_path.empty()) return run_replay(*scene, options.replay_path);
   if (const auto refused =
           firmware::admission::why_not_unattended(*scene, firmware::console::is_service()))
-    return complain(options.scene_path + ": " + refused->sentence, 2);
+    return complain(options.scene_path + ": " + refused->message, 2);
   return firmware::run::run_session(*scene, options);
 }

@@ -16,7 +16,7 @@ void RealTime::enter(const pc::RtSettings& settings) {
 
 // The last line is the short form of tact-doctor.
 void RealTime::report(const pc::RtSettings& settings) const {
-  for (const pc::Shortfall& s : shortfalls_) console::say(stderr, "tactd: {}\n", s.sentence);
+  for (const pc::Shortfall& s : shortfalls_) console::say(stderr, "tactd: {}\n", s.message);
   const std::string red =
       name_red_rows(pc::check_pc({.files = pc::PcFiles{}, .core = choose_core(settings)}));
   if (!red.empty()) console::say(stderr, "tactd: {}\n", red);

@@ -99,7 +99,7 @@ json largest_forces(const RunFacts& facts, const loop::LoopStatistics& loop,
 std::string make_report(const RunFacts& facts, const loop::LoopStatistics& loop,
                         const gate::Gate& gate, const pc::Environment& environment) {
   json shortfalls = json::array(), counts = json::object();
-  for (const pc::Shortfall& s : facts.shortfalls) shortfalls.push_back(s.sentence);
+  for (const pc::Shortfall& s : facts.shortfalls) shortfalls.push_back(s.message);
   for (const hal::DeviceCount& one : facts.device_counts) counts[one.name] = one.count;
   json report = {{"format", "tactd-run"},
                  {"version", 1},

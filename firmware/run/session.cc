@@ -12,13 +12,13 @@
 #include "firmware/console/request_handler.h"
 #include "firmware/console/say.h"
 #include "firmware/console/service_manager.h"
-#include "firmware/loop/grid.h"
+#include "firmware/loop/release_schedule.h"
 #include "firmware/run/bus_wait.h"
 #include "firmware/run/loop_executor.h"
 #include "firmware/run/loop_parts.h"
 #include "firmware/run/real_time.h"
 #include "firmware/run/report.h"
-#include "firmware/run/start_words.h"
+#include "firmware/run/start_text.h"
 #include "firmware/run/telemetry_setup.h"
 #include "firmware/run/thread_costs.h"
 #include "model/io/file_writer.h"
@@ -31,8 +31,8 @@ using console::say;
 
 constexpr std::int64_t kStatusPeriod_ns = 200'000'000;
 
-int fail(const std::string& sentence, int status) {
-  say(stderr, "tactd: {}\n", sentence);
+int fail(const std::string& message, int status) {
+  say(stderr, "tactd: {}\n", message);
   return status;
 }
 
@@ -104,7 +104,7 @@ int Session::run() {
     say(stderr, "tactd: no hard real time: force capped to {:g} %, records stamped non-rt\n",
         100.0 * gate::kNonRtForceShare);
   if (console::is_service() && !wait_for_bus(scene_, *operator_)) return 0;
-  if (const auto error = open()) return fail(error->sentence, 2);
+  if (const auto error = open()) return fail(error->message, 2);
   for (const std::string& note : start_notes(scene_, parts_, options_.check))
     say(stderr, "tactd: {}\n", note);
   if (options_.check) {
@@ -113,9 +113,9 @@ int Session::run() {
   }
   if (options_.has_json_file())
     if (const auto error = model::io::check_target(options_.json_path, "{"))
-      return fail(error->sentence, 2);
-  if (const auto error = open_telemetry()) return fail(error->sentence, 2);
-  if (const auto error = open_call_filter()) return fail(error->sentence, 1);
+      return fail(error->message, 2);
+  if (const auto error = open_telemetry()) return fail(error->message, 2);
+  if (const auto error = open_call_filter()) return fail(error->message, 1);
   const bool arms_itself = hal::registry::is_simulated(scene_.device) && !console::is_service();
   requests_.arm_at_start.store(options_.arm || arms_itself);
   if (options_.free_run)
@@ -145,21 +145,21 @@ std::optional<model::Error> Session::open() {
 }
 
 std::optional<model::Error> Session::open_telemetry() {
-  auto outlets = open_outlets({.scene = scene_,
-                               .options = options_,
-                               .parts = parts_,
-                               .period_ns = period_ns(),
-                               .force_share = parts_setup().force_share(),
-                               .non_rt = non_rt_});
-  if (!outlets) return outlets.error();
-  hand_socket_ = std::move(outlets->hand);
-  black_box_ = std::move(outlets->black_box);
-  if (!outlets->no_black_box.empty()) say(stderr, "tactd: {}\n", outlets->no_black_box);
+  auto sinks = open_sinks({.scene = scene_,
+                           .options = options_,
+                           .parts = parts_,
+                           .period_ns = period_ns(),
+                           .force_share = parts_setup().force_share(),
+                           .non_rt = non_rt_});
+  if (!sinks) return sinks.error();
+  hand_socket_ = std::move(sinks->hand);
+  black_box_ = std::move(sinks->black_box);
+  if (!sinks->no_black_box.empty()) say(stderr, "tactd: {}\n", sinks->no_black_box);
   telemetry_.emplace(*parts_.ring,
-                     telemetry::FrameBuilder(parts_.tissue->law().site_law(),
+                     telemetry::FrameBuilder(parts_.tissue->law().contact_law(),
                                              parts_.controller->shapes(), non_rt_),
                      telemetry::FramePace{scene_.frame_rate_Hz, period_ns()},
-                     std::move(outlets->sinks), &requests_.fault);
+                     std::move(sinks->sinks), &requests_.fault);
   return std::nullopt;
 }
 
@@ -171,8 +171,8 @@ std::optional<model::Error> Session::open_call_filter() {
     filter_ = std::move(*filter);
     return std::nullopt;
   }
-  if (options_.seccomp) return model::Error{"refused by --seccomp: " + filter.error().sentence};
-  say(stderr, "tactd: {}; --no-seccomp says that this is meant\n", filter.error().sentence);
+  if (options_.seccomp) return model::Error{"refused by --seccomp: " + filter.error().message};
+  say(stderr, "tactd: {}; --no-seccomp says that this is meant\n", filter.error().message);
   return std::nullopt;
 }
 
@@ -215,9 +215,9 @@ void Session::serve_operator(LoopExecutor& executor) {
   console::ServiceManager service;
   const auto report_news = [&] {
     if (const auto lost = telemetry_->lost_record())
-      view.report(lost->sentence + "; the loop goes on without its record");
+      view.report(lost->message + "; the loop goes on without its record");
     if (black_box_ == nullptr) return;
-    for (const std::string& sentence : black_box_->news()) view.report(sentence);
+    for (const std::string& message : black_box_->news()) view.report(message);
   };
   while (!executor.ended()) {
     const std::int64_t now_ns = monotonic_clock_.now_ns();
@@ -246,8 +246,8 @@ int Session::report() {
   parts_.device->stop();
   if (hand_socket_) hand_socket_->stop();
   const auto log_error = telemetry_->stop();
-  for (const std::string& sentence : black_box_ ? black_box_->news() : std::vector<std::string>{})
-    say(stderr, "tactd: {}\n", sentence);
+  for (const std::string& message : black_box_ ? black_box_->news() : std::vector<std::string>{})
+    say(stderr, "tactd: {}\n", message);
   const RunFacts facts = collect_facts(fault, trouble);
   const std::string report = make_report(facts, loop_->statistics(), parts_.controller->gate(),
                                          pc::read_environment(scene_.hash));
@@ -255,9 +255,9 @@ int Session::report() {
       options_.json_path == "-" ? report : make_summary(facts, loop_->statistics()));
   if (options_.has_json_file())
     if (const auto error = model::io::write_file(options_.json_path, report + "\n"))
-      return fail(error->sentence, 2);
+      return fail(error->message, 2);
   if (const std::string on = parts_.device->why_not_off(); !on.empty()) return fail(on, 1);
-  if (log_error) return fail(log_error->sentence, 1);
+  if (log_error) return fail(log_error->message, 1);
   return fault == model::Fault::kNone ? 0 : 1;
 }
 

@@ -42,14 +42,14 @@ telemetry::Hello hello_of(const RunSetup& run, const std::string& hand_path) {
 }
 
 /// Takes over `meshes`.
-std::optional<Error> open_sockets(const RunSetup& run, int meshes, Outlets& out) {
+std::optional<Error> open_sockets(const RunSetup& run, int meshes, Sinks& out) {
   const auto path = socket_path(run);
   if (!path) return path.error();
   std::optional<gid_t> viewers;
   // Before a socket is made: a group that does not exist leaves nothing behind.
   if (!run.options.viewers.empty()) {
     const auto group = model::io::find_group(run.options.viewers);
-    if (!group) return Error{"--viewers " + group.error().sentence};
+    if (!group) return Error{"--viewers " + group.error().message};
     viewers = *group;
   }
   // Of a simulated device alone: on hardware no program may move the hand.
@@ -112,8 +112,8 @@ std::unique_ptr<black_box::BlackBox> make_black_box(const RunSetup& run, const s
 
 }  // namespace
 
-Result<Outlets> open_outlets(const RunSetup& run) {
-  Outlets out;
+Result<Sinks> open_sinks(const RunSetup& run) {
+  Sinks out;
   if (!run.options.no_telemetry) {
     const auto meshes = telemetry::make_mesh_file(run.scene);
     if (!meshes) return meshes.error();
@@ -130,7 +130,7 @@ Result<Outlets> open_outlets(const RunSetup& run) {
   // usual folder is done without, and that is told.
   if (!folder && !run.options.black_box_folder.empty()) return folder.error();
   if (!folder) {
-    out.no_black_box = folder.error().sentence;
+    out.no_black_box = folder.error().message;
     return out;
   }
   // One of its own: socket and black box close theirs.

@@ -24,7 +24,7 @@ struct RunSetup {
   bool non_rt = false;
 };
 
-struct Outlets {
+struct Sinks {
   telemetry::Sinks sinks;
   std::unique_ptr<black_box::BlackBox> black_box;  // sinks.recorder, where there is one
   std::unique_ptr<hal::sim::HandSocket> hand;      // of a simulated device
@@ -33,6 +33,6 @@ struct Outlets {
 
 /// What the command line asks for; the rest stays empty. A black box whose usual folder cannot be
 /// written is done without; one that was asked for is an error.
-model::Result<Outlets> open_outlets(const RunSetup& run);
+model::Result<Sinks> open_sinks(const RunSetup& run);
 
 }  // namespace tact::firmware::run

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "firmware/loop/clock.h"
-#include "firmware/loop/grid.h"
+#include "firmware/loop/release_schedule.h"
 #include "firmware/telemetry/force_hash.h"
 #include "model/time_ns.h"
 

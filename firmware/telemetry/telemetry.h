@@ -36,7 +36,7 @@ struct Sinks {
   Recorder* recorder = nullptr;  // outlives the telemetry
 };
 
-/// How often frames leave, and the loop between whose ticks they do (grid.h).
+/// How often frames leave, and the loop between whose ticks they do (release_schedule.h).
 struct FramePace {
   double frame_rate_Hz = 60.0;
   std::int64_t loop_period_ns = 1'000'000;

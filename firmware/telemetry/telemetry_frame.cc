@@ -78,9 +78,9 @@ Hello make_hello(const model::scene::Scene& scene, const model::scene::Tissue& t
   hello.site_count = static_cast<std::uint32_t>(scene.tool.spheres.size());
   std::array<double, kMaxRings> ring_m{};
   // At no depth, in any place: only how many rings there are is asked.
-  hello.ring_count = static_cast<std::uint32_t>(
-      tissue.law().site_law().profile({.place = {.triangle = 0, .weight = {1, 0, 0}}}, ring_m));
-  hello.ring_pitch_m = static_cast<float>(tissue.law().site_law().ring_pitch_m());
+  hello.ring_count = static_cast<std::uint32_t>(tissue.law().contact_law().profile(
+      {.surface_point = {.triangle = 0, .weight = {1, 0, 0}}}, ring_m));
+  hello.ring_pitch_m = static_cast<float>(tissue.law().contact_law().ring_pitch_m());
   hello.rate_Hz = static_cast<float>(scene.rate_Hz);
   hello.frame_rate_Hz = static_cast<float>(scene.frame_rate_Hz);
   hello.force_limit_N = static_cast<float>(facts.force_limit_N);
@@ -215,13 +215,14 @@ void FrameBuilder::add_site(const model::contact::SphereContact& sphere_contact,
   put(site.shift_m, sphere_contact.shift_m);
   site.depth_m = static_cast<float>(sphere_contact.depth_m);
   site.state = static_cast<SiteState>(sphere_contact.state);
-  // Its own dent, as the page adds the dents up; what lies in another's dent has none.
+  // Its own indentation, as the page adds the indentations up; what lies in another's indentation
+  // has none.
   const bool is_held = sphere_contact.state == model::contact::ContactState::kHeld;
   const bool presses = sphere_contact.state == model::contact::ContactState::kTouching &&
                        sphere_contact.indentation_m > 0.0;
   if (!is_held && !presses) return;
   std::array<double, kMaxRings> ring_m{};
-  const model::contact::Indentation in{.place = sphere_contact.place,
+  const model::contact::Indentation in{.surface_point = sphere_contact.surface_point,
                                        .normal = sphere_contact.normal,
                                        .indentation_m = sphere_contact.indentation_m};
   const std::size_t count = indentations_.profile(in, ring_m);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// telemetry_socket.h - hands messages to whoever listens, and never waits for anyone.
+// telemetry_socket.h - hands messages to any user listens, and never waits for anyone.
 //
 // A SOCK_SEQPACKET unix socket with permissions 0600, for the same user and root, or with 0660 for
 // the members of a group too. A new client gets the hello and the mesh file, then every frame that

@@ -70,7 +70,7 @@ void TickLogWriter::append(const std::string& bytes) {
 
 void TickLogWriter::put(const void* bytes, std::size_t size, const std::string& where) {
   if (const auto error = file_->put({static_cast<const char*>(bytes), size}))
-    trouble_ = Error{fmt::format("{}; what came before {} is kept", error->sentence, where)};
+    trouble_ = Error{fmt::format("{}; what came before {} is kept", error->message, where)};
 }
 
 std::optional<Error> TickLogWriter::close() {

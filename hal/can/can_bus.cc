@@ -16,22 +16,22 @@ bool is_no_room(int error) RT_SAFE {
   return error == ENOBUFS || error == EAGAIN || error == EINTR || error == ENOMEM;
 }
 
-/// The sentence of the worst thing that these bits say.
-const char* sentence_of(std::uint32_t bits, std::span<const CanErrorWords> words,
-                        std::uint32_t only) {
-  for (const CanErrorWords& one : words)
-    if ((bits & only & one.bit) != 0) return one.sentence;
+/// The message of the worst thing that these bits say.
+const char* message_of(std::uint32_t bits, std::span<const CanErrorText> words,
+                       std::uint32_t only) {
+  for (const CanErrorText& one : words)
+    if ((bits & only & one.bit) != 0) return one.message;
   return nullptr;
 }
 
-std::string error_frame_words(std::uint32_t code) {
+std::string error_frame_text(std::uint32_t code) {
   constexpr auto kGone = static_cast<std::uint32_t>(CanErrorClass::kBusOff) |
                          static_cast<std::uint32_t>(CanErrorClass::kRestarted);
   constexpr auto kPassive = static_cast<std::uint32_t>(CanControllerState::kRxPassive) |
                             static_cast<std::uint32_t>(CanControllerState::kTxPassive);
   const std::uint32_t classes = code & 0xFFFFu, controller = code >> 16;
-  if (const char* words = sentence_of(classes, can_error_class_words(), kGone)) return words;
-  if (const char* words = sentence_of(controller, can_controller_words(), kPassive)) return words;
+  if (const char* words = message_of(classes, can_error_class_texts(), kGone)) return words;
+  if (const char* words = message_of(controller, can_controller_texts(), kPassive)) return words;
   return "The CAN controller left its normal state: check cable, termination and bit rate.";
 }
 
@@ -140,7 +140,7 @@ std::string can_bus_trouble(const FaultCause& cause, const std::string& interfac
           "drives powered? ip link set {} txqueuelen 100",
           interface, CanBus::kMaxMissedInARow, interface);
     case CanCause::kErrorFrame:
-      return fmt::format("{}: {}", interface, error_frame_words(cause.code));
+      return fmt::format("{}: {}", interface, error_frame_text(cause.code));
     default:
       return {};
   }

@@ -108,7 +108,7 @@ class CanDevice final : public Device {
 
   std::string trouble() const override {
     const FaultCause cause = loop_.latch.cause();
-    if (cause.fault == Fault::kNone) return words_of_wait();
+    if (cause.fault == Fault::kNone) return wait_text();
     if (cause.axis > 2) return {};
     if (auto words = can_bus_trouble(cause, settings_.can.interface, Frame::kLinkType);
         !words.empty())
@@ -215,7 +215,7 @@ class CanDevice final : public Device {
     loop_.asked_ns = 0;
   }
 
-  std::string words_of_wait() const {
+  std::string wait_text() const {
     const FaultCause wait = loop_.waits.cause();
     if (wait.kind == 0 || wait.axis > 2) return {};
     return fmt::format("waiting for power of {}: {}", can_arm_name(wait.axis, settings_.can),

@@ -10,8 +10,8 @@
 // three have sent a new position since the last read. Of drives on clocks of their own, when one
 // has and none is older than one and a half periods: now and then a tick gets no frame of one axis
 // and the next gets two. Power does not matter. Its stamp is the arrival of the oldest. Without
-// samples the torques fade (sample_gap.h). A fault stops all three and latches; only opening the
-// device again clears it.
+// samples the torques ramp-down (sample_gap.h). A fault stops all three and latches; only opening
+// the device again clears it.
 //
 // A new kind of drive is its frames, its bring-up and a CanDrives; nothing of a device is in them.
 // All of it is there twice, for classic frames and for CAN FD (CanFdDrives).

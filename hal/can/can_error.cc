@@ -15,7 +15,7 @@ constexpr std::uint32_t kErrorFlag = 1u << 29;
 constexpr std::uint32_t bit(CanErrorClass one) { return static_cast<std::uint32_t>(one); }
 constexpr std::uint32_t bit(CanControllerState one) { return static_cast<std::uint32_t>(one); }
 
-constexpr CanErrorWords kClassWords[] = {
+constexpr CanErrorText kClassTexts[] = {
     {bit(CanErrorClass::kTxTimeout), "tx_timeout",
      "The CAN adapter did not get a frame onto the bus in time: is the bus overloaded?"},
     {bit(CanErrorClass::kLostArbitration), "lost_arbitration",
@@ -38,7 +38,7 @@ constexpr CanErrorWords kClassWords[] = {
     {bit(CanErrorClass::kCounters), "counters", "The frame carries the controller's error counts."},
 };
 
-constexpr CanErrorWords kControllerWords[] = {
+constexpr CanErrorText kControllerTexts[] = {
     {bit(CanControllerState::kRxOverflow), "rx_overflow",
      "Received frames were lost: this machine reads the CAN bus too slowly."},
     {bit(CanControllerState::kTxOverflow), "tx_overflow",
@@ -57,9 +57,9 @@ constexpr CanErrorWords kControllerWords[] = {
 };
 
 template <std::size_t n>
-constexpr std::uint32_t all_bits(const CanErrorWords (&words)[n]) {
+constexpr std::uint32_t all_bits(const CanErrorText (&words)[n]) {
   std::uint32_t bits = 0;
-  for (const CanErrorWords& one : words) bits |= one.bit;
+  for (const CanErrorText& one : words) bits |= one.bit;
   return bits;
 }
 
@@ -69,8 +69,8 @@ CanErrorAction action_of(const CanError& error) RT_SAFE {
   if (error.has(kBusOff) || error.has(kRxPassive) || error.has(kTxPassive))
     return CanErrorAction::kDisableDrives;
   // A bit that no table names comes from a newer kernel: somebody should look at it.
-  const bool unknown = (error.classes & ~all_bits(kClassWords)) != 0 ||
-                       (error.controller & ~all_bits(kControllerWords)) != 0;
+  const bool unknown = (error.classes & ~all_bits(kClassTexts)) != 0 ||
+                       (error.controller & ~all_bits(kControllerTexts)) != 0;
   if (error.has(kRxWarning) || error.has(kTxWarning) || error.has(kTransceiver) || unknown)
     return CanErrorAction::kWarn;
   if (error.has(kTxTimeout) || error.has(kNoAck)) return CanErrorAction::kCount;
@@ -99,8 +99,8 @@ std::optional<CanError> decode_can_error(std::span<const std::uint8_t> bytes) RT
   return error;
 }
 
-std::span<const CanErrorWords> can_error_class_words() RT_SAFE { return kClassWords; }
-std::span<const CanErrorWords> can_controller_words() RT_SAFE { return kControllerWords; }
+std::span<const CanErrorText> can_error_class_texts() RT_SAFE { return kClassTexts; }
+std::span<const CanErrorText> can_controller_texts() RT_SAFE { return kControllerTexts; }
 
 const char* can_error_action_name(CanErrorAction action) RT_SAFE {
   switch (action) {

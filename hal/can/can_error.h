@@ -75,14 +75,14 @@ struct CanError {
 /// than 8 data bytes) or name no class at all.
 std::optional<CanError> decode_can_error(std::span<const std::uint8_t> bytes) RT_SAFE;
 
-/// A bit, its name in logs, and a sentence with the remedy.
-struct CanErrorWords {
+/// A bit, its name in logs, and a message with the remedy.
+struct CanErrorText {
   std::uint32_t bit;
   const char* name;
-  const char* sentence;
+  const char* message;
 };
-std::span<const CanErrorWords> can_error_class_words() RT_SAFE;
-std::span<const CanErrorWords> can_controller_words() RT_SAFE;
+std::span<const CanErrorText> can_error_class_texts() RT_SAFE;
+std::span<const CanErrorText> can_controller_texts() RT_SAFE;
 const char* can_error_action_name(CanErrorAction action) RT_SAFE;
 
 }  // namespace tact::hal::can

@@ -45,7 +45,7 @@ std::optional<can::CanFrame> canopen_heartbeat(int node, NmtState state) RT_SAFE
 std::optional<NmtState> decode_canopen_heartbeat(const can::CanFrame& frame, int node) RT_SAFE;
 
 struct Emergency {
-  std::uint16_t code;           // words in canopen_words.h; 0: the errors are gone
+  std::uint16_t code;           // words in canopen_text.h; 0: the errors are gone
   std::uint8_t error_register;  // of object 1001
   std::array<std::uint8_t, 5> manufacturer;
 };
@@ -70,7 +70,7 @@ struct SdoReply {
   std::uint16_t index;  // compare it with the request: an old reply may come late
   std::uint8_t sub;
   std::uint8_t size = 0;  // of an upload, bytes, 1 to 4; 0: it is not said, the value has all four
-  std::uint32_t value = 0;  // of an upload; of an abort its code, words in canopen_words.h
+  std::uint32_t value = 0;  // of an upload; of an abort its code, words in canopen_text.h
 };
 std::optional<SdoReply> decode_canopen_sdo(const can::CanFrame& frame, int node) RT_SAFE;
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hal/cia402/canopen_words.h"
+#include "hal/cia402/canopen_text.h"
 #include "hal/cia402/cia402_network.h"
 #include "hal/cia402/cia402_state.h"
 #include "hal/cia402/drive_settings.h"
@@ -61,13 +61,13 @@ class BringUp {
   std::optional<Error> get(std::size_t i, const SdoEntry& entry, std::uint32_t& value) {
     SdoFailure failure;
     const auto got = sdo_.read(can_.node[i], entry, failure);
-    if (!got) return wrong(i, sdo_failure_words(failure, entry.index, entry.sub));
+    if (!got) return wrong(i, sdo_failure_text(failure, entry.index, entry.sub));
     value = *got;
     return std::nullopt;
   }
   std::optional<Error> set(std::size_t i, const SdoWrite& what) {
     const auto failure = sdo_.write(can_.node[i], what);
-    if (failure) return wrong(i, sdo_failure_words(*failure, what.index, what.sub));
+    if (failure) return wrong(i, sdo_failure_text(*failure, what.index, what.sub));
     return std::nullopt;
   }
 
@@ -127,7 +127,7 @@ class BringUp {
     std::uint32_t code = 0;
     if (state == Cia402State::kFault && !get(i, {0x603F, 0, 2}, code) && code != 0) {
       return wrong(i, fmt::format("keeps a fault: {} (code 0x{:04X})",
-                                  emergency_sentence(static_cast<std::uint16_t>(code)), code));
+                                  emergency_message(static_cast<std::uint16_t>(code)), code));
     }
     return wrong(i, fmt::format("stays in state {}: switch it off and on, and read its errors with "
                                 "its vendor's program",
@@ -141,7 +141,7 @@ class BringUp {
     if (start.rated_torque_Nm[i] > 0.0) return position(i, start.motor_turns[i]);
     SdoFailure failure;
     const auto rated_mNm = sdo_.read(can_.node[i], {0x6076, 0, 4}, failure);
-    if (!rated_mNm && failure.silent) return wrong(i, sdo_failure_words(failure, 0x6076, 0));
+    if (!rated_mNm && failure.silent) return wrong(i, sdo_failure_text(failure, 0x6076, 0));
     if (!rated_mNm || *rated_mNm == 0) {
       return wrong(i, fmt::format("{}: set device.can.rated_torque_Nm to the torque that its "
                                   "manual calls 1000 of object 6071",

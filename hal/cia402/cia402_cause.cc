@@ -4,17 +4,17 @@
 #include <fmt/core.h>
 
 #include "hal/cia402/canopen_frames.h"
-#include "hal/cia402/canopen_words.h"
+#include "hal/cia402/canopen_text.h"
 #include "hal/cia402/cia402_state.h"
 
 namespace tact::hal::cia402 {
 
-std::string words_of_cia402_cause(const can::FaultCause& cause) {
+std::string text_of_cia402_cause(const can::FaultCause& cause) {
   const char* state = cia402_state_name(static_cast<Cia402State>(cause.code));
   switch (static_cast<Cia402Cause>(cause.kind)) {
     case Cia402Cause::kEmergency:
       return fmt::format("{} (code 0x{:04X})",
-                         emergency_sentence(static_cast<std::uint16_t>(cause.code)), cause.code);
+                         emergency_message(static_cast<std::uint16_t>(cause.code)), cause.code);
     case Cia402Cause::kStatus:
       return "the drive is in its fault state: read object 603F with its vendor's program";
     case Cia402Cause::kLeftEnabled:
@@ -38,7 +38,7 @@ std::string words_of_cia402_cause(const can::FaultCause& cause) {
       return "the drive does not take up its watch over the controller's heartbeat again (object "
              "1016): start tactd again";
     case Cia402Cause::kLeftOperational:
-      return nmt_sentence(static_cast<NmtState>(cause.code));
+      return nmt_message(static_cast<NmtState>(cause.code));
   }
   return {};
 }

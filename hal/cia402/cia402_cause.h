@@ -22,6 +22,6 @@ enum class Cia402Cause : std::uint8_t {
 };
 
 /// For a person, with the remedy; empty for a cause that all drives have. Any thread.
-std::string words_of_cia402_cause(const can::FaultCause& cause);
+std::string text_of_cia402_cause(const can::FaultCause& cause);
 
 }  // namespace tact::hal::cia402

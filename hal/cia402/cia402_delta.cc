@@ -123,7 +123,7 @@ class Cia402s final : public can::CanDrives {
   }
 
   std::string words(const can::FaultCause& cause) const override {
-    return words_of_cia402_cause(cause);
+    return text_of_cia402_cause(cause);
   }
 
   std::vector<DeviceCount> counters() const override { return {{"old", old_}, {"extra", extra_}}; }

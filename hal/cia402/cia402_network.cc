@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "hal/can/can_delta.h"
-#include "hal/cia402/canopen_words.h"
+#include "hal/cia402/canopen_text.h"
 
 namespace tact::hal::cia402 {
 namespace {
@@ -80,7 +80,7 @@ Error Cia402Network::not_started() {
   return wrong(i,
                fmt::format("does not become operational and notes an error: {} (code 0x{:04X} in "
                            "object 1003). Then switch it off and on",
-                           emergency_sentence(code), code));
+                           emergency_message(code), code));
 }
 
 void Cia402Network::take(const can::CanFrame& frame) {

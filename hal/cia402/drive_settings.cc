@@ -19,7 +19,7 @@ constexpr std::uint32_t kNoObject = 0x06020000, kNoSubIndex = 0x06090011;
 std::optional<std::string> DriveSettings::write(int node, CstConfiguration wanted) {
   SdoFailure failure;
   const auto sample_id = sdo_.read(node, {0x1800, 1, 4}, failure);
-  if (!sample_id) return sdo_failure_words(failure, 0x1800, 1);
+  if (!sample_id) return sdo_failure_text(failure, 0x1800, 1);
   wanted.sample_without_request = (*sample_id & kCstWithoutRequest) != 0;
   const auto writes = cst_configuration(node, wanted);
   if (!writes) return "cannot have this node: device.can.node takes 1 to 126";
@@ -33,12 +33,12 @@ std::optional<std::string> DriveSettings::write(int node, CstConfiguration wante
   for (const SdoWrite& one : *writes) {
     const auto refused = sdo_.write(node, one);
     if (refused && (refused->silent || !may_lack(node, one.index)))
-      return sdo_failure_words(*refused, one.index, one.sub);
+      return sdo_failure_text(*refused, one.index, one.sub);
   }
   // 0: a quick stop lets go; a ramp would drive the arm against the hand.
   const auto refused = sdo_.write(node, {.index = 0x605A, .sub = 0, .value = 0, .size = 2});
   if (refused && (refused->silent || !may_lack(node, 0x605A)))
-    return sdo_failure_words(*refused, 0x605A, 0);
+    return sdo_failure_text(*refused, 0x605A, 0);
   return check_mode(node);
 }
 
@@ -46,7 +46,7 @@ std::optional<std::string> DriveSettings::check_heartbeat(int node) {
   for (const SdoEntry& entry : {SdoEntry{0x1017, 0, 2}, SdoEntry{0x1016, 1, 4}}) {
     SdoFailure failure;
     if (sdo_.read(node, entry, failure)) continue;
-    if (failure.silent) return sdo_failure_words(failure, entry.index, entry.sub);
+    if (failure.silent) return sdo_failure_text(failure, entry.index, entry.sub);
     // Whatever else it says, it has the object: writing it will tell.
     if (failure.abort_code != kNoObject && failure.abort_code != kNoSubIndex) continue;
     return fmt::format(
@@ -65,7 +65,7 @@ std::optional<std::string> DriveSettings::end_guarding(int node) {
   for (const SdoEntry& entry : {SdoEntry{0x100C, 0, 2}, SdoEntry{0x100D, 0, 1}}) {
     SdoFailure failure;
     const auto value = sdo_.read(node, entry, failure);
-    if (failure.silent) return sdo_failure_words(failure, entry.index, entry.sub);
+    if (failure.silent) return sdo_failure_text(failure, entry.index, entry.sub);
     // Another abort than these says nothing of the object: the write decides.
     const bool absent = failure.abort_code == kNoObject || failure.abort_code == kNoSubIndex;
     const bool unset = value ? *value == 0 : absent;
@@ -73,7 +73,7 @@ std::optional<std::string> DriveSettings::end_guarding(int node) {
         unset ? std::nullopt
               : sdo_.write(node, {.index = entry.index, .sub = 0, .value = 0, .size = entry.size});
     off = off || !refused;
-    if (refused) refusal = sdo_failure_words(*refused, entry.index, entry.sub);
+    if (refused) refusal = sdo_failure_text(*refused, entry.index, entry.sub);
   }
   if (off) return std::nullopt;
   return fmt::format(
@@ -89,7 +89,7 @@ std::optional<std::string> DriveSettings::end_watch(int node, const CstConfigura
   // Its own node stays, the time goes: a zero as a whole would name no node, and be ignored (CN-4).
   const std::uint32_t off = watch ? *watch & 0x7F0000u : host_watch(wanted, 0);
   const auto refused = sdo_.write(node, {.index = 0x1016, .sub = 1, .value = off, .size = 4});
-  if (refused) return sdo_failure_words(*refused, 0x1016, 1);
+  if (refused) return sdo_failure_text(*refused, 0x1016, 1);
   return std::nullopt;
 }
 
@@ -100,12 +100,12 @@ std::optional<std::string> DriveSettings::end_other_watches(int node,
   const auto count = sdo_.read(node, {0x1016, 0, 1}, failure).value_or(1);
   for (std::uint8_t sub = 2; sub <= std::min(count, 127u); ++sub) {
     const auto watch = sdo_.read(node, {0x1016, sub, 4}, failure);
-    if (failure.silent) return sdo_failure_words(failure, 0x1016, sub);
+    if (failure.silent) return sdo_failure_text(failure, 0x1016, sub);
     if (!watch || (*watch & 0xFFFFu) == 0) continue;
     if ((*watch & 0x7F0000u) != host_watch(wanted, 0)) continue;
     const auto refused =
         sdo_.write(node, {.index = 0x1016, .sub = sub, .value = host_watch(wanted, 0), .size = 4});
-    if (refused) return sdo_failure_words(*refused, 0x1016, sub);
+    if (refused) return sdo_failure_text(*refused, 0x1016, sub);
   }
   return std::nullopt;
 }
@@ -116,7 +116,7 @@ std::optional<std::string> DriveSettings::expect_sync(int node, const CstConfigu
   SdoFailure failure;
   const auto write = [&](const SdoWrite& what) -> std::optional<std::string> {
     const auto refused = sdo_.write(node, what);
-    if (refused) return sdo_failure_words(*refused, what.index, what.sub);
+    if (refused) return sdo_failure_text(*refused, what.index, what.sub);
     return std::nullopt;
   };
   auto words = write({.index = 0x1005, .sub = 0, .value = kCanopenSyncId, .size = 4});

@@ -3,7 +3,7 @@
 
 #include <fmt/core.h>
 
-#include "hal/cia402/canopen_words.h"
+#include "hal/cia402/canopen_text.h"
 #include "model/time_ns.h"
 
 namespace tact::hal::cia402 {
@@ -66,14 +66,14 @@ void SdoClient::wait(int time_ms) {
   }
 }
 
-std::string sdo_failure_words(const SdoFailure& failure, std::uint16_t index, std::uint8_t sub) {
+std::string sdo_failure_text(const SdoFailure& failure, std::uint16_t index, std::uint8_t sub) {
   if (failure.silent) {
     return fmt::format(
         "does not answer when asked for setting 0x{:04X}:{:02X}: check its supply and the cable",
         index, sub);
   }
   return fmt::format("refuses setting 0x{:04X}:{:02X}: {} (abort code 0x{:08X})", index, sub,
-                     sdo_abort_sentence(failure.abort_code), failure.abort_code);
+                     sdo_abort_message(failure.abort_code), failure.abort_code);
 }
 
 }  // namespace tact::hal::cia402

@@ -50,6 +50,6 @@ class SdoClient {
 };
 
 /// "refuses setting 0x6060:00: The drive ... (0x06090030)", or that it does not answer.
-std::string sdo_failure_words(const SdoFailure& failure, std::uint16_t index, std::uint8_t sub);
+std::string sdo_failure_text(const SdoFailure& failure, std::uint16_t index, std::uint8_t sub);
 
 }  // namespace tact::hal::cia402

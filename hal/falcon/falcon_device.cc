@@ -218,7 +218,7 @@ FalconCommand FalconDevice::command(const FalconWords& words) const RT_SAFE {
 }
 
 std::string FalconDevice::trouble() const {
-  return in_words(trouble_.load(std::memory_order_relaxed));
+  return text_of(trouble_.load(std::memory_order_relaxed));
 }
 
 std::optional<ShutdownFrames> FalconDevice::shutdown_frames() {

@@ -7,7 +7,7 @@
 namespace tact::hal::falcon {
 namespace {
 
-constexpr std::size_t kInfoPlace = 13, kExtraPlace = 14, kEndPlace = 15;
+constexpr std::size_t kInfoPosition = 13, kExtraPlace = 14, kEndPlace = 15;
 constexpr int kNibblesPerWord = 4;
 
 FalconPacket packet(const FalconWords& words, unsigned info) RT_SAFE {
@@ -20,7 +20,7 @@ FalconPacket packet(const FalconWords& words, unsigned info) RT_SAFE {
     for (int i = 0; i < kNibblesPerWord; ++i, rest >>= 4)
       out[place++] = static_cast<std::uint8_t>(kFalconZero + (rest & 0xFu));
   }
-  out[kInfoPlace] = static_cast<std::uint8_t>(kFalconZero + info);
+  out[kInfoPosition] = static_cast<std::uint8_t>(kFalconZero + info);
   out[kExtraPlace] = kFalconZero;
   out[kEndPlace] = kFalconEnd;
   return out;
@@ -33,7 +33,7 @@ bool is_packet(std::span<const std::uint8_t> bytes) RT_SAFE {
   return true;
 }
 
-FalconWords words_of(std::span<const std::uint8_t> bytes) RT_SAFE {
+FalconWords text_of(std::span<const std::uint8_t> bytes) RT_SAFE {
   FalconWords out{};
   std::size_t place = 1;
   for (int& word : out) {
@@ -50,8 +50,8 @@ FalconWords words_of(std::span<const std::uint8_t> bytes) RT_SAFE {
 
 bool falcon_report_may_have(std::uint8_t byte, std::size_t place) RT_SAFE {
   if (place == 0) return byte == kFalconStart;
-  if (place < kInfoPlace) return byte >= kFalconZero && byte <= kFalconZero + 0xF;
-  if (place == kInfoPlace) return byte >= kFalconZero && byte <= kFalconZero + 0x7F;
+  if (place < kInfoPosition) return byte >= kFalconZero && byte <= kFalconZero + 0xF;
+  if (place == kInfoPosition) return byte >= kFalconZero && byte <= kFalconZero + 0x7F;
   // Its meaning is unknown: anything but the two marks, so that finding the start stays exact.
   if (place == kExtraPlace) return byte != kFalconStart && byte != kFalconEnd;
   return place == kEndPlace && byte == kFalconEnd;
@@ -86,10 +86,10 @@ FalconPacket encode(const FalconReport& report) RT_SAFE {
 
 std::optional<FalconCommand> decode_falcon_command(std::span<const std::uint8_t> bytes) RT_SAFE {
   if (!is_packet(bytes)) return std::nullopt;
-  const unsigned info = bytes[kInfoPlace] - unsigned{kFalconZero};
+  const unsigned info = bytes[kInfoPosition] - unsigned{kFalconZero};
   // A command uses the lower four bits; the rest of 0x7F belongs to reports.
   if (info > 0xFu) return std::nullopt;
-  const FalconWords words = words_of(bytes);
+  const FalconWords words = text_of(bytes);
   for (const int word : words)
     if (std::abs(word) > kFalconMotorMax) return std::nullopt;
   return FalconCommand{.motor = words,
@@ -99,8 +99,8 @@ std::optional<FalconCommand> decode_falcon_command(std::span<const std::uint8_t>
 
 std::optional<FalconReport> decode_falcon_report(std::span<const std::uint8_t> bytes) RT_SAFE {
   if (!is_packet(bytes)) return std::nullopt;
-  const unsigned info = bytes[kInfoPlace] - unsigned{kFalconZero};
-  return FalconReport{.counts = words_of(bytes),
+  const unsigned info = bytes[kInfoPosition] - unsigned{kFalconZero};
+  return FalconReport{.counts = text_of(bytes),
                       .buttons = static_cast<std::uint8_t>(info & 0xFu),
                       .homed = static_cast<std::uint8_t>(info >> 4)};
 }

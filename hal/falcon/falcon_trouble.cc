@@ -21,7 +21,7 @@ std::string missing_axes(std::uint8_t homed) {
   return out;
 }
 
-std::string line_words(std::uint8_t errors) {
+std::string line_text(std::uint8_t errors) {
   for (const std::uint8_t bit : {kFtdiBreak, kFtdiOverrun, kFtdiFraming, kFtdiParity})
     if ((errors & bit) != 0) return ftdi_line_error(bit);
   return "is another program or a bad cable on its line? Unplug its USB and power, plug both in "
@@ -30,7 +30,7 @@ std::string line_words(std::uint8_t errors) {
 
 }  // namespace
 
-std::string in_words(const FalconTrouble& t) {
+std::string text_of(const FalconTrouble& t) {
   const char* const reason = std::strerror(t.error);
   switch (t.what) {
     case FalconTrouble::What::kNone:
@@ -54,8 +54,7 @@ std::string in_words(const FalconTrouble& t) {
       return "the Falcon does not answer: is its power supply plugged in? Unplug power and USB for "
              "ten seconds, then start again";
     case FalconTrouble::What::kGarbled:
-      return fmt::format("the Falcon's reports cannot be understood: {}",
-                         line_words(t.line_errors));
+      return fmt::format("the Falcon's reports cannot be understood: {}", line_text(t.line_errors));
     case FalconTrouble::What::kHomingLost:
       return fmt::format(
           "the Falcon has lost its home (axis {}): start again, then pull the grip all the way out "

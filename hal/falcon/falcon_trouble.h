@@ -30,7 +30,7 @@ struct alignas(8) FalconTrouble {
 };
 static_assert(std::atomic<FalconTrouble>::is_always_lock_free);
 
-/// One sentence: which part, why, the remedy; empty for kNone.
-std::string in_words(const FalconTrouble& trouble);
+/// One message: which part, why, the remedy; empty for kNone.
+std::string text_of(const FalconTrouble& trouble);
 
 }  // namespace tact::hal::falcon

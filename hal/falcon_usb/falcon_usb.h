@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // falcon_usb.h - finding and claiming a Falcon through libusb. Set-up code only.
 //
-// Every failure is one sentence with the remedy. Source: libusb 1.0 API reference,
+// Every failure is one message with the remedy. Source: libusb 1.0 API reference,
 // libusb.sourceforge.io/api-1.0.
 #pragma once
 

@@ -34,7 +34,7 @@ DeviceInfo info_of(const SdkSession& session, const model::ForceDimensionSetting
           .damping_key = kDampingKey,
           .caution = std::string(vendor_sdk::kNoGuardian) +
                      (session.balances_weight ? "" : kWeightFelt) + (type.old ? kOldType : "") +
-                     vendor_sdk::words_of_assumed_damping(
+                     vendor_sdk::assumed_damping_text(
                          settings.damping_Ns_per_m,
                          model::ForceDimensionSettings{}.damping_Ns_per_m, kDampingKey)};
 }

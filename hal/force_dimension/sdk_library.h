@@ -14,7 +14,7 @@
 
 namespace tact::hal::force_dimension {
 
-inline constexpr int kSdkStatusWords = 17;
+inline constexpr int kSdkStatusTexts = 17;
 
 /// Units: m, N, Nm, us (time guard), 125 us (watchdog); angles as a rotation matrix.
 struct SdkFunctions {
@@ -23,7 +23,7 @@ struct SdkFunctions {
   int (*close)(char id) = nullptr;
   int (*stop)(char id) = nullptr;
   int (*system_type)(char id) = nullptr;
-  int (*status)(int words[kSdkStatusWords], char id) = nullptr;
+  int (*status)(int words[kSdkStatusTexts], char id) = nullptr;
   int (*pose)(double* x_m, double* y_m, double* z_m, double rotation[3][3], char id) = nullptr;
   int (*set_force)(double fx_N, double fy_N, double fz_N, double tx_Nm, double ty_Nm, double tz_Nm,
                    double grip_N, char id) = nullptr;

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "hal/device_lock.h"
-#include "hal/force_dimension/sdk_words.h"
+#include "hal/force_dimension/sdk_text.h"
 #include "hal/udev_rules.h"
 
 namespace tact::hal::force_dimension {
@@ -24,7 +24,7 @@ constexpr double kWatchdogUnit_s = 125e-6;
 
 Error failed(const SdkFunctions& sdk, const char* what) {
   return Error{fmt::format("the Force Dimension device refuses to {}: {}", what,
-                           words_of_sdk_error(sdk.error_get_last()))};
+                           text_of_sdk_error(sdk.error_get_last()))};
 }
 
 Result<char> open_device(const SdkFunctions& sdk, int wanted,
@@ -51,7 +51,7 @@ Result<char> open_device(const SdkFunctions& sdk, int wanted,
 
 /// What the device itself lacks, with the remedy.
 std::optional<Error> find_shortfall(const SdkSession& s) {
-  SdkStatusWords status{};
+  SdkStatusText status{};
   if (s.sdk.status(status.data(), s.id) < 0) return failed(s.sdk, "tell its status");
   if (status[kSdkPower] == 0)
     return Error{fmt::format("the {} has no power; switch its supply on", s.type.name)};

@@ -9,7 +9,7 @@
 #include <ctime>
 #include <thread>
 
-#include "hal/force_dimension/sdk_words.h"
+#include "hal/force_dimension/sdk_text.h"
 #include "hal/monotonic.h"
 #include "hal/vendor_sdk/rotation.h"
 #include "model/time_ns.h"
@@ -40,22 +40,22 @@ void sleep_until_ns(std::int64_t deadline_ns) {
 
 }  // namespace
 
-std::string words_of_sdk_trouble(const LibraryTrouble& t) {
+std::string text_of_sdk_trouble(const LibraryTrouble& t) {
   switch (static_cast<SdkTroubleSource>(t.source)) {
     case SdkTroubleSource::kNone:
       return {};
     case SdkTroubleSource::kPose:
-      return fmt::format("the device does not tell its pose: {}", words_of_sdk_error(t.code));
+      return fmt::format("the device does not tell its pose: {}", text_of_sdk_error(t.code));
     case SdkTroubleSource::kGrip:
-      return fmt::format("the device does not tell its gripper: {}", words_of_sdk_error(t.code));
+      return fmt::format("the device does not tell its gripper: {}", text_of_sdk_error(t.code));
     case SdkTroubleSource::kForce:
-      return fmt::format("the device does not take a force: {}", words_of_sdk_error(t.code));
+      return fmt::format("the device does not take a force: {}", text_of_sdk_error(t.code));
     case SdkTroubleSource::kEnable:
-      return fmt::format("the device does not switch its forces: {}", words_of_sdk_error(t.code));
+      return fmt::format("the device does not switch its forces: {}", text_of_sdk_error(t.code));
     case SdkTroubleSource::kWatch:
-      return fmt::format("the device does not tell its status: {}", words_of_sdk_error(t.code));
+      return fmt::format("the device does not tell its status: {}", text_of_sdk_error(t.code));
     case SdkTroubleSource::kForceOff:
-      return fmt::format("the device switched its forces off: {}", words_of_force_off(t.code));
+      return fmt::format("the device switched its forces off: {}", force_off_text(t.code));
     case SdkTroubleSource::kStatus:
       break;
   }
@@ -91,8 +91,8 @@ std::shared_ptr<SdkWorker> SdkWorker::start(const SdkSession& session, double ra
 }
 
 // On CLOCK_MONOTONIC, 0.9 of a cycle after its multiples: deadlines at 1, 2 and 4 kHz lie 50, 150
-// and 75 us into a cycle (firmware/loop/grid.h), 75 us and more from this timer, those of a faster
-// loop 0.3 of a cycle, while the library is fast enough for it.
+// and 75 us into a cycle (firmware/loop/release_schedule.h), 75 us and more from this timer, those
+// of a faster loop 0.3 of a cycle, while the library is fast enough for it.
 void SdkWorker::run() {
   std::int64_t due_ns = monotonic_ns() / cycle_ns() * cycle_ns() + cycle_ns() * 9 / 10;
   while (!quits() && cycle()) {
@@ -169,7 +169,7 @@ void SdkWorker::watch() {
 void SdkWorker::check_status() {
   // Before and after the call: it may take long, and "off" is news only if they were on throughout.
   const bool on_before = powered_for_sure();
-  SdkStatusWords status{};
+  SdkStatusText status{};
   if (session_.sdk.status(status.data(), session_.id) < 0) {
     fail(SdkTroubleSource::kWatch);
     return;

@@ -31,7 +31,7 @@ enum class SdkTroubleSource : std::uint8_t {
   kStatus
 };
 
-std::string words_of_sdk_trouble(const vendor_sdk::LibraryTrouble& trouble);
+std::string text_of_sdk_trouble(const vendor_sdk::LibraryTrouble& trouble);
 
 /// From one pose and force to the next.
 std::int64_t sdk_cycle_ns(double rate_Hz);
@@ -44,7 +44,7 @@ class SdkWorker final : public vendor_sdk::LibraryWorker {
  private:
   SdkWorker(const SdkSession& session, double rate_Hz)
       : LibraryWorker(sdk_cycle_ns(rate_Hz), rate_Hz), session_(session) {}
-  std::string words_of_trouble() const override { return words_of_sdk_trouble(first_trouble()); }
+  std::string trouble_text() const override { return text_of_sdk_trouble(first_trouble()); }
   void run();
   bool cycle();
   bool read_pose(std::int64_t now_ns);

@@ -34,7 +34,7 @@ std::vector<GpioChip> find_gpio_chips(const SystemRoots& roots = {});
 /// The same; one that is refused is asked again for 200 ms (hal/permission.h).
 std::vector<GpioChip> find_permitted_chips(const SystemRoots& roots);
 
-/// What is there, for a sentence: `gpiochip0 "pinctrl-intel", gpiochip1 "mcp2221"`.
+/// What is there, for a message: `gpiochip0 "pinctrl-intel", gpiochip1 "mcp2221"`.
 std::string name_chips(const std::vector<GpioChip>& chips);
 
 /// The chip that is meant: by path, label or name, and on no bus where every access sleeps.

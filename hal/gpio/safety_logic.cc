@@ -97,7 +97,7 @@ Fault SafetyLogic::evaluate(const SafetyLevels& levels, std::int64_t now_ns) RT_
   }
   // A new fault starts with its own cause; a standing one only learns more (order of LinesCause).
   if (fault_ != Fault::kNone && (!stood || cause > this->cause()))
-    // Relaxed: one byte for a sentence; the fault itself goes by the loop.
+    // Relaxed: one byte for a message; the fault itself goes by the loop.
     cause_.store(cause, std::memory_order_relaxed);
   return fault_;
 }

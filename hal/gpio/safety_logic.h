@@ -63,7 +63,7 @@ enum class LinesCause : std::uint8_t {
   kChipLost,
 };
 
-/// One sentence for a person; empty for kNone.
+/// One message for a person; empty for kNone.
 const char* words(LinesCause cause);
 
 class SafetyLogic {
@@ -82,7 +82,7 @@ class SafetyLogic {
   std::optional<bool> clutch() const RT_SAFE {
     return wiring_.clutch ? std::optional(clutch_.pressed() || clutch_.flaps()) : std::nullopt;
   }
-  /// One sentence for a person while the clutch flaps, else empty. Any thread.
+  /// One message for a person while the clutch flaps, else empty. Any thread.
   const char* notice() const {
     return words(clutch_flaps_.load(std::memory_order_relaxed) ? LinesCause::kClutchFlaps
                                                                : LinesCause::kNone);

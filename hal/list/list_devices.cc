@@ -80,10 +80,10 @@ FoundPart can_part(const PartProbes& probes, const fs::path& folder) {
   if (link.bitrate.value_or(0) != 0) part.what += fmt::format(", {} bit/s", *link.bitrate);
   // No bits and no rate: what a scene would load the bus with is not known here.
   if (const auto refusal = check_can_link(link, name, 0, 0.0)) {
-    const std::string& sentence = refusal->sentence;  // "what: remedy"
-    const std::size_t colon = std::min(sentence.find(": "), sentence.size());
-    part.lacking = sentence.substr(0, colon);
-    part.remedy = sentence.substr(std::min(colon + 2, sentence.size()));
+    const std::string& message = refusal->message;  // "what: remedy"
+    const std::size_t colon = std::min(message.find(": "), message.size());
+    part.lacking = message.substr(0, colon);
+    part.remedy = message.substr(std::min(colon + 2, message.size()));
   }
   return part;
 }
@@ -210,7 +210,7 @@ std::vector<FoundPart> list_devices(const PartProbes& probes) {
   return found;
 }
 
-const char* words_of_absence(PartKind kind) {
+const char* absence_text(PartKind kind) {
   switch (kind) {
     case PartKind::kCan:
       return "no CAN interface; plug in an adapter whose driver the kernel has (ip link shows it)";

@@ -54,6 +54,6 @@ PartProbes system_probes();
 std::vector<FoundPart> list_devices(const PartProbes& probes = system_probes());
 
 /// What is looked for and how to get it to show up, for a kind of which nothing is there.
-const char* words_of_absence(PartKind kind);
+const char* absence_text(PartKind kind);
 
 }  // namespace tact::hal::list

@@ -7,7 +7,7 @@
 #include <array>
 
 #include "hal/can/can_delta.h"
-#include "hal/moteus/moteus_words.h"
+#include "hal/moteus/moteus_text.h"
 #include "model/time_ns.h"
 
 namespace tact::hal::moteus {
@@ -87,7 +87,7 @@ class BringUp {
       if (!axes_[i].is_in(MoteusMode::kFault)) continue;
       start_.caution += fmt::format("{}{} was in fault, which is cleared now: {}",
                                     start_.caution.empty() ? "" : "; ", can::can_arm_name(i, can_),
-                                    moteus_fault_sentence(axes_[i].last.fault.value_or(0)));
+                                    moteus_fault_message(axes_[i].last.fault.value_or(0)));
     }
     for (Heard& axis : axes_) axis.forget();
     // The first reply tells of the time before its stop.
@@ -96,7 +96,7 @@ class BringUp {
       const Heard& axis = axes_[i];
       if (!axis.is_in(MoteusMode::kFault)) continue;
       return Error{fmt::format("{}: {}", can::can_arm_name(i, can_),
-                               moteus_fault_sentence(axis.last.fault.value_or(0)))};
+                               moteus_fault_message(axis.last.fault.value_or(0)))};
     }
     return wrong([](const Heard& a) { return a.stopped < 2; },
                  "does not stop: end the program that drives it, then start tactd again");

@@ -13,7 +13,7 @@
 #include "hal/can/can_open.h"
 #include "hal/moteus/moteus_bring_up.h"
 #include "hal/moteus/moteus_protocol.h"
-#include "hal/moteus/moteus_words.h"
+#include "hal/moteus/moteus_text.h"
 #include "model/time_ns.h"
 
 namespace tact::hal::moteus {
@@ -122,7 +122,7 @@ class Moteuses final : public can::CanFdDrives {
     switch (static_cast<MoteusCause>(cause.kind)) {
       case MoteusCause::kFault:
       case MoteusCause::kLowSupply:
-        return moteus_fault_sentence(static_cast<int>(cause.code));
+        return moteus_fault_message(static_cast<int>(cause.code));
       case MoteusCause::kTimeout:
         return fmt::format(
             "its watchdog expired, no command reached it for {:.0f} ms: check the CAN cable, and "

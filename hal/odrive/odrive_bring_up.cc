@@ -111,7 +111,7 @@ class BringUp {
   std::optional<Error> error_of_first() const {
     for (std::size_t i = 0; i < 3; ++i) {
       const OdriveHeard& axis = drives_.axes[i];
-      const auto words = odrive_error_sentence(drives_.generation, axis.error, axis.parts);
+      const auto words = odrive_error_message(drives_.generation, axis.error, axis.parts);
       if (!words.empty()) return Error{fmt::format("{}: {}", can::can_arm_name(i, can_), words)};
     }
     return std::nullopt;
@@ -193,7 +193,7 @@ class BringUp {
         drives_.run_until([&](const Axis& a) { return others(a) || awake(a); }, kWake_ms);
     drives_.report(odrive_axis_state(axis.node, OdriveAxisState::kIdle));
     if (good) return {};
-    const auto words = odrive_error_sentence(OdriveGeneration::k05, axis.error, axis.parts);
+    const auto words = odrive_error_message(OdriveGeneration::k05, axis.error, axis.parts);
     return Error{fmt::format(
         "{} tells position 0 while its encoder counts {}: firmware 0.5 tells its position only "
         "after it has entered closed loop once, and it does not: {}",

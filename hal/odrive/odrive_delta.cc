@@ -136,11 +136,11 @@ class Odrives final : public can::CanDrives {
   std::string words(const can::FaultCause& cause) const override {
     switch (static_cast<OdriveCause>(cause.kind)) {
       case OdriveCause::kErrors05:
-        return odrive_error_sentence(OdriveGeneration::k05, cause.code, 0);
+        return odrive_error_message(OdriveGeneration::k05, cause.code, 0);
       case OdriveCause::kErrors06:
-        return odrive_error_sentence(OdriveGeneration::k06, cause.code, 0);
+        return odrive_error_message(OdriveGeneration::k06, cause.code, 0);
       case OdriveCause::kParts05:
-        return odrive_error_sentence(OdriveGeneration::k05, 0, cause.code);
+        return odrive_error_message(OdriveGeneration::k05, 0, cause.code);
       case OdriveCause::kLeftClosedLoop:
         return fmt::format(
             "the drive left torque control by itself and is {}: read its errors with odrivetool",

@@ -6,10 +6,10 @@
 namespace tact::hal::odrive {
 namespace {
 
-constexpr OdriveErrorWords kUnknown{
+constexpr OdriveErrorText kUnknown{
     0, "UNKNOWN", "The drive reports an error bit that is not known here: ask odrivetool."};
 
-constexpr OdriveErrorWords kWords[] = {
+constexpr OdriveErrorText kWords[] = {
     {0x1, "INITIALIZING", "The drive is still starting: wait a second and try again."},
     {0x2, "SYSTEM_LEVEL",
      "The drive's firmware met an internal error: restart it, and update the firmware if it comes "
@@ -57,7 +57,7 @@ constexpr OdriveErrorWords kWords[] = {
      "Calibration failed: let the motor turn freely, check its cables and calibrate again."},
 };
 
-constexpr OdriveErrorWords kWords05[] = {
+constexpr OdriveErrorText kWords05[] = {
     {0x1, "INVALID_STATE",
      "The drive cannot enter the state that was asked for: calibrate motor and encoder first."},
     {0x2, "DC_BUS_UNDER_VOLTAGE", "DC bus voltage too low: is the drive's supply on?"},
@@ -99,24 +99,24 @@ constexpr OdriveErrorWords kWords05[] = {
      "The drive does not know where its motor is: calibrate the encoder or find its index."},
 };
 
-const OdriveErrorWords* first_of(std::uint32_t axis_error,
-                                 std::span<const OdriveErrorWords> words) RT_SAFE {
+const OdriveErrorText* first_of(std::uint32_t axis_error,
+                                std::span<const OdriveErrorText> words) RT_SAFE {
   if (axis_error == 0) return nullptr;
   const std::uint32_t lowest = axis_error & (~axis_error + 1u);
-  for (const OdriveErrorWords& one : words)
+  for (const OdriveErrorText& one : words)
     if (one.bit == lowest) return &one;
   return &kUnknown;
 }
 
 }  // namespace
 
-std::span<const OdriveErrorWords> odrive_error_words() RT_SAFE { return kWords; }
-std::span<const OdriveErrorWords> odrive_error_words_05() RT_SAFE { return kWords05; }
+std::span<const OdriveErrorText> odrive_error_texts() RT_SAFE { return kWords; }
+std::span<const OdriveErrorText> odrive_error_texts_05() RT_SAFE { return kWords05; }
 
-const OdriveErrorWords* first_odrive_error(std::uint32_t axis_error) RT_SAFE {
+const OdriveErrorText* first_odrive_error(std::uint32_t axis_error) RT_SAFE {
   return first_of(axis_error, kWords);
 }
-const OdriveErrorWords* first_odrive_error_05(std::uint32_t axis_error) RT_SAFE {
+const OdriveErrorText* first_odrive_error_05(std::uint32_t axis_error) RT_SAFE {
   return first_of(axis_error, kWords05);
 }
 
@@ -125,13 +125,13 @@ std::uint32_t odrive_parts_05(const OdriveHeartbeat05& heartbeat) RT_SAFE {
          (heartbeat.controller_error ? 4u : 0u);
 }
 
-std::string odrive_error_sentence(OdriveGeneration generation, std::uint32_t axis_error,
-                                  std::uint32_t parts) {
-  const OdriveErrorWords* words = generation == OdriveGeneration::k06
-                                      ? first_odrive_error(axis_error)
-                                      : first_odrive_error_05(axis_error);
+std::string odrive_error_message(OdriveGeneration generation, std::uint32_t axis_error,
+                                 std::uint32_t parts) {
+  const OdriveErrorText* words = generation == OdriveGeneration::k06
+                                     ? first_odrive_error(axis_error)
+                                     : first_odrive_error_05(axis_error);
   if (words != nullptr)
-    return fmt::format("{} ({}, 0x{:X})", words->sentence, words->name, axis_error);
+    return fmt::format("{} ({}, 0x{:X})", words->message, words->name, axis_error);
   if ((parts & 1u) != 0) return "the motor reports an error: read axis.motor.error in odrivetool";
   if ((parts & 2u) != 0)
     return "the encoder reports an error: read axis.encoder.error in odrivetool";

@@ -68,7 +68,7 @@ class OdriveListener {
   void run_for(int time_ms) {
     run_until([](const OdriveHeard&) { return false; }, time_ms);
   }
-  /// The first axis that fits, as a sentence.
+  /// The first axis that fits, as a message.
   std::optional<model::Error> wrong(const Condition& fits, const char* words) const;
 
  private:

@@ -23,8 +23,8 @@ std::string caution_of(const PhantomSession& session, const model::PhantomSettin
   return fmt::format(
       "{}; what its motors bear for long: {}; the stiffest law that its vendor advises: {}{}",
       vendor_sdk::kNoGuardian, for_long, stiffness,
-      vendor_sdk::words_of_assumed_damping(settings.damping_Ns_per_m,
-                                           model::PhantomSettings{}.damping_Ns_per_m, kDampingKey));
+      vendor_sdk::assumed_damping_text(settings.damping_Ns_per_m,
+                                       model::PhantomSettings{}.damping_Ns_per_m, kDampingKey));
 }
 
 DeviceInfo info_of(const PhantomSession& session, const model::PhantomSettings& settings) {

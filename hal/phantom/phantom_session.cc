@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "hal/device_lock.h"
-#include "hal/phantom/hd_words.h"
+#include "hal/phantom/hd_text.h"
 #include "hal/udev_rules.h"
 
 namespace tact::hal::phantom {
@@ -57,7 +57,7 @@ std::optional<Error> ask_limits(PhantomSession& s) {
   s.radius_m = std::min(half_m.y, half_m.z);
   s.half_length_m = half_m.x;
   if (const unsigned code = take_hd_errors(s.hd); code != 0)
-    return Error{fmt::format("the PHANTOM does not tell its limits: {}", words_of_hd_error(code))};
+    return Error{fmt::format("the PHANTOM does not tell its limits: {}", text_of_hd_error(code))};
   // NaN in one corner is a NaN here, which std::min may pass over.
   if (!is_finite(half_m) || !is_finite(s.middle_m) || !is_positive(s.max_force_N) ||
       !is_positive(s.radius_m) || !is_positive(s.half_length_m))
@@ -94,8 +94,8 @@ Result<PhantomSession> open_phantom_session(const model::PhantomSettings& settin
     }
     return Error{fmt::format(
         "the PHANTOM \"{}\" does not open: {}; {}", name,
-        code == 0 ? "there is no such device" : words_of_hd_error(code),
-        refusal ? refusal->error().sentence
+        code == 0 ? "there is no such device" : text_of_hd_error(code),
+        refusal ? refusal->error().message
                 : "device.phantom.name is the name that the vendor's Touch_Setup gave it")};
   }
   hd->make_current(session.id);

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "hal/monotonic.h"
-#include "hal/phantom/hd_words.h"
+#include "hal/phantom/hd_text.h"
 #include "hal/vendor_sdk/rotation.h"
 
 namespace tact::hal::phantom {
@@ -47,8 +47,7 @@ model::Result<std::shared_ptr<PhantomWorker>> PhantomWorker::start(const Phantom
   worker->expect_threads(1);
   worker->self_ = worker;  // the library must not call what is gone
   const auto does_not_start = [](unsigned code) {
-    return Error{
-        fmt::format("the PHANTOM's scheduler does not start: {}", words_of_hd_error(code))};
+    return Error{fmt::format("the PHANTOM's scheduler does not start: {}", text_of_hd_error(code))};
   };
   hd.set_scheduler_rate(static_cast<unsigned long>(kPhantomRate_Hz));
   const unsigned long scheduled = hd.schedule(on_cycle, worker.get(), kHighestPriority);
@@ -85,13 +84,13 @@ std::optional<Error> PhantomWorker::wait_until_calibrated() {
                            calibration_remedy(session_))};
 }
 
-std::string PhantomWorker::words_of_trouble() const {
+std::string PhantomWorker::trouble_text() const {
   const auto reported = first_trouble();
   switch (static_cast<Source>(reported.source)) {
     case Source::kNone:
       return {};
     case Source::kError:
-      return fmt::format("the PHANTOM failed: {}", words_of_hd_error(reported.code));
+      return fmt::format("the PHANTOM failed: {}", text_of_hd_error(reported.code));
     case Source::kForceOff:
       return "the PHANTOM's force output is off; end other programs that use the device, then "
              "start tactd again";
@@ -124,7 +123,7 @@ bool PhantomWorker::cycle() {
   cycles_ended();
   // When nobody has waited so long, this thread is the last to know the worker.
   const std::shared_ptr<PhantomWorker> last = std::move(self_);
-  thread_ends();  // whoever waits may close the device now
+  thread_ends();  // any user waits may close the device now
   return false;
 }
 

@@ -47,7 +47,7 @@ class PhantomWorker final : public vendor_sdk::LibraryWorker {
   void let_go();
   bool switch_forces(bool on) override;
   void switch_output();
-  std::string words_of_trouble() const override;
+  std::string trouble_text() const override;
   void close() override;
   bool fail(model::Fault fault, Source source, unsigned code);
 

@@ -27,15 +27,15 @@ using Opened = Result<OpenDevice>;
 
 Opened open_sim_delta(const model::scene::Scene& scene) {
   auto device = sim::make_sim_delta(scene.device.sim, scene.hand, mounting_of(scene.device));
-  if (!device) return Error{fmt::format("{}: {}", scene.path, device.error().sentence)};
+  if (!device) return Error{fmt::format("{}: {}", scene.path, device.error().message)};
   return OpenDevice(device->release());
 }
 
-/// A device's own function; its sentences get the scene in front.
+/// A device's own function; its messages get the scene in front.
 template <Result<std::unique_ptr<Device>> (*open)(const model::DeviceSettings&, double)>
 Opened opened(const model::scene::Scene& scene) {
   auto device = open(scene.device, scene.rate_Hz);
-  if (!device) return Error{fmt::format("{}: {}", scene.path, device.error().sentence)};
+  if (!device) return Error{fmt::format("{}: {}", scene.path, device.error().message)};
   return OpenDevice(device->release());
 }
 

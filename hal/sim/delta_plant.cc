@@ -12,10 +12,10 @@ namespace {
 // Chosen: stiff beside any tissue; the steps stay stable, as they are implicit. Rim: README.
 constexpr double kStopStiffness_Nm_per_rad = 2000.0;
 constexpr double kStopDamping_Nms_per_rad = 5.0;
-constexpr double kRimStiffness_N_per_m = 20e3;
-constexpr double kRimDamping_Ns_per_m = 100.0;
-constexpr double kRimRadius_m = kWorkspaceRadius_m + 0.020;
-constexpr double kRimHalfLength_m = kWorkspaceHalfLength_m + 0.015;
+constexpr double kStopStiffness_N_per_m = 20e3;
+constexpr double kStopDamping_Ns_per_m = 100.0;
+constexpr double kStopRadius_m = kWorkspaceRadius_m + 0.020;
+constexpr double kStopHalfLength_m = kWorkspaceHalfLength_m + 0.015;
 constexpr int kFrictionSweeps =
     8;  // three joints, well conditioned: leaves 1e-4 of one step's push
 
@@ -72,7 +72,7 @@ void DeltaPlant::step(double dt_s, const delta::Joints& motor_Nm, const HandPull
       .momentum_Ns = mass_kg * velocity_mps_ + dt_s * force_N,
   };
   add_stops(dt_s, k, step);
-  add_rim(dt_s, step);
+  add_stop(dt_s, step);
   // Friction last: it needs the speed that all else would give, to know what would stop the joint.
   const model::Mat3 a_inverse = model::inverse(step.a);
   const model::Vec3 free_mps = a_inverse * step.momentum_Ns;
@@ -91,19 +91,19 @@ void DeltaPlant::add_stops(double dt_s, const model::Mat3& k, Implicit& step) co
   }
 }
 
-void DeltaPlant::add_rim(double dt_s, Implicit& step) const RT_SAFE {
+void DeltaPlant::add_stop(double dt_s, Implicit& step) const RT_SAFE {
   const double ahead_s = 0.5 * dt_s;
   const double radius_m = std::hypot(position_m_.x, position_m_.y);
-  if (radius_m > kRimRadius_m) {
+  if (radius_m > kStopRadius_m) {
     const model::Vec3 outward{position_m_.x / radius_m, position_m_.y / radius_m, 0.0};
-    step.resist(dt_s, outward, radius_m - kRimRadius_m + ahead_s * dot(outward, velocity_mps_),
-                kRimStiffness_N_per_m, kRimDamping_Ns_per_m);
+    step.resist(dt_s, outward, radius_m - kStopRadius_m + ahead_s * dot(outward, velocity_mps_),
+                kStopStiffness_N_per_m, kStopDamping_Ns_per_m);
   }
   const double along_m = position_m_.z - kMiddle_D_m;
-  if (std::abs(along_m) > kRimHalfLength_m) {
-    const double excess_m = along_m - std::copysign(kRimHalfLength_m, along_m);
-    step.resist(dt_s, {0.0, 0.0, 1.0}, excess_m + ahead_s * velocity_mps_.z, kRimStiffness_N_per_m,
-                kRimDamping_Ns_per_m);
+  if (std::abs(along_m) > kStopHalfLength_m) {
+    const double excess_m = along_m - std::copysign(kStopHalfLength_m, along_m);
+    step.resist(dt_s, {0.0, 0.0, 1.0}, excess_m + ahead_s * velocity_mps_.z, kStopStiffness_N_per_m,
+                kStopDamping_Ns_per_m);
   }
 }
 

@@ -56,7 +56,7 @@ class DeltaPlant {
   struct Implicit;  // what one step adds to A and to the right-hand side
 
   void add_stops(double dt_s, const model::Mat3& k, Implicit& step) const RT_SAFE;
-  void add_rim(double dt_s, Implicit& step) const RT_SAFE;
+  void add_stop(double dt_s, Implicit& step) const RT_SAFE;
   model::Vec3 with_friction(const model::Vec3& free_mps, const model::Mat3& k,
                             const model::Mat3& a_inverse, double most_Nms) const RT_SAFE;
   void move(double dt_s, const model::Vec3& velocity_mps) RT_SAFE;

@@ -19,8 +19,8 @@ constexpr double kJump_m = 0.02, kJump_rad = 0.5;  // between two samples: a new
 
 }  // namespace
 
-std::string words_of_assumed_damping(double damping_Ns_per_m, double default_Ns_per_m,
-                                     const char* key) {
+std::string assumed_damping_text(double damping_Ns_per_m, double default_Ns_per_m,
+                                 const char* key) {
   if (damping_Ns_per_m != default_Ns_per_m) return "";
   return fmt::format("; the damping of this device is assumed, not measured ({})", key);
 }

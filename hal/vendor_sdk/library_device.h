@@ -24,8 +24,7 @@ inline constexpr const char* kNoGuardian =
 
 /// For `DeviceInfo::caution`, "; " first: the damping is the default of this key. Empty where the
 /// scene gives one of its own.
-std::string words_of_assumed_damping(double damping_Ns_per_m, double default_Ns_per_m,
-                                     const char* key);
+std::string assumed_damping_text(double damping_Ns_per_m, double default_Ns_per_m, const char* key);
 
 class LibraryDevice final : public Device {
  public:

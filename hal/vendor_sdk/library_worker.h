@@ -101,7 +101,7 @@ class LibraryWorker {
 
   // Any thread.
   /// The first trouble for a person; empty without one.
-  virtual std::string words_of_trouble() const = 0;
+  virtual std::string trouble_text() const = 0;
   std::int64_t cycle_ns() const { return cycle_ns_; }
   bool quits() const { return quit_.load(std::memory_order_relaxed); }
   /// The forces are on for so long that "off" is news.

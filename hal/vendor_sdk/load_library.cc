@@ -30,7 +30,7 @@ Result<LoadedLibrary> load_library(const std::string& name, bool trusted, const 
         of.whose, why, of.source, of.setting, of.file)};
   };
   const auto file = trusted ? Result<std::string>(name) : find_library(name);
-  if (!file) return not_loaded(file.error().sentence);
+  if (!file) return not_loaded(file.error().message);
   const std::string remedy = fmt::format(
       "let root install it (sudo install -D -o root -m 644 {0} {1}/{0}) and {2} name that, or say "
       "--trust-library if you know the file",

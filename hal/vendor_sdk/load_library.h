@@ -13,7 +13,7 @@
 
 namespace tact::hal::vendor_sdk {
 
-/// Whose it is, for the sentences.
+/// Whose it is, for the messages.
 struct VendorSdk {
   const char* whose;    // "Force Dimension's"
   const char* source;   // "the SDK at forcedimension.com"

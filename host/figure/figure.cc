@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/figure/figure_words.h"
+#include "host/figure/figure_text.h"
 #include "host/figure/limb.h"
 
 namespace tact::host::figure {
@@ -90,7 +90,7 @@ void Figure::settle(const TrackedOperator& bodies) {
     waited_s_ += dt_s_;
     if (is_seen(shoulder)) {
       const Vector3d by_m = to_shoulder(plan_, shoulder.pose.position_m);
-      pose_.shoulder_too_far = !((by_m - start_m_).norm() <= kFarthestPlace_m);
+      pose_.shoulder_too_far = !((by_m - start_m_).norm() <= kMaxPosition_m);
       place_goal_m_ = pose_.shoulder_too_far ? start_m_ : by_m;
     } else if (shoulder.state == BodyState::kAbsent || waited_s_ > kWaitForShoulder_s) {
       // A description without a shoulder, or one that hides: stand where untracked figures do.

@@ -13,7 +13,7 @@
 //
 // A bone is bound when its body is first tracked (TR-5): the operator stands as the neutral figure
 // does. The figure then stands where its right shoulder meets the tracked one, if that is within
-// kFarthestPlace_m of the default. A bone without a tracker stays neutral; the head looks down at
+// kMaxPosition_m of the default. A bone without a tracker stays neutral; the head looks down at
 // the device, the feet stand. A body that is held, lost or back: bound_bone.h.
 //
 // Time is an argument, s, of any clock; a step back begins again, binding and all. No number that
@@ -66,7 +66,7 @@ struct FigurePose {
   }
 };
 
-inline constexpr double kFarthestPlace_m = 0.5;
+inline constexpr double kMaxPosition_m = 0.5;
 inline constexpr double kLimbTolerance_m = 0.01;  // a straight limb, a little noise: no trouble
 inline constexpr double kNeckCone_rad = 0.8, kHeadTurn_rad = 1.4;
 inline constexpr double kRelax_s = 1.5;  // in which the arm goes two thirds of its way to rest

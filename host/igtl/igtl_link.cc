@@ -19,7 +19,7 @@ using model::Result;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kRetry{1000};
-// A peer writes these sentences' names: without a bound it would fill memory and terminal.
+// A peer writes these messages' names: without a bound it would fill memory and terminal.
 constexpr std::size_t kMaxTroubles = 16;  // told apart
 
 double utc_s() {
@@ -166,7 +166,7 @@ void IgtlLink::come_back() {
 
 SessionEvents IgtlLink::events_of(std::function<void(const std::string& reason)> ended) {
   return {.pose = [this](const MessageHead& head, const pose::Pose& pose) { take(head, pose); },
-          .refused = [this](const std::string& sentence) { refuse(sentence); },
+          .refused = [this](const std::string& message) { refuse(message); },
           .ended = std::move(ended)};
 }
 
@@ -180,10 +180,10 @@ void IgtlLink::take(const MessageHead& head, const pose::Pose& pose) {
                     head.device));
 }
 
-void IgtlLink::refuse(const std::string& sentence) {
+void IgtlLink::refuse(const std::string& message) {
   ++refused_;
-  if (troubles_.size() < kMaxTroubles && troubles_.insert(sentence).second)
-    say_(fmt::format("OpenIGTLink: {}; others like it are only counted", sentence));
+  if (troubles_.size() < kMaxTroubles && troubles_.insert(message).second)
+    say_(fmt::format("OpenIGTLink: {}; others like it are only counted", message));
 }
 
 void IgtlLink::add(const record::Frame& frame) {

@@ -39,7 +39,7 @@ inline constexpr std::chrono::milliseconds kFrameGap{30}, kStatusGap{1000};
 
 class IgtlLink {
  public:
-  using Say = std::function<void(const std::string& sentence)>;
+  using Say = std::function<void(const std::string& message)>;
 
   IgtlLink(boost::asio::io_context& io, Say say);
   ~IgtlLink();
@@ -71,7 +71,7 @@ class IgtlLink {
   void come_back();
   SessionEvents events_of(std::function<void(const std::string& reason)> ended);
   void take(const MessageHead& head, const pose::Pose& pose);
-  void refuse(const std::string& sentence);
+  void refuse(const std::string& message);
   void report(const Status& status, const std::string& before);
   double now_s() const;
 

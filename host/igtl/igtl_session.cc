@@ -67,7 +67,7 @@ void IgtlSession::read_head_next() {
       [self = shared_from_this()](Code wrong, std::size_t bytes) {
         if (wrong || self->ended_) return self->end(wrong);
         auto head = read_head({self->bytes_.data(), bytes});
-        if (!head) return self->end(head.error().sentence);
+        if (!head) return self->end(head.error().message);
         self->head_ = std::move(*head);
         const std::uint64_t body = self->head_.body_bytes;
         const bool is_used = self->head_.type == "TRANSFORM" || self->head_.type == "POSITION";
@@ -107,10 +107,10 @@ void IgtlSession::take_body(std::string_view body) {
   // First: with a wrong checksum every other complaint would be about noise.
   if (crc64(body) != head_.crc) return refuse("its checksum is not that of its bytes");
   const auto content = content_of(head_, body);
-  if (!content) return refuse(content.error().sentence);
+  if (!content) return refuse(content.error().message);
   if (!content->is_tracked) return;  // its sender does not see it
   const auto pose = pose_of(head_.type, content->bytes);
-  if (!pose) return refuse(pose.error().sentence);
+  if (!pose) return refuse(pose.error().message);
   if (events_.pose) events_.pose(head_, *pose);
 }
 

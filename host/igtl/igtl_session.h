@@ -27,7 +27,7 @@ inline constexpr std::chrono::seconds kTimeout{10};
 struct SessionEvents {
   std::function<void(const MessageHead& head, const pose::Pose& pose)> pose;
   /// What was left out; the connection goes on.
-  std::function<void(const std::string& sentence)> refused;
+  std::function<void(const std::string& message)> refused;
   /// Once. Empty: the other side went.
   std::function<void(const std::string& reason)> ended;
 };

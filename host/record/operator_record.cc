@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "host/figure/figure_words.h"
+#include "host/figure/figure_text.h"
 
 namespace tact::host::record {
 namespace {

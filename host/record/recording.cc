@@ -68,7 +68,7 @@ Result<std::uint64_t> skip_ticks(SealedFile& in, Magic& magic) {
 }
 
 Error damaged(const Error& error) {
-  return Error{error.sentence + "; nothing of it can be shown, record again"};
+  return Error{error.message + "; nothing of it can be shown, record again"};
 }
 
 /// How many bytes of an operator are behind each frame; nothing: a version that is not read here.
@@ -175,7 +175,7 @@ std::string read_frames(SealedFile& in, std::uint64_t start, std::size_t operato
 }
 
 ReadResult unusable(const Error& error) {
-  return {.recording = {}, .usable = false, .damage = error.sentence};
+  return {.recording = {}, .usable = false, .damage = error.message};
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 // recording.h - a run of tactd in one file, and the last minutes of it in memory.
 //
 // The file is laid out in firmware/telemetry/recording_format.h; a black box of tactd holds one,
-// too. A damaged or cut-off file gives what is good of it and one sentence about the rest. With a
+// too. A damaged or cut-off file gives what is good of it and one message about the rest. With a
 // tracker it also keeps the operator and the figure that was shown, frame by frame
 // (operator_record.h).
 #pragma once

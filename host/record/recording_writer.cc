@@ -32,7 +32,7 @@ std::optional<Error> RecordingWriter::open(const std::string& path, const Hello&
 
 std::optional<Error> RecordingWriter::stop(const Error& error) {
   file_.reset();
-  return Error{error.sentence + "; recording stopped, what was written before is kept"};
+  return Error{error.message + "; recording stopped, what was written before is kept"};
 }
 
 std::optional<Error> RecordingWriter::put(const std::string& bytes) {

@@ -32,10 +32,10 @@ namespace {
 
 constexpr int kGood = 0, kCheckFailed = 1, kBadInput = 2;
 
-void warn(const std::string& sentence) { fmt::print(stderr, "tact-view: {}\n", sentence); }
+void warn(const std::string& message) { fmt::print(stderr, "tact-view: {}\n", message); }
 
-int fail(const std::string& sentence) {
-  warn(sentence);
+int fail(const std::string& message) {
+  warn(message);
   return kBadInput;
 }
 
@@ -105,7 +105,7 @@ class Recorder {
   void note(const std::optional<model::Error>& error) {
     if (!error) return;
     failed_ = true;
-    warn(error->sentence);
+    warn(error->message);
   }
 
   record::RecordingWriter writer_;
@@ -121,14 +121,14 @@ int export_csv(const Options& options, const record::ReadResult& read) {
   std::string text =
       record::csv_facts(recording.hello) + record::csv_header(recording.hello, bodies);
   auto out = model::io::FileWriter::replace(options.export_csv, text);
-  if (!out) return fail(out.error().sentence);
+  if (!out) return fail(out.error().message);
   for (std::size_t i = 0; i < recording.frames.size(); ++i) {
     record::append_csv_row(text, recording.frames[i], recording.hello, recording.operator_at(i),
                            bodies);
-    if (const auto error = out->put(text)) return fail(error->sentence);
+    if (const auto error = out->put(text)) return fail(error->message);
     text.clear();
   }
-  if (const auto error = out->finish()) return fail(error->sentence);
+  if (const auto error = out->finish()) return fail(error->message);
   if (options.json) {
     const nlohmann::json summary{
         {"format", "tact-view-export"},     {"version", 1},
@@ -166,7 +166,7 @@ template <typename Start>
 int serve(const Options& options, boost::asio::io_context& io, server::ViewerServer& server,
           const Start& start) {
   if (const std::optional<model::Error> error = server.open(options.viewer))
-    return fail(error->sentence);
+    return fail(error->message);
   boost::asio::signal_set signals(io, SIGINT, SIGTERM);
   signals.async_wait([&io](boost::system::error_code, int) { io.stop(); });
   server.start();
@@ -180,7 +180,7 @@ int serve(const Options& options, boost::asio::io_context& io, server::ViewerSer
 model::Result<model::io::Trust> trust_of(const Options& options) {
   if (options.tactd_user.empty()) return model::io::Trust{};
   const auto user = model::io::find_user(options.tactd_user);
-  if (!user) return model::Error{"--tactd-user " + user.error().sentence};
+  if (!user) return model::Error{"--tactd-user " + user.error().message};
   model::io::Trust trust;
   trust.user = *user;
   return trust;
@@ -222,19 +222,19 @@ int show_live(const Options& options) {
     return fail(options.record +
                 ": exists already; a recording is never overwritten, choose another name");
   const auto trust = trust_of(options);
-  if (!trust) return fail(trust.error().sentence);
+  if (!trust) return fail(trust.error().message);
   server::OperatorFigure figure(options.height_m);  // outlives the view
   server::LiveView view;                            // outlives the sessions, which live in io
   boost::asio::io_context io(1);
   OperatorInputs inputs(io, warn);
-  if (const std::optional<model::Error> error = inputs.open(options)) return fail(error->sentence);
+  if (const std::optional<model::Error> error = inputs.open(options)) return fail(error->message);
   if (const auto shoulder_m = inputs.shoulder_m()) figure.put_shoulder_at(*shoulder_m);
   if (options.figure || inputs.is_there()) view.accompany(&figure);
   Recorder recorder(options.record, inputs.is_there());
   server::ScenePicker picker(view, say_line);
   Answers answers(io, picker);
   if (!options.scenes.empty())
-    if (const auto error = picker.load(options.scenes)) return fail(error->sentence);
+    if (const auto error = picker.load(options.scenes)) return fail(error->message);
   TelemetryClient client(io, options.socket,
                          show_and_record(view, recorder, inputs, figure, picker), *trust);
   server::ViewerServer server(

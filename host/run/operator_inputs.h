@@ -18,7 +18,7 @@ namespace tact::host::run {
 
 class OperatorInputs {
  public:
-  using Say = std::function<void(const std::string& sentence)>;
+  using Say = std::function<void(const std::string& message)>;
   OperatorInputs(boost::asio::io_context& io, Say say) : io_(io), say_(std::move(say)) {}
 
   /// What the options ask for, if anything. Error: what is wrong and what to do.

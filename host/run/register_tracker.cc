@@ -25,7 +25,7 @@ using model::Error;
 constexpr int kGood = 0, kCheckFailed = 1, kBadInput = 2;
 constexpr std::size_t kWorstNamed = 3;
 
-void say(const std::string& sentence) { fmt::print(stderr, "tact-view: {}\n", sentence); }
+void say(const std::string& message) { fmt::print(stderr, "tact-view: {}\n", message); }
 
 double clock_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -109,12 +109,12 @@ void report(const Options& options, const std::string& path,
 int finish(const Options& options, const std::vector<tracking::PosePair>& poses) {
   const model::Result<tracking::Registration> fit = tracking::fit_registration(poses);
   if (!fit) {
-    say("no registration: " + fit.error().sentence);
+    say("no registration: " + fit.error().message);
     return kCheckFailed;
   }
   const std::string path = tracking::registration_path(options.tracking);
   if (const std::optional<Error> error = write_registration(path, *fit)) {
-    say(error->sentence);
+    say(error->message);
     return kBadInput;
   }
   report(options, path, poses, *fit);
@@ -154,7 +154,7 @@ int register_tracker(const Options& options) {
       tracking.open(options.tracking, tracking::OperatorTracking::Registered::kNo);
   if (!error) error = check(options.tracking, tracking);
   if (error) {
-    say(error->sentence);
+    say(error->message);
     return kBadInput;
   }
   Collecting collecting(tracking, options.poses);

@@ -105,10 +105,10 @@ void TelemetryClient::stop() {
 
 void TelemetryClient::connect() {
   const auto address = model::io::socket_address(path_);
-  if (!address) return lose(address.error().sentence);
+  if (!address) return lose(address.error().message);
   // In a folder that others may write, anybody could have put a socket of this name.
   if (const auto shared = model::io::check_socket_folder(path_, trust_))
-    return lose(shared->sentence);
+    return lose(shared->message);
   const int fd = ::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   if (fd < 0) return lose(fmt::format("no socket: {}", std::strerror(errno)));
   if (::connect(fd, model::io::plain(*address), sizeof *address) != 0) {
@@ -207,7 +207,7 @@ bool TelemetryClient::read_message() {
       has_hello_ ? take_frame({bytes, static_cast<std::size_t>(got)})
                  : take_hello({bytes, static_cast<std::size_t>(got)}, memory_file);
   if (memory_file >= 0) ::close(memory_file);
-  if (error) lose(error->sentence);
+  if (error) lose(error->message);
   return !error && socket_.is_open();
 }
 

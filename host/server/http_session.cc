@@ -47,8 +47,8 @@ HttpSession::Response make(http::status status, const char* mime, std::string bo
   return response;
 }
 
-HttpSession::Response sorry(http::status status, const char* sentence) {
-  return make(status, "text/plain; charset=utf-8", std::string(sentence) + "\n");
+HttpSession::Response sorry(http::status status, const char* message) {
+  return make(status, "text/plain; charset=utf-8", std::string(message) + "\n");
 }
 
 std::uint64_t tick_value(std::string_view query, std::string_view key, std::uint64_t otherwise) {

@@ -76,7 +76,7 @@ void ScenePicker::ask(const json& request) {
   } else if (asked_) {
     answer_ = "a scene is being started; ask again when it runs";
   } else if (const auto error = check(choice)) {
-    answer_ = error->sentence;
+    answer_ = error->message;
   } else {
     answer_.clear();
     asked_ = choice;

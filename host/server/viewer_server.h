@@ -28,8 +28,8 @@ struct ViewerOptions {
 
 class ViewerServer {
  public:
-  /// `warn` gets a sentence for the terminal.
-  using Warn = std::function<void(const std::string& sentence)>;
+  /// `warn` gets a message for the terminal.
+  using Warn = std::function<void(const std::string& message)>;
   ViewerServer(boost::asio::io_context& io, LiveView& view, MoveHand move_hand, Warn warn = {});
 
   /// Loads the page and listens. Error: what is wrong and what to do.

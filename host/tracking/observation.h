@@ -9,7 +9,7 @@
 //     camera, body  names of the tracking description: 1 to 32 letters, digits, _ or -
 //     id        of a marker of the body      u, v  px, or tangents of a sweep tracker
 //
-// Any bytes give an observation or one sentence. Other keys are passed over.
+// Any bytes give an observation or one message. Other keys are passed over.
 #pragma once
 
 #include <Eigen/Core>

@@ -41,7 +41,7 @@ Result<ObservationFile> read_observation_file(const std::string& path) {
     if (seen)
       out.seen.push_back(std::move(*seen));
     else if (out.bad++ == 0)
-      out.first_bad = fmt::format("{}:{}: {}", path, number, seen.error().sentence);
+      out.first_bad = fmt::format("{}:{}: {}", path, number, seen.error().message);
   }
   if (!out.seen.empty()) return out;
   if (out.bad > 0) return Error{out.first_bad};

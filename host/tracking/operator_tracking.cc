@@ -25,8 +25,8 @@ double OperatorTracking::now_s() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
 }
 
-void OperatorTracking::say(const std::string& sentence) const {
-  if (say_) say_(sentence);
+void OperatorTracking::say(const std::string& message) const {
+  if (say_) say_(message);
 }
 
 std::optional<Error> OperatorTracking::open(const std::string& path, Registered registered) {
@@ -113,7 +113,7 @@ void OperatorTracking::refuse(const Error& error) {
   // A sender with a fault has it in each datagram.
   if (refused_by_content_++ == 0) {
     say(fmt::format("tracking: an observation is left out: {}; others like it are only counted",
-                    error.sentence));
+                    error.message));
   }
   ++refused_;
 }

@@ -26,7 +26,7 @@ namespace tact::host::tracking {
 
 class OperatorTracking {
  public:
-  using Say = std::function<void(const std::string& sentence)>;
+  using Say = std::function<void(const std::string& message)>;
 
   /// `say` gets what a person should know, one line each; may be empty.
   OperatorTracking(boost::asio::io_context& io, Say say);
@@ -55,7 +55,7 @@ class OperatorTracking {
   void receive_next();
   void take(const Observation& seen);
   void refuse(const model::Error& error);
-  void say(const std::string& sentence) const;
+  void say(const std::string& message) const;
   double now_s() const;
 
   boost::asio::io_context& io_;

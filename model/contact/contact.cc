@@ -208,8 +208,8 @@ OrganForce Contact::ask(Sphere& sphere) RT_SAFE {
     sphere.unsolved_ratio += scene_.period_s / kLetGo_s + norm(sphere.moved_m) / sphere.radius_m;
   const OrganForce answer = organ().report(sphere, sphere_contact);
   // 0: the law does not tell it.
-  sphere.stiffest_N_per_m =
-      scene_.law->stiffest_N_per_m(sphere_contact.place, sphere.state == ContactState::kHeld);
+  sphere.stiffest_N_per_m = scene_.law->stiffest_N_per_m(sphere_contact.surface_point,
+                                                         sphere.state == ContactState::kHeld);
   const double share = std::max(1.0 - sphere.unsolved_ratio, 0.0);
   return {share * answer.elastic_N, share * answer.resistance_N};
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // contact.h - probe spheres on a tool against the surface of an organ.
 //
-// Each sphere feels one site, in one of four states (detect.h says what leads from one to another):
+// Each sphere feels one contact point, in one of four states (detect.h says what leads from one to
+// another):
 //
 //   free      no force
 //   touching  the organ's answer (organ_contact.h): the negative gradient of one potential W
@@ -44,7 +45,7 @@ struct ContactResponse {
   Wrench wrench;
   bool is_saturated = false;  // a sphere is beyond its law (LawStatus::kSaturated), or lets go
   bool is_unsettled = false;  // the force of a sphere lags: its place has no answer, or snaps
-  bool is_broken = false;     // see SiteLaw::is_broken
+  bool is_broken = false;     // see ContactLaw::is_broken
   bool is_inside = false;     // a sphere is inside the organ and feels nothing
   bool is_lost = false;       // in this tick: the tool moved unseen, farther than can be followed
 };
@@ -61,10 +62,10 @@ class Contact {
   /// What the tool feels there: states, laws, forces. Call after touch. A blade cuts only if it
   /// may, and no sphere is inside: nobody would feel it.
   ContactResponse render_force(const Tool& tool, bool blade_may_cut) RT_SAFE;
-  /// Forget every site, as at the start.
+  /// Forget every contact point, as at the start.
   void reset() RT_SAFE;
 
-  /// See SiteLaw::shape.
+  /// See ContactLaw::shape.
   bool shape(PatchShape& out) RT_SAFE { return scene_.law->shape(out); }
 
   std::span<const SphereContact> contacts() const RT_SAFE {
@@ -94,7 +95,7 @@ class Contact {
   ContactScene scene_;
   RestContact rest_;    // of the two, the one that
   MovedContact moved_;  // scene_.organ chooses
-  double fade_ratio_;   // SiteLaw::fade_ratio
+  double fade_ratio_;   // ContactLaw::fade_ratio
   std::array<Sphere, kMaxSpheres> sphere_{};
   std::array<SphereContact, kMaxSpheres> contact_{};  // told
   bool closed_ = false;                               // the grip, with hysteresis

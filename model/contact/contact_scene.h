@@ -6,7 +6,7 @@
 #include <span>
 
 #include "model/contact/blade.h"
-#include "model/contact/site_law.h"
+#include "model/contact/contact_law.h"
 #include "model/contact/sphere.h"
 #include "model/contact/triangle_tree.h"
 
@@ -24,7 +24,7 @@ struct ContactParameters {
 
 /// Everything outlives the contact.
 struct ContactScene {
-  SiteLaw* law = nullptr;  // may remember: one contact each
+  ContactLaw* law = nullptr;  // may remember: one contact each
   ContactParameters parameters;
   std::span<const ProbeSphere> spheres;  // 1 to kMaxSpheres
   SurfaceView surface;

@@ -18,20 +18,20 @@ constexpr double kMargin = 0.95;  // of the largest coupling that is positive de
 
 using Vector = std::array<double, kMaxSpheres>;
 
-/// Does another sphere press its site, too?
+/// Does another sphere press its contact point, too?
 bool is_coupled(const Coupling& c, std::size_t i) RT_SAFE {
   return std::ranges::any_of(c[i], [](double m_per_N) RT_SAFE { return m_per_N != 0.0; });
 }
 
-// A sphere that is not held feels nothing of a dent that lies below it.
-void ask(SiteLaw& law, PressingSphere& sphere) RT_SAFE {
+// A sphere that is not held feels nothing of an indentation that lies below it.
+void ask(ContactLaw& law, PressingSphere& sphere) RT_SAFE {
   const double indentation_m = sphere.in.indentation_m;
   const bool is_off = !sphere.in.held && !(indentation_m > 0.0);
   if (is_off) sphere.in.indentation_m = 0.0;
   // Asked at 0, not left out: a law that remembers must know that the sphere is there.
   sphere.response = law.respond(sphere.in);
   sphere.in.indentation_m = indentation_m;
-  // Its force stays 0 while its dent changes: at rest a law tells a slope all the same.
+  // Its force stays 0 while its indentation changes: at rest a law tells a slope all the same.
   if (is_off) sphere.response.law.stiffness_N_per_m = 0.0;
 }
 
@@ -63,8 +63,9 @@ Vector miss_of(const Coupling& c, std::span<const PressingSphere> spheres) RT_SA
   return miss;
 }
 
-// Newton from the dents as they are; false: what is left is above the tolerance, or no number.
-bool is_solved(SiteLaw& law, const Coupling& c, std::span<PressingSphere> spheres) RT_SAFE {
+// Newton from the indentations as they are; false: what is left is above the tolerance, or no
+// number.
+bool is_solved(ContactLaw& law, const Coupling& c, std::span<PressingSphere> spheres) RT_SAFE {
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     PressingSphere& sphere = spheres[i];
     if (!sphere.presses) {
@@ -92,9 +93,9 @@ bool is_solved(SiteLaw& law, const Coupling& c, std::span<PressingSphere> sphere
 
 }  // namespace
 
-double coupling_m_per_N(const SiteCoupling& c, const Vec3& n_i, const Vec3& n_j) RT_SAFE {
+double coupling_m_per_N(const ContactCoupling& c, const Vec3& n_i, const Vec3& n_j) RT_SAFE {
   const double x = dot(n_i, n_j);
-  return x * c.skin_m_per_N + 0.5 * x * (3.0 - x * x) * c.lobe_m_per_N;
+  return x * c.near_field_m_per_N + 0.5 * x * (3.0 - x * x) * c.structural_m_per_N;
 }
 
 double coupled_m(const Coupling& c, std::span<const PressingSphere> spheres,
@@ -105,7 +106,7 @@ double coupled_m(const Coupling& c, std::span<const PressingSphere> spheres,
   return sum_m;
 }
 
-double press_together(SiteLaw& law, Coupling& c, std::span<PressingSphere> spheres) RT_SAFE {
+double press_together(ContactLaw& law, Coupling& c, std::span<PressingSphere> spheres) RT_SAFE {
   // All of C, a half, a quarter, none. With none each sphere is alone, which has always a solution.
   constexpr int kTries = 4;
   for (int i = 0; i < kTries && !is_solved(law, c, spheres); ++i) {

@@ -15,18 +15,20 @@ void begin_from_outside(const ContactScene& scene, OrganContact& organ, Sphere& 
   const bool is_new_place = std::isinf(sphere.clear_m);  // it has just left another
   const double most_m = -sphere.clear_m;                 // as deep as its movement may have led it
   const double within_m = is_new_place ? kAnywhere_m : (1.0 + kAhead_ratio) * sphere.radius_m;
-  const Site site = nearest_site(scene.tree, scene.surface, sphere.centre_m, within_m, sphere.near);
-  sphere.clear_m = std::min(site.distance_m, within_m) - sphere.radius_m;
-  sphere.near = site.place.triangle;
+  const ContactPoint contact_point =
+      nearest_contact_point(scene.tree, scene.surface, sphere.centre_m, within_m, sphere.near);
+  sphere.clear_m = std::min(contact_point.distance_m, within_m) - sphere.radius_m;
+  sphere.near = contact_point.surface_point.triangle;
   if (sphere.clear_m > 0.0) return;
   // It came through a hole of an open surface, to the inner side.
   if (-sphere.clear_m > most_m + kRounding_m)
     return leave(scene, organ, sphere, ContactState::kInside);
   // From where it is known to have been clear, its movement explains all of the depth.
-  const double paid_m = is_new_place ? std::max(0.0, -dot(moved_m, site.normal)) : kAnywhere_m;
+  const double paid_m =
+      is_new_place ? std::max(0.0, -dot(moved_m, contact_point.normal)) : kAnywhere_m;
   sphere.clear_m = 0.0;
   sphere.state = ContactState::kTouching;
-  organ.begin(sphere, site, std::min(paid_m, norm(moved_m)));
+  organ.begin(sphere, contact_point, std::min(paid_m, norm(moved_m)));
 }
 
 // Where a sphere is of which nothing is known.
@@ -71,10 +73,10 @@ void leave(const ContactScene& scene, OrganContact& organ, Sphere& sphere,
 
 bool is_outside(const ContactScene& scene, Sphere& sphere) RT_SAFE {
   if (sphere.clear_m > 0.0) return sphere.was_outside;
-  const Site site =
-      nearest_site(scene.tree, scene.surface, sphere.centre_m, kAnywhere_m, sphere.near);
-  sphere.near = site.place.triangle;
-  const double out_m = site.distance_m - sphere.radius_m;
+  const ContactPoint contact_point =
+      nearest_contact_point(scene.tree, scene.surface, sphere.centre_m, kAnywhere_m, sphere.near);
+  sphere.near = contact_point.surface_point.triangle;
+  const double out_m = contact_point.distance_m - sphere.radius_m;
   sphere.clear_m = std::abs(out_m);
   return sphere.was_outside = out_m >= 0.0;
 }

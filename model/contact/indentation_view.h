@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// indentation_view.h - what a dented tissue looks like, for telemetry.
+// indentation_view.h - what an indented tissue looks like, for telemetry.
 //
-// Any thread may ask, while the loop's thread drives the same tissue as a SiteLaw (site_law.h):
-// nothing here reads what SiteLaw::respond or advance writes.
+// Any thread may ask, while the loop's thread drives the same tissue as a ContactLaw
+// (contact_law.h): nothing here reads what ContactLaw::respond or advance writes.
 #pragma once
 
 #include <cstddef>
 #include <span>
 
-#include "model/contact/site.h"
+#include "model/contact/contact_point.h"
 #include "model/types.h"
 
 namespace tact::model::contact {
@@ -18,7 +18,7 @@ inline constexpr std::size_t kMaxSpheres = 4;
 /// What one sphere does to the tissue.
 struct Indentation {
   std::size_t sphere = 0;  // below kMaxSpheres
-  Place place{};
+  SurfacePoint surface_point{};
   Vec3 normal{};  // outward, unit, at the place
   // e: the depth, less what the other spheres press down here; below 0 only while held
   double indentation_m = 0.0;
@@ -30,11 +30,11 @@ class IndentationView {
  public:
   virtual ~IndentationView() = default;
   /// Radial displacement profile as in Law::profile; 0: the law tells its shape otherwise
-  /// (SiteLaw::shape).
+  /// (ContactLaw::shape).
   virtual std::size_t profile(const Indentation& in, std::span<double> ring_m) const RT_SAFE = 0;
   virtual double ring_pitch_m() const RT_SAFE = 0;
-  /// CF-5: F t, how the dent leans along the surface: what the profile lacks at x is this times the
-  /// way from the place to x.
+  /// CF-5: F t, how the indentation leans along the surface: what the profile lacks at x is this
+  /// times the way from the place to x.
   virtual Vec3 tilt(const Indentation& in) const RT_SAFE {
     (void)in;
     return {};

@@ -24,7 +24,7 @@ void find_foot(const SmoothSurface& surface, OrganSphere& b) RT_SAFE {
     const double length_m = norm(way_m);
     if (!(length_m >= kOnFoot_m)) break;
     if (length_m > kMaxWay_m) way_m *= kMaxWay_m / length_m;
-    move_along(surface.mesh, b.at.place, way_m);
+    move_along(surface.mesh, b.at.surface_point, way_m);
   }
   fill_compliance(surface, b.at);
 }
@@ -57,7 +57,8 @@ const OrganSphere* MovedContact::find(std::size_t sphere) const RT_SAFE {
 }
 
 // It stands on the organ as the others have moved it.
-void MovedContact::begin(const Sphere& sphere, const Site& site, double paid_m) RT_SAFE {
+void MovedContact::begin(const Sphere& sphere, const ContactPoint& contact_point,
+                         double paid_m) RT_SAFE {
   OrganSphere& b = organ_.sphere[organ_.count++];
   b = {};
   is_changed_ = true;
@@ -65,7 +66,8 @@ void MovedContact::begin(const Sphere& sphere, const Site& site, double paid_m) 
   b.index = sphere.index;
   b.radius_m = b.height_m = sphere.radius_m;
   b.centre_m = b.y_m = sphere.centre_m;
-  b.at.place = {.triangle = site.place.triangle, .weight = {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0}};
+  b.at.surface_point = {.triangle = contact_point.surface_point.triangle,
+                        .weight = {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0}};
   find_foot(scene_.organ->surface, b);
   couple();
   fill_matrices(organ_);
@@ -203,7 +205,7 @@ void MovedContact::respond() RT_SAFE {
 
 OrganForce MovedContact::report(const Sphere& sphere, SphereContact& reported) const RT_SAFE {
   const OrganSphere& b = *find(sphere.index);
-  reported.place = b.at.place;
+  reported.surface_point = b.at.surface_point;
   reported.surface_point_m = b.at.point_m;
   reported.normal = b.at.normal;
   reported.indentation_m = b.indentation_m;

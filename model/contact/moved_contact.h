@@ -52,7 +52,8 @@ class MovedContact final : public OrganContact {
   explicit MovedContact(const ContactScene& scene);
 
   void reset() RT_SAFE override;
-  void begin(const Sphere& sphere, const Site& site, double paid_m) RT_SAFE override;
+  void begin(const Sphere& sphere, const ContactPoint& contact_point,
+             double paid_m) RT_SAFE override;
   void leave(std::size_t sphere) RT_SAFE override;
   Step step(Sphere& sphere, const Vec3& moved_m) RT_SAFE override;
   void move(const Sphere& sphere) RT_SAFE override;

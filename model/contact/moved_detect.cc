@@ -10,15 +10,15 @@ namespace {
 
 // Of the organ at rest, which does not move under a sphere that is alone.
 bool is_free_at_rest(const ContactScene& scene, const Sphere& sphere) RT_SAFE {
-  const Site site =
-      nearest_site(scene.tree, scene.surface, sphere.centre_m, sphere.radius_m, sphere.near);
-  return !(site.distance_m < sphere.radius_m);
+  const ContactPoint contact_point = nearest_contact_point(
+      scene.tree, scene.surface, sphere.centre_m, sphere.radius_m, sphere.near);
+  return !(contact_point.distance_m < sphere.radius_m);
 }
 
 }  // namespace
 
-// A sphere that presses stays. One without force is searched for again: it may be in the dent of
-// another sphere, at another part of the organ, or outside.
+// A sphere that presses stays. One without force is searched for again: it may be in the
+// indentation of another sphere, at another part of the organ, or outside.
 Step MovedContact::step(Sphere& sphere, const Vec3&) RT_SAFE {
   OrganSphere& b = *at(sphere.index);
   if (sphere.unsolved_ratio >= 1.0) return Step::kLost;
@@ -36,8 +36,8 @@ Step MovedContact::step(Sphere& sphere, const Vec3&) RT_SAFE {
   if (sphere.clear_m > 0.0) return Step::kTouches;
   const double within_m = (1.0 + kAhead_ratio) * b.radius_m;
   const Vec3 y_m = b.y_m + (sphere.centre_m - b.centre_m);
-  const Site on_organ =
-      nearest_site(scene_.tree, scene_.surface, y_m, within_m, b.at.place.triangle);
+  const ContactPoint on_organ = nearest_contact_point(scene_.tree, scene_.surface, y_m, within_m,
+                                                      b.at.surface_point.triangle);
   sphere.clear_m = std::min(on_organ.distance_m, within_m) - b.radius_m;
   const bool is_elsewhere = norm(on_organ.point_m - b.at.point_m) > b.radius_m;
   const bool leaves = sphere.clear_m > 0.0 ? is_free_at_rest(scene_, sphere) : is_elsewhere;
@@ -59,9 +59,9 @@ bool MovedContact::must_let_go(Sphere& sphere) RT_SAFE {
   b.deep_m -= norm(b.y_m - b.seen_y_m);
   b.seen_y_m = b.y_m;
   if (b.deep_m > 0.0) return false;
-  const Site site =
-      nearest_site(scene_.tree, scene_.surface, b.y_m, kAnywhere_m, b.at.place.triangle);
-  b.deep_m = b.radius_m - site.distance_m;
+  const ContactPoint contact_point = nearest_contact_point(
+      scene_.tree, scene_.surface, b.y_m, kAnywhere_m, b.at.surface_point.triangle);
+  b.deep_m = b.radius_m - contact_point.distance_m;
   return !(b.deep_m > 0.0) && is_open_way(scene_, b.at.point_m, b.y_m);
 }
 

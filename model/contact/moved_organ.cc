@@ -25,7 +25,7 @@ Mat3 matrix_of(const SineCosine& by, const Vec3& axis) RT_SAFE {
 bool presses(const OrganSphere& b) RT_SAFE { return b.tip.force_N > 0.0 || b.is_held; }
 
 // ML-1   l_i = F(d_i) n_i - k_w w_i
-void fill_load(SiteLaw& law, OrganSphere& b) RT_SAFE {
+void fill_load(ContactLaw& law, OrganSphere& b) RT_SAFE {
   const LocalPosition at = local_position(b.at, b.y_m);
   b.height_m = at.height_m;
   b.indentation_m = b.radius_m - at.height_m - b.depth_offset_m;

@@ -17,8 +17,8 @@
 //     ML-7   W = sum (U(d_i) + k_w w_i^2 / 2 + (a_i . v_i + m_i . t_i) / 2)
 //     ML-8   G_ij = h n_i n_j' + q (G_i + G_j) / 2,   T_ij = q T_i,   q = min(b / r, 1)
 //
-// F, U of the site's law, which is the tip's alone; k_w tangential stiffness, N/m; h, b of MC-2; r
-// the mean of n' G n; b_j what the organ has crept by (creep.h).
+// F, U of the contact point's law, which is the tip's alone; k_w tangential stiffness, N/m; h, b of
+// MC-2; r the mean of n' G n; b_j what the organ has crept by (creep.h).
 // With the surface points fixed f = -dW/dc exactly: (v, t) follow from (a, m) by one symmetric
 // matrix. moved_contact.h decides how the surface points move.
 #pragma once
@@ -26,8 +26,8 @@
 #include <array>
 #include <cstddef>
 
+#include "model/contact/contact_law.h"
 #include "model/contact/rotation.h"
-#include "model/contact/site_law.h"
 #include "model/contact/small_lu.h"
 #include "model/contact/smooth_surface.h"
 #include "model/law/creep.h"
@@ -85,7 +85,7 @@ struct OrganSphere {
 };
 
 struct MovedOrgan {
-  SiteLaw* law = nullptr;           // force of the indentation alone
+  ContactLaw* law = nullptr;        // force of the indentation alone
   law::Creep creep;                 // of the organ
   double contact_modulus_Pa = 0.0;  // E*
   double chord_ratio = kChord_ratio;
@@ -101,7 +101,7 @@ struct MovedOrgan {
 /// What ML-1 asks the law.
 inline Indentation indentation_of(const OrganSphere& b) RT_SAFE {
   return {.sphere = b.index,
-          .place = b.at.place,
+          .surface_point = b.at.surface_point,
           .normal = b.at.normal,
           .indentation_m = b.indentation_m,
           .held = b.is_held,

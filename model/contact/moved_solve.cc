@@ -35,16 +35,17 @@ void MovedContact::couple() RT_SAFE {
   for (std::size_t i = 0; i < organ_.count; ++i)
     for (std::size_t j = 0; j < i; ++j) {
       const OrganSphere &a = organ_.sphere[i], &b = organ_.sphere[j];
-      const SiteCoupling now = scene_.law->coupling({.place = a.at.place}, {.place = b.at.place},
-                                                    norm(a.centre_m - b.centre_m));
+      const ContactCoupling now = scene_.law->coupling({.surface_point = a.at.surface_point},
+                                                       {.surface_point = b.at.surface_point},
+                                                       norm(a.centre_m - b.centre_m));
       const bool both = (a.tip.force_N != 0.0 || a.crept_N != Vec3{}) &&
                         (b.tip.force_N != 0.0 || b.crept_N != Vec3{});
       const Vec3 way_m = 0.5 * (a.moved_m + b.moved_m);
       const double along_m = norm(tangential(way_m, normalized(a.at.normal + b.at.normal)));
       const double share = both ? std::min(along_m / kWay_m, 1.0) : 1.0;
-      const double ratio = structural_ratio(organ_, i, j, now.lobe_m_per_N);
+      const double ratio = structural_ratio(organ_, i, j, now.structural_m_per_N);
       PairCompliance& pair = organ_.pair[i][j];
-      pair.near_field_m_per_N += share * (now.skin_m_per_N - pair.near_field_m_per_N);
+      pair.near_field_m_per_N += share * (now.near_field_m_per_N - pair.near_field_m_per_N);
       pair.structural_ratio += share * (ratio - pair.structural_ratio);
     }
 }
@@ -74,7 +75,7 @@ void MovedContact::stiffen(OrganSphere& b) RT_SAFE {
   is_changed_ = true;
   b.tangential_N_per_m = now;
   const SmoothSurface& surface = scene_.organ->surface;
-  move_along(surface.mesh, b.at.place,
+  move_along(surface.mesh, b.at.surface_point,
              way_to_foot(b.at, b.height_m, (1.0 - before / now) * b.tangential_m));
   fill_geometry(surface, b.at);
   fill_compliance(surface, b.at);
@@ -101,7 +102,7 @@ bool MovedContact::follow_foot(OrganSphere& b) const RT_SAFE {
     way_m *= share;
     b.rest_m *= 1.0 - share;
     b.may_slide_m -= std::min(length_m, b.may_slide_m);
-    move_along(surface.mesh, b.at.place, way_m);
+    move_along(surface.mesh, b.at.surface_point, way_m);
     fill_geometry(surface, b.at);
     has_moved = true;
     b.slides = b.may_slide_m > 0.0;

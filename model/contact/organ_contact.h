@@ -27,9 +27,10 @@ class OrganContact {
   virtual ~OrganContact() = default;
   /// No sphere touches.
   virtual void reset() RT_SAFE = 0;
-  /// A sphere begins to touch near a site of the organ at rest. Its depth there beyond `paid_m` is
-  /// offset.
-  virtual void begin(const Sphere& sphere, const Site& site, double paid_m) RT_SAFE = 0;
+  /// A sphere begins to touch near a contact point of the organ at rest. Its depth there beyond
+  /// `paid_m` is offset.
+  virtual void begin(const Sphere& sphere, const ContactPoint& contact_point,
+                     double paid_m) RT_SAFE = 0;
   virtual void leave(std::size_t sphere) RT_SAFE = 0;
 
   /// One step of the centre of a sphere that touches.

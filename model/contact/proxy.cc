@@ -10,38 +10,39 @@ constexpr double kRounding_m = 1e-9;  // the same point, found from two triangle
 
 }  // namespace
 
-void Proxy::restart(const Site& site, double radius_m) RT_SAFE {
-  site_ = site;
-  outward_ = site.normal;
-  offset_m_ = site.point_m + radius_m * outward_;
+void Proxy::restart(const ContactPoint& contact_point, double radius_m) RT_SAFE {
+  contact_point_ = contact_point;
+  outward_ = contact_point.normal;
+  offset_m_ = contact_point.point_m + radius_m * outward_;
   lags_ = false;
   lengthened_m_ = 0.0;
 }
 
 void Proxy::follow(const SurfaceView& surface, const Vec3& p_m, const Vec3& moved_m,
                    double radius_m) RT_SAFE {
-  const double before_m = radius_m - site_.distance_m;
-  const Vec3 normal_before = site_.normal;
+  const double before_m = radius_m - contact_point_.distance_m;
+  const Vec3 normal_before = contact_point_.normal;
   const bool lagged = lags_;
-  place(surface, p_m, norm(tangential(moved_m, normal_before)), radius_m);
+  surface_point(surface, p_m, norm(tangential(moved_m, normal_before)), radius_m);
   // Where g is nearest, the depth is a function of p alone. Else its work decides: the trapezium
   // rule over both normals.
-  const double led_m = -0.5 * dot(normal_before + site_.normal, moved_m);
-  lengthened_m_ = lagged || lags_ ? radius_m - site_.distance_m - before_m - led_m : 0.0;
+  const double led_m = -0.5 * dot(normal_before + contact_point_.normal, moved_m);
+  lengthened_m_ = lagged || lags_ ? radius_m - contact_point_.distance_m - before_m - led_m : 0.0;
 }
 
-void Proxy::place(const SurfaceView& surface, const Vec3& p_m, double across_m,
-                  double radius_m) RT_SAFE {
-  const Site nearest = contact::follow(surface, site_.place.triangle, p_m);
+void Proxy::surface_point(const SurfaceView& surface, const Vec3& p_m, double across_m,
+                          double radius_m) RT_SAFE {
+  const ContactPoint nearest = contact::follow(surface, contact_point_.surface_point.triangle, p_m);
   const Vec3 goal_m = nearest.point_m + radius_m * nearest.normal;
   const double most_m = kSlide_ratio * across_m;
   if (norm(goal_m - offset_m_) <= most_m + kRounding_m) return restart(nearest, radius_m);
   slide(surface, goal_m, most_m, radius_m);
-  const Site from_here = contact::follow(surface, site_.place.triangle, p_m);
+  const ContactPoint from_here =
+      contact::follow(surface, contact_point_.surface_point.triangle, p_m);
   const Vec3 line_m = outward_of(from_here, depth_m(p_m), radius_m);
   const double length_m = norm(line_m);
-  site_.distance_m = radius_m - length_m;
-  site_.normal = length_m > 0.0 ? line_m / length_m : outward_;
+  contact_point_.distance_m = radius_m - length_m;
+  contact_point_.normal = length_m > 0.0 ? line_m / length_m : outward_;
   lags_ = true;
 }
 
@@ -53,13 +54,14 @@ Vec3 Proxy::depth_m(const Vec3& p_m) const RT_SAFE {
 
 // A sphere outside is not drawn towards the point that is nearest to it, where g is above that
 // point, too: round an edge g may stand on the other side.
-Vec3 Proxy::outward_of(const Site& nearest, const Vec3& line_m, double radius_m) const RT_SAFE {
+Vec3 Proxy::outward_of(const ContactPoint& nearest, const Vec3& line_m,
+                       double radius_m) const RT_SAFE {
   const double inward_m = std::min(dot(line_m, nearest.normal), 0.0);
   // Beyond the boundary of an open surface, and behind it, is no outside to be kept in.
   const bool is_in_front = nearest.distance_m > 0.0 && dot(nearest.normal, nearest.outward) > 0.0;
   if (!is_in_front || !(inward_m < 0.0)) return line_m;
   // Whole at less than a tenth of the radius from that point, not at all at more than the radius.
-  const double apart_ratio = norm(nearest.point_m - site_.point_m) / radius_m;
+  const double apart_ratio = norm(nearest.point_m - contact_point_.point_m) / radius_m;
   return line_m - std::clamp((1.0 - apart_ratio) / 0.9, 0.0, 1.0) * inward_m * nearest.normal;
 }
 
@@ -71,11 +73,12 @@ void Proxy::slide(const SurfaceView& surface, const Vec3& goal_m, double way_m,
   const double length_m = norm(along_m);
   if (!(length_m > 0.0)) return;
   const Vec3 moved_m = offset_m_ + (std::min(way_m, length_m) / length_m) * along_m;
-  const Site site = contact::follow(surface, site_.place.triangle, moved_m);
-  const Vec3 offset_m = site.point_m + radius_m * site.normal;
+  const ContactPoint contact_point =
+      contact::follow(surface, contact_point_.surface_point.triangle, moved_m);
+  const Vec3 offset_m = contact_point.point_m + radius_m * contact_point.normal;
   if (norm(offset_m - offset_m_) > kThrown_ratio * way_m) return;
-  site_ = site;
-  outward_ = site.normal;
+  contact_point_ = contact_point;
+  outward_ = contact_point.normal;
   offset_m_ = offset_m;
 }
 

@@ -15,7 +15,7 @@
 // 0, at g and where p is nearest, so a lagging proxy never pulls in.
 #pragma once
 
-#include "model/contact/site.h"
+#include "model/contact/contact_point.h"
 
 namespace tact::model::contact {
 
@@ -27,26 +27,27 @@ class Proxy {
  public:
   /// The surface point that g is above. normal is along the force, distance_m is r less
   /// the depth.
-  const Site& site() const RT_SAFE { return site_; }
+  const ContactPoint& contact_point() const RT_SAFE { return contact_point_; }
   /// It is not at the nearest point.
   bool lags() const RT_SAFE { return lags_; }
   /// By how much the depth became larger in the last move than the work of its force explains, m;
   /// below 0: smaller.
   double lengthened_m() const RT_SAFE { return lengthened_m_; }
 
-  /// The sphere comes from outside, to this site.
-  void restart(const Site& site, double radius_m) RT_SAFE;
+  /// The sphere comes from outside, to this contact point.
+  void restart(const ContactPoint& contact_point, double radius_m) RT_SAFE;
   /// The sphere's centre is at p now and has moved there since the last call.
   void follow(const SurfaceView& surface, const Vec3& p_m, const Vec3& moved_m,
               double radius_m) RT_SAFE;
 
  private:
-  void place(const SurfaceView& surface, const Vec3& p_m, double across_m, double radius_m) RT_SAFE;
+  void surface_point(const SurfaceView& surface, const Vec3& p_m, double across_m,
+                     double radius_m) RT_SAFE;
   Vec3 depth_m(const Vec3& p_m) const RT_SAFE;
-  Vec3 outward_of(const Site& nearest, const Vec3& line_m, double radius_m) const RT_SAFE;
+  Vec3 outward_of(const ContactPoint& nearest, const Vec3& line_m, double radius_m) const RT_SAFE;
   void slide(const SurfaceView& surface, const Vec3& goal_m, double way_m, double radius_m) RT_SAFE;
 
-  Site site_;
+  ContactPoint contact_point_;
   Vec3 offset_m_;  // g
   Vec3 outward_;   // of the offset surface in g, unit
   bool lags_ = false;

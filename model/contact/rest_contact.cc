@@ -11,12 +11,12 @@ namespace {
 
 // The part of a tangential vector along which the nearest point can move: all of it on a face, the
 // edge's share on an edge, nothing in a vertex.
-Vec3 movable(const SurfaceView& s, const Place& place, const Vec3& v) RT_SAFE {
-  const TriangleCorners& corner = s.triangle[place.triangle];
+Vec3 movable(const SurfaceView& s, const SurfacePoint& surface_point, const Vec3& v) RT_SAFE {
+  const TriangleCorners& corner = s.triangle[surface_point.triangle];
   for (std::size_t i = 0; i < 3; ++i) {
-    if (place.weight[i] != 0.0) continue;
+    if (surface_point.weight[i] != 0.0) continue;
     const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
-    if (place.weight[j] == 0.0 || place.weight[k] == 0.0) return {};
+    if (surface_point.weight[j] == 0.0 || surface_point.weight[k] == 0.0) return {};
     const Vec3 along = normalized(s.vertex_m[corner[k]] - s.vertex_m[corner[j]]);
     return dot(v, along) * along;
   }
@@ -35,12 +35,13 @@ void RestContact::reset() RT_SAFE {
   energy_J_ = 0.0;
 }
 
-void RestContact::begin(const Sphere& sphere, const Site& site, double paid_m) RT_SAFE {
+void RestContact::begin(const Sphere& sphere, const ContactPoint& contact_point,
+                        double paid_m) RT_SAFE {
   constexpr double kUnpaidRounding_m = 1e-12;
   RestSphere& s = sphere_[sphere.index];
   s.centre_m = sphere.centre_m;
-  s.proxy.restart(site, sphere.radius_m);
-  const double unpaid_m = sphere.radius_m - site.distance_m - paid_m;
+  s.proxy.restart(contact_point, sphere.radius_m);
+  const double unpaid_m = sphere.radius_m - contact_point.distance_m - paid_m;
   s.unpaid_m = unpaid_m > kUnpaidRounding_m ? unpaid_m : 0.0;
   s.is_new = pressing_[sphere.index].presses = true;
 }
@@ -60,8 +61,8 @@ Step RestContact::step(Sphere& sphere, const Vec3& moved_m) RT_SAFE {
   if (sphere.lets_go && !(pressing.in.indentation_m > 0.0)) return Step::kLeaves;
   // The offset cancels all of its depth: the sphere may be at another part of the organ by now.
   const bool is_all_offset = s.depth_offset_m > 0.0 && !(pressing.depth_m > 0.0);
-  return s.proxy.site().distance_m < sphere.radius_m && !is_all_offset ? Step::kTouches
-                                                                       : Step::kLeaves;
+  return s.proxy.contact_point().distance_m < sphere.radius_m && !is_all_offset ? Step::kTouches
+                                                                                : Step::kLeaves;
 }
 
 // d and t of this tick; e follows d as a first guess.
@@ -72,7 +73,7 @@ void RestContact::move(const Sphere& sphere) RT_SAFE {
   s.centre_m = sphere.centre_m;
   s.moved_m = sphere.moved_m;
   s.velocity_mps = sphere.velocity_mps;
-  s.reach_m = sphere.radius_m - s.proxy.site().distance_m;
+  s.reach_m = sphere.radius_m - s.proxy.contact_point().distance_m;
   // e moves by what d moves: the guess from which MC-1 is solved is then near.
   const double before_m = pressing.depth_m;
   if (s.is_held) {
@@ -93,12 +94,12 @@ void RestContact::move(const Sphere& sphere) RT_SAFE {
 // Where the proxy is. The axes turn with the normal, t and f with them: that takes no energy.
 void RestContact::move_to_proxy(std::size_t i) RT_SAFE {
   RestSphere& s = sphere_[i];
-  const Site& site = s.proxy.site();
-  s.place = site.place;
-  s.point_m = site.point_m;
+  const ContactPoint& contact_point = s.proxy.contact_point();
+  s.surface_point = contact_point.surface_point;
+  s.point_m = contact_point.point_m;
   // A press straight down turns nothing: axes that are not made again do not drift.
-  if (site.normal == s.normal && s.axes.unit[0] != Vec3{}) return;
-  s.normal = site.normal;
+  if (contact_point.normal == s.normal && s.axes.unit[0] != Vec3{}) return;
+  s.normal = contact_point.normal;
   s.axes = axes_of(s.normal, s.axes);
 }
 
@@ -106,11 +107,11 @@ void RestContact::move_to_proxy(std::size_t i) RT_SAFE {
 bool RestContact::must_let_go(Sphere& sphere) RT_SAFE {
   const RestSphere& s = sphere_[sphere.index];
   const bool is_beyond = pressing_[sphere.index].response.law.status == law::LawStatus::kSaturated;
-  const Site& site = s.proxy.site();
+  const ContactPoint& contact_point = s.proxy.contact_point();
   // At the nearest point of the side it came from, and nearer than its radius.
-  if (!is_beyond && !s.proxy.lags() && site.distance_m > 0.0) return false;
+  if (!is_beyond && !s.proxy.lags() && contact_point.distance_m > 0.0) return false;
   return is_outside(scene_, sphere) &&
-         (is_beyond || is_open_way(scene_, site.point_m, sphere.centre_m));
+         (is_beyond || is_open_way(scene_, contact_point.point_m, sphere.centre_m));
 }
 
 double RestContact::cut_to_law_m(std::size_t i) RT_SAFE {
@@ -175,9 +176,10 @@ void RestContact::couple_new_spheres() RT_SAFE {
 // A new contact on tissue displaced by its neighbour would gain energy: that depth is offset. Of
 // the two spheres only one presses so far.
 void RestContact::couple_pair(std::size_t i, std::size_t j) RT_SAFE {
-  const SiteCoupling along = scene_.law->coupling(indentation(i), indentation(j),
-                                                  norm(sphere_[i].centre_m - sphere_[j].centre_m));
-  shear_.couple(i, j, along.skin_m_per_N + along.lobe_m_per_N, sphere_[i].axes, sphere_[j].axes);
+  const ContactCoupling along = scene_.law->coupling(
+      indentation(i), indentation(j), norm(sphere_[i].centre_m - sphere_[j].centre_m));
+  shear_.couple(i, j, along.near_field_m_per_N + along.structural_m_per_N, sphere_[i].axes,
+                sphere_[j].axes);
   const double c = coupling_m_per_N(along, sphere_[i].normal, sphere_[j].normal);
   coupling_[i][j] = coupling_[j][i] = c;
   add_depth_offset(i, std::max(0.0, -c * pressing_[j].response.law.force_N));
@@ -187,7 +189,7 @@ void RestContact::couple_pair(std::size_t i, std::size_t j) RT_SAFE {
 Indentation RestContact::indentation(std::size_t i) const RT_SAFE {
   const RestSphere& s = sphere_[i];
   return {.sphere = i,
-          .place = s.place,
+          .surface_point = s.surface_point,
           .normal = s.normal,
           .indentation_m = pressing_[i].in.indentation_m,
           .held = s.is_held,
@@ -208,7 +210,8 @@ void RestContact::keep_definite() RT_SAFE {
   std::array<double, kMaxSpheres> stiffest_N_per_m{};
   for (std::size_t i = 0; i < count(); ++i)
     if (is_coupled_[i])
-      stiffest_N_per_m[i] = scene_.law->stiffest_N_per_m(sphere_[i].place, sphere_[i].is_held);
+      stiffest_N_per_m[i] =
+          scene_.law->stiffest_N_per_m(sphere_[i].surface_point, sphere_[i].is_held);
   const double share = definite_share(coupling_, stiffest_N_per_m);
   if (share >= 1.0) return;
   std::array<double, kMaxSpheres> spared_m{};
@@ -237,23 +240,24 @@ void RestContact::finish() RT_SAFE {
 OrganForce RestContact::report(const Sphere& sphere, SphereContact& reported) const RT_SAFE {
   const std::size_t i = sphere.index;
   const RestSphere& s = sphere_[i];
-  const SiteResponse& site = pressing_[i].response;
+  const ContactLawResponse& contact_point = pressing_[i].response;
   const Vec2 &f_N = shear_N_[i], &t_m = shift_m_[i];
-  reported.law_status = site.law.status;
-  reported.place = s.place;
+  reported.law_status = contact_point.law.status;
+  reported.surface_point = s.surface_point;
   reported.surface_point_m = s.point_m;
   reported.normal = s.normal;
   reported.shift_m = s.axes.vector(t_m);
   reported.depth_m = pressing_[i].depth_m;
   reported.indentation_m = pressing_[i].in.indentation_m;
   reported.depth_offset_m = s.depth_offset_m;
-  reported.energy_J = site.law.energy_J +
-                      0.5 * site.law.force_N * coupled_m(coupling_, pressing(), i) +
+  reported.energy_J = contact_point.law.energy_J +
+                      0.5 * contact_point.law.force_N * coupled_m(coupling_, pressing(), i) +
                       0.5 * dot(f_N, t_m);
-  Vec3 force_N = site.law.force_N * s.normal - s.axes.vector(f_N);
+  Vec3 force_N = contact_point.law.force_N * s.normal - s.axes.vector(f_N);
   // dU/ds belongs to a place that follows the tool; held tissue and a proxy that lags do not.
-  if (!s.is_held && !s.proxy.lags()) force_N -= movable(scene_.surface, s.place, site.slope_N);
-  return {force_N, scene_.law->resistance_N(pressing_[i].in, site.law.force_N) * s.normal};
+  if (!s.is_held && !s.proxy.lags())
+    force_N -= movable(scene_.surface, s.surface_point, contact_point.slope_N);
+  return {force_N, scene_.law->resistance_N(pressing_[i].in, contact_point.law.force_N) * s.normal};
 }
 
 }  // namespace tact::model::contact

@@ -8,16 +8,16 @@
 //   held      W = U(e, s) + f . t / 2,   d, s and t measured in the frame of the moment of
 //             gripping, no cap, d may be negative (pull)
 //
-// U is the site law's (site_law.h), s the place on the surface; as s follows the tool, the slope of
-// U along the surface is felt too. t: tangential displacement of the tissue, m, f = K t (shear.h),
-// in axes that turn with n. The springs stiffen as the contact grows and stay so until the sphere
-// leaves; stiffening keeps the force and lowers the stored energy. On another triangle the springs
-// are those of the new place, if that stores no more energy at the same force.
+// U is the contact point law's (contact_law.h), s the place on the surface; as s follows the tool,
+// the slope of U along the surface is felt too. t: tangential displacement of the tissue, m, f = K
+// t (shear.h), in axes that turn with n. The springs stiffen as the contact grows and stay so until
+// the sphere leaves; stiffening keeps the force and lowers the stored energy. On another triangle
+// the springs are those of the new place, if that stores no more energy at the same force.
 //
-// The law is asked with the sphere's own dent e: d less what the other spheres have sunk the site
-// (coupling.h). How they couple is kept from a sphere's first touch until it leaves. Damping (LW-3)
-// is added last: b of the dent, times the speed of the sphere's own depth, so that each sphere
-// takes energy by itself.
+// The law is asked with the sphere's own indentation e: d less what the other spheres have sunk the
+// contact point (coupling.h). How they couple is kept from a sphere's first touch until it leaves.
+// Damping (LW-3) is added last: b of the indentation, times the speed of the sphere's own depth, so
+// that each sphere takes energy by itself.
 //
 // rest_contact.cc: how deep, how hard. rest_grip.cc: held and let go. rest_slide.cc: forces along
 // the surface.
@@ -41,7 +41,7 @@ struct RestSphere {
   double depth_offset_m = 0.0;
   double within_law_m = 0.0;  // e of the last tick within the range of the law
   // Frame of d and t
-  Place place;
+  SurfacePoint surface_point;
   Vec3 point_m, normal;
   Axes axes;
   Vec3 held_centre_m;
@@ -55,7 +55,8 @@ class RestContact final : public OrganContact {
   explicit RestContact(const ContactScene& scene) : scene_(scene) {}
 
   void reset() RT_SAFE override;
-  void begin(const Sphere& sphere, const Site& site, double paid_m) RT_SAFE override;
+  void begin(const Sphere& sphere, const ContactPoint& contact_point,
+             double paid_m) RT_SAFE override;
   void leave(std::size_t i) RT_SAFE override;
   Step step(Sphere& sphere, const Vec3& moved_m) RT_SAFE override;
   void move(const Sphere& sphere) RT_SAFE override;

@@ -7,7 +7,7 @@
 
 namespace tact::model::contact {
 
-// A sphere that hangs in the dent of another has nothing to hold.
+// A sphere that hangs in the indentation of another has nothing to hold.
 bool RestContact::hold(std::size_t i) RT_SAFE {
   RestSphere& s = sphere_[i];
   if (!(pressing_[i].in.indentation_m > 0.0)) return false;
@@ -59,7 +59,8 @@ bool RestContact::release(std::size_t i) RT_SAFE {
   }
   s.depth_offset_m = s.reach_m - low_m;
   if (!(low_m > 0.0)) scene_.law->leave(i);
-  // Once more, as the last depth tried may be another: answers and dents become those of low_m.
+  // Once more, as the last depth tried may be another: answers and indentations become those of
+  // low_m.
   affords(low_m);
   drop_shift(i);
   return true;

@@ -39,8 +39,8 @@ Vec2 slipping_N(const Vec2& f_N, const Tensor2& stiffness_N_per_m, double cap_N)
 
 }  // namespace
 
-// By the contact radius of its own dent, sqrt(R d): CT-1 for a << R. A held patch is as wide as the
-// sphere.
+// By the contact radius of its own indentation, sqrt(R d): CT-1 for a << R. A held patch is as wide
+// as the sphere.
 Tensor2 RestContact::compliance_m_per_N(std::size_t i) const RT_SAFE {
   // Of the sphere, chosen: G of MC-5 grows without limit as a contact closes.
   constexpr double kMinRadius_ratio = 0.1;
@@ -54,13 +54,13 @@ Tensor2 RestContact::compliance_m_per_N(std::size_t i) const RT_SAFE {
 TangentCompliance RestContact::ask_tangent_compliance(std::size_t i, bool held) const RT_SAFE {
   const double fixed_N_per_m = scene_.parameters.sliding_stiffness_N_per_m;
   if (!(fixed_N_per_m > 0.0))
-    return scene_.law->tangent_compliance(sphere_[i].place, held, sphere_[i].axes);
+    return scene_.law->tangent_compliance(sphere_[i].surface_point, held, sphere_[i].axes);
   return {.rest_m_per_N = {.xx = 1.0 / fixed_N_per_m, .yy = 1.0 / fixed_N_per_m}};
 }
 
 // A sphere without force: any spring is free.
 void RestContact::start_tangent_spring(std::size_t i) RT_SAFE {
-  sphere_[i].compliance_triangle = sphere_[i].place.triangle;
+  sphere_[i].compliance_triangle = sphere_[i].surface_point.triangle;
   // The least that this spring can become, held and as wide as the sphere,
   // bounds its couplings: they stay definite however it stiffens.
   sphere_[i].tangent_compliance = ask_tangent_compliance(i, false);
@@ -92,8 +92,8 @@ void RestContact::stiffen() RT_SAFE {
     if (!is_coupled_[i]) continue;
     const OwnCompliance before = shear_.own(i);
     double most_m_per_N = kStep_ratio * before.m_per_N.trace();
-    if (sphere_[i].compliance_triangle != sphere_[i].place.triangle) {
-      sphere_[i].compliance_triangle = sphere_[i].place.triangle;
+    if (sphere_[i].compliance_triangle != sphere_[i].surface_point.triangle) {
+      sphere_[i].compliance_triangle = sphere_[i].surface_point.triangle;
       sphere_[i].tangent_compliance = ask_tangent_compliance(i, sphere_[i].is_held);
       most_m_per_N = std::numeric_limits<double>::infinity();
     }

@@ -4,21 +4,22 @@
 //     MC-4   t_i = G_i f_i + sum over j != i of c_ij P_ij f_j        W = sum f_i . t_i / 2
 //            |f_i| <= mu F_i unless held (Coulomb)
 //
-//     t_i   sideways displacement of site i, m       f_i   force that it takes, N: in two axes each
+//     t_i   sideways displacement of contact point i, m       f_i   force that it takes, N: in two
+//           axes each
 //     G_i   MC-5, m/N, a tensor: another give in each direction, less while the contact grows
 //     c     h + b of MC-2, kept so small that diag(G) + c P is positive definite
 //     P_ij  turns the axes of j into those of i, without what lies along the normals
 //
-// Half-space: across the line that joins two sites h is right, along it a factor of 1 / (1 - nu) is
-// left out [Johnson, Contact Mechanics (1985), 3.6]. b is that of the normal motion,
-// as the map has no sideways coupling between sites. The axes of a site turn with its normal, G and
-// c P with them.
+// Half-space: across the line that joins two contact points h is right, along it a factor of 1 / (1
+// - nu) is left out [Johnson, Contact Mechanics (1985), 3.6]. b is that of the normal motion,
+// as the map has no sideways coupling between contact points. The axes of a contact point turn with
+// its normal, G and c P with them.
 #pragma once
 
 #include <array>
 #include <cstddef>
 
-#include "model/contact/site_law.h"
+#include "model/contact/contact_law.h"
 #include "model/contact/tangent.h"
 
 namespace tact::model::contact {

@@ -48,14 +48,14 @@ Vec3 slope_of(const VertexCompliance& v, std::size_t k) RT_SAFE {
 }
 
 // The same surface point in the neighbour across edge `edge`.
-Place across(const SurfaceView& mesh, const Place& place, std::size_t edge,
-             std::uint32_t next) RT_SAFE {
+SurfacePoint across(const SurfaceView& mesh, const SurfacePoint& surface_point, std::size_t edge,
+                    std::uint32_t next) RT_SAFE {
   const std::size_t end = (edge + 1) % 3;
-  const TriangleCorners& from = mesh.triangle[place.triangle];
-  Place out{.triangle = next, .weight = {}};
+  const TriangleCorners& from = mesh.triangle[surface_point.triangle];
+  SurfacePoint out{.triangle = next, .weight = {}};
   for (std::size_t k = 0; k < 3; ++k) {
-    if (mesh.triangle[next][k] == from[edge]) out.weight[k] = place.weight[edge];
-    if (mesh.triangle[next][k] == from[end]) out.weight[k] = place.weight[end];
+    if (mesh.triangle[next][k] == from[edge]) out.weight[k] = surface_point.weight[edge];
+    if (mesh.triangle[next][k] == from[end]) out.weight[k] = surface_point.weight[end];
   }
   return out;
 }
@@ -71,9 +71,9 @@ Vec3 unfolded(const TriangleRecord& from, std::size_t edge, const TriangleRecord
 }  // namespace
 
 void fill_geometry(const SmoothSurface& surface, SurfaceFrame& f) RT_SAFE {
-  const TriangleRecord& record = surface.mesh.record[f.place.triangle];
-  const TriangleCorners& corner = surface.mesh.triangle[f.place.triangle];
-  const std::array<double, 3>& b = f.place.weight;
+  const TriangleRecord& record = surface.mesh.record[f.surface_point.triangle];
+  const TriangleCorners& corner = surface.mesh.triangle[f.surface_point.triangle];
+  const std::array<double, 3>& b = f.surface_point.weight;
   f.axis[0] = normalized(record.corner_m[1] - record.corner_m[0]);
   f.axis[1] = cross(record.normal, f.axis[0]);
   const std::array<Vec3, 3> gradient_per_m = weight_gradients(record);
@@ -104,13 +104,13 @@ void fill_geometry(const SmoothSurface& surface, SurfaceFrame& f) RT_SAFE {
 void fill_compliance(const SmoothSurface& surface, SurfaceFrame& f) RT_SAFE {
   f.compliance_m_per_N = f.slope_per_N = {};
   if (surface.compliance.empty()) return;
-  const TriangleCorners& corner = surface.mesh.triangle[f.place.triangle];
+  const TriangleCorners& corner = surface.mesh.triangle[f.surface_point.triangle];
   std::array<double, 6> g{};
   std::array<Vec3, 6> dg{};
   for (std::size_t i = 0; i < 3; ++i) {
     const VertexCompliance& v = surface.compliance[corner[i]];
     const Vec3 half_way_m = 0.5 * (f.point_m - surface.corner[corner[i]].point_m);
-    const double weight = f.place.weight[i] / surface.youngs_modulus_Pa;
+    const double weight = f.surface_point.weight[i] / surface.youngs_modulus_Pa;
     for (std::size_t k = 0; k < 6; ++k) {
       const Vec3 slope = slope_of(v, k);
       g[k] += weight * (static_cast<double>(v.times_E_per_m[k]) + dot(half_way_m, slope));
@@ -154,31 +154,32 @@ Mat3 normal_slope_per_m(const SurfaceFrame& f, double height_m) RT_SAFE {
   return {{a.x * row_0 + b.x * row_1, a.y * row_0 + b.y * row_1, a.z * row_0 + b.z * row_1}};
 }
 
-void move_along(const SurfaceView& mesh, Place& place, Vec3 way_m) RT_SAFE {
+void move_along(const SurfaceView& mesh, SurfacePoint& surface_point, Vec3 way_m) RT_SAFE {
   constexpr int kMaxEdges = 8;
   for (int i = 0; i < kMaxEdges; ++i) {
-    const TriangleRecord& record = mesh.record[place.triangle];
+    const TriangleRecord& record = mesh.record[surface_point.triangle];
     const std::array<Vec3, 3> gradient_per_m = weight_gradients(record);
     std::array<double, 3> db{};
     double share = 1.0;
     std::size_t first = 3;  // the corner whose weight ends first
     for (std::size_t k = 0; k < 3; ++k) {
       db[k] = dot(gradient_per_m[k], way_m);
-      if (db[k] < 0.0 && place.weight[k] + share * db[k] < 0.0)
-        share = std::max(-place.weight[k] / db[k], 0.0), first = k;
+      if (db[k] < 0.0 && surface_point.weight[k] + share * db[k] < 0.0)
+        share = std::max(-surface_point.weight[k] / db[k], 0.0), first = k;
     }
-    for (std::size_t k = 0; k < 3; ++k) place.weight[k] += share * db[k];
+    for (std::size_t k = 0; k < 3; ++k) surface_point.weight[k] += share * db[k];
     if (first == 3) {
-      const double sum = place.weight[0] + place.weight[1] + place.weight[2];
-      for (double& weight : place.weight) weight /= sum;
+      const double sum =
+          surface_point.weight[0] + surface_point.weight[1] + surface_point.weight[2];
+      for (double& weight : surface_point.weight) weight /= sum;
       return;
     }
-    place.weight[first] = 0.0;
+    surface_point.weight[first] = 0.0;
     const std::size_t edge = (first + 1) % 3;
     const std::uint32_t next = record.neighbour[edge];
     if (next == kNoTriangle) return;
     way_m = unfolded(record, edge, mesh.record[next], (1.0 - share) * way_m);
-    place = across(mesh, place, edge, next);
+    surface_point = across(mesh, surface_point, edge, next);
   }
 }
 

@@ -19,7 +19,7 @@
 #include <array>
 #include <span>
 
-#include "model/contact/site.h"
+#include "model/contact/contact_point.h"
 #include "model/contact/surface.h"
 #include "model/mat3.h"
 
@@ -45,7 +45,7 @@ struct SmoothSurface {
 
 /// A surface point with all that contact asks of it.
 struct SurfaceFrame {
-  Place place;
+  SurfacePoint surface_point;
   Vec3 point_m, normal;                             // SF-1, SF-2
   std::array<Vec3, 2> axis;                         // unit, along the triangle
   std::array<Vec3, 2> point_m_per_m, normal_per_m;  // dx and dn for a unit way along each axis
@@ -76,6 +76,6 @@ Mat3 normal_slope_per_m(const SurfaceFrame& frame, double height_m) RT_SAFE;
 
 /// Moves a surface point along a way in the plane of its triangle, over up to eight edges. It stops
 /// at a boundary.
-void move_along(const SurfaceView& mesh, Place& place, Vec3 way_m) RT_SAFE;
+void move_along(const SurfaceView& mesh, SurfacePoint& surface_point, Vec3 way_m) RT_SAFE;
 
 }  // namespace tact::model::contact

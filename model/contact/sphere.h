@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "model/contact/site.h"
+#include "model/contact/contact_point.h"
 #include "model/law/law.h"
 #include "model/types.h"
 
@@ -27,7 +27,7 @@ enum class ContactState : std::uint8_t { kFree, kTouching, kHeld, kInside };
 struct SphereContact {
   ContactState state = ContactState::kFree;
   law::LawStatus law_status = law::LawStatus::kNoContact;
-  Place place;                 // of surface_point_m
+  SurfacePoint surface_point;  // of surface_point_m
   Vec3 surface_point_m{};      // nearest (touching) or held point of the undeformed surface
   Vec3 normal{};               // outward, unit; free: of its last contact
   Vec3 shift_m{};              // t

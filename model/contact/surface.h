@@ -28,7 +28,7 @@ struct alignas(128) TriangleRecord {
   TriangleCorners neighbour{};              // as SurfaceView has it
   TriangleCorners fan_start{};              // of each corner, into fan
   std::array<std::uint8_t, 3> fan_count{};  // at most kMaxFan
-  std::array<bool, 3> on_rim{};             // the corner is on a boundary
+  std::array<bool, 3> on_boundary{};        // the corner is on a boundary
 };
 static_assert(sizeof(TriangleRecord) == 128);
 
@@ -43,7 +43,7 @@ struct SurfaceView {
   std::span<const Vec3> vertex_normal;         // n, unit
   std::span<const std::uint32_t> fan_start;    // n + 1, into fan
   std::span<const std::uint32_t> fan;          // 3 m, triangles around each vertex
-  std::span<const TriangleRecord> record;      // m, the same once more, for site.h
+  std::span<const TriangleRecord> record;      // m, the same once more, for contact_point.h
 };
 
 }  // namespace tact::model::contact

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tangent.h - vectors and symmetric tensors along the surface, in two axes of a site.
+// tangent.h - vectors and symmetric tensors along the surface, in two axes of a contact point.
 #pragma once
 
 #include <algorithm>

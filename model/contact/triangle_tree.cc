@@ -119,8 +119,8 @@ TriangleTree make_triangle_tree(const SurfaceView& surface) {
   return tree;
 }
 
-Site nearest_site(const TriangleTreeView& tree, const SurfaceView& surface, const Vec3& p_m,
-                  double within_m, std::uint32_t near) RT_SAFE {
+ContactPoint nearest_contact_point(const TriangleTreeView& tree, const SurfaceView& surface,
+                                   const Vec3& p_m, double within_m, std::uint32_t near) RT_SAFE {
   struct Branch {
     std::uint32_t node;
     double squared_m2;
@@ -150,8 +150,8 @@ Site nearest_site(const TriangleTreeView& tree, const SurfaceView& surface, cons
     later[waiting++] = one;
     later[waiting++] = two;
   }
-  if (best.place.triangle != kNoTriangle) return site_of(surface, best, p_m);
-  Site none;
+  if (best.surface_point.triangle != kNoTriangle) return contact_point_of(surface, best, p_m);
+  ContactPoint none;
   none.distance_m = std::numeric_limits<double>::infinity();
   return none;
 }

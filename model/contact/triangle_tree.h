@@ -12,7 +12,7 @@
 
 #include <vector>
 
-#include "model/contact/site.h"
+#include "model/contact/contact_point.h"
 
 namespace tact::model::contact {
 
@@ -44,8 +44,8 @@ TriangleTree make_triangle_tree(const SurfaceView& surface);
 
 /// The nearest point of all, where it is nearer than within_m; else its distance is infinite. A
 /// triangle that may be near (or kNoTriangle) shortens the search.
-Site nearest_site(const TriangleTreeView& tree, const SurfaceView& surface, const Vec3& p_m,
-                  double within_m, std::uint32_t near) RT_SAFE;
+ContactPoint nearest_contact_point(const TriangleTreeView& tree, const SurfaceView& surface,
+                                   const Vec3& p_m, double within_m, std::uint32_t near) RT_SAFE;
 
 /// Does the straight line between two points pass through the surface?
 bool is_between(const TriangleTreeView& tree, const SurfaceView& surface, const Vec3& from_m,

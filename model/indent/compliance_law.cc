@@ -45,7 +45,8 @@ Result<ComplianceCurve> make_compliance_curve(const ComplianceCurveParameters& p
   if (const char* wrong = parameter_error(p)) return Error{std::string("compliance: ") + wrong};
   ComplianceCurve curve;
   curve.tip_ = p.tip;
-  // In this order: r is still 0, so exact() speaks of the tip alone. CT-8 ends at this dent of it.
+  // In this order: r is still 0, so exact() speaks of the tip alone. CT-8 ends at this indentation
+  // of it.
   const TipState last = curve.exact(kDeepestIndentation_ratio * p.tip.radius_m);
   curve.regular_m_per_N_ = p.regular_m_per_N;
   curve.press_depth_m_ = p.working_depth_m;
@@ -129,7 +130,8 @@ std::size_t ComplianceCurve::profile(double depth_m, std::span<double> ring_m) c
     // CL-4  u_j = taper_j (u_tip(rho_j) + F g_j),  u_0 = d
     const double u_m =
         j == 0 ? d_m : law::ring_taper(j, rings_) * (tip_m + force_N * ring_m_per_N_[j]);
-    // CL-4  0 <= u_j <= u_(j-1): a dent is drawn as one bowl; errors of the map do not ripple it.
+    // CL-4  0 <= u_j <= u_(j-1): an indentation is drawn as one bowl; errors of the map do not
+    //       ripple it.
     before_m = std::clamp(u_m, 0.0, before_m);
     ring_m[j] = pulled ? -before_m : before_m;
   }
@@ -137,7 +139,7 @@ std::size_t ComplianceCurve::profile(double depth_m, std::span<double> ring_m) c
 }
 
 Result<ComplianceCurve> half_space_under(double radius_m, double working_depth_m) {
-  constexpr double kRingsARadius = 3.0;  // LW-4: the dent bends most at the rim of the touch
+  constexpr double kRingsARadius = 3.0;  // LW-4: the indentation bends most at the rim of the touch
   constexpr std::size_t kRings = 23;
   return half_space_under(radius_m, working_depth_m, radius_m / kRingsARadius, kRings);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // compliance_law.h - one place of a linear elastic organ under a round tip: two springs in series.
 //
-//     CL-1   d = d_tip(F) + r F         press: a sphere's own dent, CT-1 and CT-2
+//     CL-1   d = d_tip(F) + r F         press: a sphere's own indentation, CT-1 and CT-2
 //     CL-2   d = (c_disc + r) F         pull: a bonded disc of the sphere's radius, CT-5
 //     CL-3   1/K = 1/K_tip + r          K_tip from CT-3 or CT-9 in press, 1/c_disc in pull
 //     CL-4   u_j = taper_j (u_tip(rho_j) + F g_j),  u_0 = d,  0 <= u_j <= u_(j-1)
@@ -11,13 +11,13 @@
 //     g_j   the same for the surface at radius j pitch, m/N; g_0 = r
 //
 // A point force would sink without limit into a continuum, and on a mesh as far as its elements let
-// it; here the load is always the patch that the tip makes. With tip.large_strain its dent is that
-// of CT-8, within 0.9 % of every finite-strain sphere of RF-7; press ends where the tip is 2.15 R
-// deep. Without it all is small strain: a block under a sphere of R = 5 mm is 14 % softer at 10 mm
-// than this law says (RF-1). The organ's own give r stays linear, and so does pull. At rest the
-// slope jumps from the pull's to zero; there `stiffness` is the mean of both sides. respond() is a
-// table in press and a product in pull: the loop may call it, and large strain costs it nothing.
-// exact() solves CL-1.
+// it; here the load is always the patch that the tip makes. With tip.large_strain its indentation
+// is that of CT-8, within 0.9 % of every finite-strain sphere of RF-7; press ends where the tip is
+// 2.15 R deep. Without it all is small strain: a block under a sphere of R = 5 mm is 14 % softer at
+// 10 mm than this law says (RF-1). The organ's own give r stays linear, and so does pull. At rest
+// the slope jumps from the pull's to zero; there `stiffness` is the mean of both sides. respond()
+// is a table in press and a product in pull: the loop may call it, and large strain costs it
+// nothing. exact() solves CL-1.
 #pragma once
 
 #include <array>
@@ -71,7 +71,7 @@ class ComplianceCurve final : public law::Law {
 /// The error names the parameter and what is allowed.
 Result<ComplianceCurve> make_compliance_curve(const ComplianceCurveParameters& parameters);
 
-/// A half-space of E* = 1 Pa under a ball: what a law of springs does not know of the dent.
+/// A half-space of E* = 1 Pa under a ball: what a law of springs does not know of the indentation.
 Result<ComplianceCurve> half_space_under(double radius_m, double working_depth_m);
 /// The same with rings of its own, 1 to kMaxComplianceRings.
 Result<ComplianceCurve> half_space_under(double radius_m, double working_depth_m,

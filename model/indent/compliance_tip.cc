@@ -13,7 +13,7 @@ namespace {
 constexpr double kSmall = 1e-2;
 
 // Gauss-Legendre, 8 points on -1 .. 1, the positive half of them. CT-4 comes out within 1e-5 of the
-// depth for dents up to 1.9 R: enough for a picture.
+// depth for indentations up to 1.9 R: enough for a picture.
 constexpr std::array<double, 4> kNode{0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
                                       0.9602898564975363};
 constexpr std::array<double, 4> kWeight{0.3626837833783620, 0.3137066458778873, 0.2223810344533745,

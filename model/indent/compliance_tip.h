@@ -11,7 +11,7 @@
 //            u(rho) = (2/pi) integral of (d - R q tanh q) / sqrt(rho^2 - t^2) dt      rho > a
 //                     over t = R tanh q = 0 .. a
 //
-// Large strain, F times a factor of the dent; 0 <= d <= 2.15 R:
+// Large strain, F times a factor of the indentation; 0 <= d <= 2.15 R:
 //
 //     CT-8   F_large = g F,  x = d / R,  w = 1 - 2 nu
 //            g = 1 - 0.1210 x + 0.0651 x^2 - 0.0259 x^3 + w (0.2559 a/R + 0.2525 x)
@@ -20,7 +20,7 @@
 // The form is ours; the term in a/R is tissue that can be compressed and slides inwards under the
 // tip. Fitted to a neo-Hookean block at nu = 0.3 and 0.49, within 0.8 % of the own force there;
 // within 0.9 % at nu = 0.45, which the fit did not see (RF-7), and about 3 % at nu = 0.2 (RF-8).
-// The dent keeps the a and the shape u(rho) of CT-1 and CT-4 at the same depth.
+// The indentation keeps the a and the shape u(rho) of CT-1 and CT-4 at the same depth.
 //
 // Pull, a bonded disc that moves without turning [Johnson, Contact Mechanics (1985), 3.7; Mindlin
 // 1949]:

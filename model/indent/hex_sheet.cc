@@ -76,7 +76,7 @@ class Solver {
     return p_.contact_stiffness_N_per_m * w_[0] + 6.0 * surface_spring(p_, w_[0] - w_[1]).force_N;
   }
 
-  double rim_force_N() const RT_SAFE {
+  double boundary_force_N() const RT_SAFE {
     return springs(m_) * surface_spring(p_, w_[m_ - 1] - w_[m_]).force_N;
   }
 
@@ -182,7 +182,7 @@ HexSheetState HexSheet::at_depth(double depth_m) const RT_SAFE {
   const double sign = depth_m < 0.0 ? -1.0 : 1.0;  // F(-d) = -F(d)
   HexSheetState out{.force_N = sign * solver.force_N(),
                     .energy_J = solver.energy_J(),
-                    .rim_force_N = sign * solver.rim_force_N(),
+                    .boundary_force_N = sign * solver.boundary_force_N(),
                     .iterations = solver.iterations(),
                     .status = asked_m > limit_m ? law::LawStatus::kSaturated : law::LawStatus::kOk};
   for (std::size_t i = 0; i <= p_.rings; ++i) out.ring_m[i] = sign * solver.displacement_m(i);

@@ -17,7 +17,7 @@
 //     m   rings                K_T, T0     surface springs, N/m, and their tension at rest, N
 //
 // U is strictly convex for K_N > 0: one solution, force and stiffness grow with depth. F(-d) =
-// -F(d): a held surface can be pulled. Without tension a small dent is a spike one node wide
+// -F(d): a held surface can be pulled. Without tension a small indentation is a spike one node wide
 // (HX-25); its decay length with tension is sqrt(2 T0 r/K_N) (per node). Valid within the working
 // depth; beyond, the force stays. The solution is a bounded iteration, good for set-up, tools and
 // telemetry; the loop reads a table of it (tabulated_law.h).
@@ -55,7 +55,7 @@ struct HexSheetState {
   double force_N = 0.0;
   double stiffness_N_per_m = 0.0;
   double energy_J = 0.0;
-  double rim_force_N = 0.0;  // n_m p(l_m), what the rim has to hold
+  double boundary_force_N = 0.0;  // n_m p(l_m), what the rim has to hold
   int iterations = 0;
   std::array<double, kMaxHexRings + 1> ring_m{};  // w_i, m + 1 used
   law::LawStatus status = law::LawStatus::kOk;

@@ -4,7 +4,7 @@
 // A half-space that is pressed carries waves away: beside its spring stands a dashpot.
 //
 //     IN-1   F_wave = c v,   c = 3.4 a^2 sqrt(rho G) / (1 - nu)
-//     IN-2   v_q = q F(d) / c        small dents: v_q = 0.78 q sqrt(G / rho) sqrt(d / R)
+//     IN-2   v_q = q F(d) / c        small indentations: v_q = 0.78 q sqrt(G / rho) sqrt(d / R)
 //
 //     F_wave  what the law lacks, N        v    speed of the press, m/s
 //     F(d)    force of the half-space, N   v_q  where F_wave is the share q of F(d), m/s

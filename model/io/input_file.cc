@@ -19,7 +19,7 @@ Error error_of(const std::string& path, std::string_view what, std::string_view 
   return {fmt::format("{}: {}; {}", path, what, remedy)};
 }
 
-std::string_view words_of(int number) {
+std::string_view text_of(int number) {
   return number == ENOENT ? "no such file" : std::strerror(number);
 }
 
@@ -36,15 +36,15 @@ std::string_view kind_of(mode_t mode) {
 
 Result<InputFile> InputFile::open(const std::string& path, std::string_view remedy) {
   struct stat status{};
-  if (stat(path.c_str(), &status) != 0) return error_of(path, words_of(errno), remedy);
+  if (stat(path.c_str(), &status) != 0) return error_of(path, text_of(errno), remedy);
   if (const auto kind = kind_of(status.st_mode); !kind.empty()) return error_of(path, kind, remedy);
   // Not blocking, should a pipe have taken its place since.
   const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
-  if (fd < 0) return error_of(path, words_of(errno), remedy);
+  if (fd < 0) return error_of(path, text_of(errno), remedy);
   // Owner of fd from here on. Asked once more: what was
   // opened may be another than what was looked at.
   InputFile file(path, std::string(remedy), fd, 0);
-  if (fstat(fd, &status) != 0) return error_of(path, words_of(errno), remedy);
+  if (fstat(fd, &status) != 0) return error_of(path, text_of(errno), remedy);
   if (const auto kind = kind_of(status.st_mode); !kind.empty()) return error_of(path, kind, remedy);
   file.size_bytes_ = static_cast<std::uintmax_t>(std::max<off_t>(status.st_size, 0));
   return file;
@@ -72,9 +72,9 @@ Result<std::size_t> InputFile::read(void* to, std::size_t bytes) {
 Result<std::size_t> InputFile::read_end(void* to, std::size_t bytes) {
   const std::uintmax_t from = size_bytes_ > bytes ? size_bytes_ - bytes : 0;
   if (lseek(fd_, static_cast<off_t>(from), SEEK_SET) < 0)
-    return error_of(path_, words_of(errno), remedy_);
+    return error_of(path_, text_of(errno), remedy_);
   auto got = read(to, bytes);
-  if (lseek(fd_, 0, SEEK_SET) < 0) return error_of(path_, words_of(errno), remedy_);
+  if (lseek(fd_, 0, SEEK_SET) < 0) return error_of(path_, text_of(errno), remedy_);
   return got;
 }
 

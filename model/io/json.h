@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// json.h - the one reader and writer of JSON: errors as sentences with their place, no text that is
+// json.h - the one reader and writer of JSON: errors as messages with their place, no text that is
 // too deep to read, none that cannot be written.
 #pragma once
 
@@ -36,7 +36,7 @@ Result<Json> read_json(const std::string& path, std::string_view remedy = "check
   const auto text = read_file(path, remedy);
   if (!text) return text.error();
   auto json = parse_json<Json>(*text, path);
-  if (!json) return Error{fmt::format("{}; {}", json.error().sentence, remedy)};
+  if (!json) return Error{fmt::format("{}; {}", json.error().message, remedy)};
   return json;
 }
 

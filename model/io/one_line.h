@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// one_line.h - text of a stranger inside a sentence of ours.
+// one_line.h - text of a stranger inside a message of ours.
 #pragma once
 
 #include <string>

@@ -84,7 +84,7 @@ std::size_t SealedFile::read(void* to, std::size_t bytes) {
   // Never into the seal: it is no part of what it seals.
   bytes = static_cast<std::size_t>(std::min<std::uint64_t>(bytes, size_bytes_ - read_bytes_));
   const auto read = file_.read(to, bytes);
-  if (!read) failed_ = read.error().sentence;
+  if (!read) failed_ = read.error().message;
   const std::size_t got = read ? *read : 0;
   own_.add({static_cast<const char*>(to), got});
   read_bytes_ += got;

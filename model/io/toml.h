@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// toml.h - the one reader of TOML: errors as sentences with file and line, no text too deep for it.
+// toml.h - the one reader of TOML: errors as messages with file and line, no text too deep for it.
 #pragma once
 
 #include <toml++/toml.h>

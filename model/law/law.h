@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // law.h - what every force law promises.
 //
-// A law turns the signed displacement of the touched site into a force and a displacement profile:
+// A law turns the signed displacement of the touched contact point into a force and a displacement
+// profile:
 //
-//     d    depth, m: press inward positive, pull outward negative (only while the site is held)
+//     d    depth, m: press inward positive, pull outward negative (only while the contact point is
+//          held)
 //     F    force on the tool along the outward normal, N: F = dU/dd, F(0) = 0
 //     K    dF/dd, N/m      U   stored energy, J, U(0) = 0
 //     u_j  displacement of ring j into the tissue, m, at radius j * ring_pitch_m; u_0 = d

@@ -12,7 +12,7 @@ double stiffest_N_per_m(const Law& law, double from_m, double to_m);
 /// Largest b inside the range.
 double most_damping_Ns_per_m(const Law& law);
 
-/// How far out a held site comes before it tears, or the end of the law's range, m, <= 0.
+/// How far out a held contact point comes before it tears, or the end of the law's range, m, <= 0.
 double tear_depth_m(const Law& law, double tear_force_N);
 
 }  // namespace tact::model::law

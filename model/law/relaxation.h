@@ -34,7 +34,7 @@ struct PronyTerm {
   double time_s = 0.0;  // tau_i, > 0
 };
 
-/// What one touched site remembers.
+/// What one touched contact point remembers.
 struct RelaxationState {
   double depth_m = 0.0;
   std::array<double, kMaxPronyTerms> stretch_m{};                // e_i

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ring_taper.h - the picture of a dent ends level where its rings end.
+// ring_taper.h - the picture of an indentation ends level where its rings end.
 #pragma once
 
 #include <cmath>

@@ -31,7 +31,7 @@ double SeriesLaw::depth_of(double indentation_m) const RT_SAFE {
   return indentation_m + compliance_m_per_N_ * law_->respond(indentation_m).force_N;
 }
 
-/// The dent whose depth this is; the depth grows with it.
+/// The indentation whose depth this is; the depth grows with it.
 double SeriesLaw::indentation_at(double depth_m) const RT_SAFE {
   // 0 is an end of both brackets, which a Newton step may
   // not reach: it would be halved towards for ever.

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// series_law.h - a law in series with a linear give: what the tip dents, and what the organ yields.
+// series_law.h - a law in series with a linear give: what the tip indentations, and what the organ
+// yields.
 //
-//     SL-1   d = e + r F(e)                     the law F takes the dent e, the organ the rest
+//     SL-1   d = e + r F(e)                     the law F takes the indentation e, the organ the
+//            rest
 //     SL-2   U = U(e) + r F(e)^2 / 2
 //     SL-3   1/K = 1/K(e) + r
 //     SL-4   b = b(e) / (1 + r K(e))^2          e' = d' / (1 + r K(e)), the same loss; r < 0: b(e)
@@ -10,9 +12,9 @@
 //     r   give of the organ at this place beyond what the law knows, m/N; below 0 near the held
 //         side, above -1/K of the law everywhere
 //
-// Valid until the dent or the depth reaches the range of the law; beyond, the force stays. The
-// profile is another law's, which knows how far the organ follows. respond() solves SL-1, good for
-// set-up and tools; the loop reads a table.
+// Valid until the indentation or the depth reaches the range of the law; beyond, the force stays.
+// The profile is another law's, which knows how far the organ follows. respond() solves SL-1, good
+// for set-up and tools; the loop reads a table.
 #pragma once
 
 #include "model/law/law.h"

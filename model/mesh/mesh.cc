@@ -181,11 +181,11 @@ const char* remedy(MeshFlaw flaw) {
 }
 
 void fill_records(SurfaceMesh& mesh) {
-  std::vector<bool> on_rim(mesh.vertex_m.size());
+  std::vector<bool> on_boundary(mesh.vertex_m.size());
   for (std::size_t i = 0; i < mesh.triangle.size(); ++i)
     for (std::size_t e = 0; e < 3; ++e)
       if (mesh.neighbour[i][e] == contact::kNoTriangle)
-        on_rim[mesh.triangle[i][e]] = on_rim[mesh.triangle[i][(e + 1) % 3]] = true;
+        on_boundary[mesh.triangle[i][e]] = on_boundary[mesh.triangle[i][(e + 1) % 3]] = true;
   mesh.record.resize(mesh.triangle.size());
   for (std::size_t i = 0; i < mesh.triangle.size(); ++i) {
     contact::TriangleRecord& record = mesh.record[i];
@@ -198,7 +198,7 @@ void fill_records(SurfaceMesh& mesh) {
       record.fan_start[e] = mesh.fan_start[v];
       // More than kMaxFan are refused for the organ (scene/tissue.cc); a tool's mesh is only drawn.
       record.fan_count[e] = static_cast<std::uint8_t>(std::min(count, contact::kMaxFan));
-      record.on_rim[e] = on_rim[v];
+      record.on_boundary[e] = on_boundary[v];
     }
   }
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // mesh_defect.h - what keeps a triangle list from being a surface, and at which triangle.
 //
-// make_surface_mesh (mesh.h) turns a defect into a sentence about triangle numbers; the OBJ loader
-// turns the same defect into a sentence about lines of the file. Set-up code only.
+// make_surface_mesh (mesh.h) turns a defect into a message about triangle numbers; the OBJ loader
+// turns the same defect into a message about lines of the file. Set-up code only.
 #pragma once
 
 #include <cstdint>

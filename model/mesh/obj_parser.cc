@@ -95,8 +95,8 @@ class Parser {
     return {at_, static_cast<std::size_t>(last - at_)};
   }
 
-  void fail(const std::string& sentence) {
-    error_ = Error{fmt::format("{}:{}: {}", name_, statement_line_, sentence)};
+  void fail(const std::string& message) {
+    error_ = Error{fmt::format("{}:{}: {}", name_, statement_line_, message)};
   }
 
   void parse_statement() {

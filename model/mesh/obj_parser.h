@@ -33,7 +33,7 @@ struct ObjText {
   std::size_t lines = 0;                 // in the file
 };
 
-/// `name` is what error sentences call the file.
+/// `name` is what error messages call the file.
 Result<ObjText> parse_obj(std::string_view text, const std::string& name);
 
 }  // namespace tact::model::mesh

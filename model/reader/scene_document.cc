@@ -13,7 +13,7 @@
 #include "model/io/input_file.h"
 #include "model/io/program/installed.h"
 #include "model/io/toml.h"
-#include "model/reader/scene_words.h"
+#include "model/reader/scene_text.h"
 
 namespace tact::model::reader {
 namespace {
@@ -131,7 +131,7 @@ class Override {
 
 }  // namespace
 
-TextPlace SceneDocument::place_of(const toml::node& node) const {
+TextPosition SceneDocument::position_of(const toml::node& node) const {
   const toml::source_region& source = node.source();
   // An override has no line: its own text is its place.
   if (source.path && *source.path != path) return {.where = *source.path};

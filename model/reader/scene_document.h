@@ -17,7 +17,7 @@
 
 namespace tact::model::reader {
 
-struct TextPlace {
+struct TextPosition {
   std::string where;       // "liver.toml:12" or "--set key=value"
   std::uint32_t line = 0;  // 0 for an override
 };
@@ -27,7 +27,7 @@ struct SceneDocument {
   toml::table root;
   std::string hash;  // of the text and the overrides, 16 hex digits
 
-  TextPlace place_of(const toml::node& node) const;
+  TextPosition position_of(const toml::node& node) const;
 };
 
 /// Parse the file and lay the overrides over it in order; the meaning of keys is not looked at.

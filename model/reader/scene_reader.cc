@@ -8,8 +8,8 @@
 #include <tuple>
 #include <utility>
 
+#include "model/reader/scene_text.h"
 #include "model/reader/scene_values.h"
-#include "model/reader/scene_words.h"
 
 namespace tact::model::reader {
 namespace {
@@ -23,8 +23,8 @@ std::string names_of(std::span<const Choice> choices) {
 
 }  // namespace
 
-void SceneVisit::note(ProblemKind kind, const TextPlace& place, const std::string& sentence) {
-  problems_.push_back({kind, place.line, fmt::format("{}: {}", place.where, sentence)});
+void SceneVisit::note(ProblemKind kind, const TextPosition& position, const std::string& message) {
+  problems_.push_back({kind, position.line, fmt::format("{}: {}", position.where, message)});
 }
 
 std::optional<Error> SceneVisit::problem() const {
@@ -35,7 +35,7 @@ std::optional<Error> SceneVisit::problem() const {
         return std::tie(a.kind, a.line) < std::tie(b.kind, b.line);
       });
   if (first == problems_.end()) return std::nullopt;
-  return Error{first->sentence};
+  return Error{first->message};
 }
 
 void Keys::visit_root(SceneVisit& visit, const Inside& inside) {
@@ -50,7 +50,7 @@ void Keys::store(const toml::node& node, std::string_view key, Result<T> value, 
   if (value)
     out = std::move(*value);
   else
-    check(node, key, value.error().sentence);
+    check(node, key, value.error().message);
 }
 
 void Keys::text(std::string_view key, std::string_view meaning, std::string& out, Need need) {
@@ -191,7 +191,7 @@ void Keys::entries(std::string_view key, CountRange range, std::string_view mean
     const toml::node& entry = *array->get(i);
     const std::string name = fmt::format("{}.{}", key, i);
     if (!entry.is_table()) {
-      visit_.note(ProblemKind::kWrong, visit_.document()->place_of(entry),
+      visit_.note(ProblemKind::kWrong, visit_.document()->position_of(entry),
                   fmt::format("{} is {}; allowed: {}", path_to(name), type_name(entry), allowed));
       continue;
     }
@@ -201,20 +201,20 @@ void Keys::entries(std::string_view key, CountRange range, std::string_view mean
   }
 }
 
-TextPlace Keys::place_of(std::string_view key) const {
+TextPosition Keys::position_of(std::string_view key) const {
   if (!table_) return {};
   const toml::node* node = table_->get(key);
-  return visit_.document()->place_of(node ? *node : *table_);
+  return visit_.document()->position_of(node ? *node : *table_);
 }
 
-void Keys::refuse(std::initializer_list<std::string_view> keys, const std::string& sentence) {
+void Keys::refuse(std::initializer_list<std::string_view> keys, const std::string& message) {
   if (!table_) return;
-  TextPlace reported = place_of(*keys.begin());
+  TextPosition reported = position_of(*keys.begin());
   for (const std::string_view key : keys) {
-    const TextPlace place = place_of(key);
-    if (place.line == 0) reported = place;  // an override: what was just typed
+    const TextPosition position = position_of(key);
+    if (position.line == 0) reported = position;  // an override: what was just typed
   }
-  visit_.note(ProblemKind::kConflict, reported, sentence);
+  visit_.note(ProblemKind::kConflict, reported, message);
 }
 
 /// The node of a key, or null where there is nothing to read.
@@ -228,7 +228,7 @@ const toml::node* Keys::take(std::string_view key, std::string allowed, std::str
   }
   const toml::node* node = table_->get(key);
   if (!node && fallback.empty()) {
-    visit_.note(ProblemKind::kMissing, place_of(key),
+    visit_.note(ProblemKind::kMissing, position_of(key),
                 fmt::format("{} is missing; allowed: {}", path_to(key), allowed));
   }
   // Also of a key that is missing: it is no unknown one, and what is near to it is suggested.
@@ -242,7 +242,7 @@ std::optional<std::size_t> Keys::match(std::string_view key, std::span<const Cho
   for (std::size_t i = 0; value && i < choices.size(); ++i)
     if (*value == choices[i].name) return i;
   check(node, key,
-        value ? fmt::format("= \"{}\" is unknown", on_one_line(*value)) : value.error().sentence);
+        value ? fmt::format("= \"{}\" is unknown", on_one_line(*value)) : value.error().message);
   return std::nullopt;
 }
 
@@ -260,7 +260,7 @@ void Keys::report(std::string_view key, double value, Range range, bool is_whole
 
 /// Called after the key was taken, so what is allowed stands in the last known entry.
 void Keys::check(const toml::node& node, std::string_view key, std::string_view problem) {
-  visit_.note(ProblemKind::kWrong, visit_.document()->place_of(node),
+  visit_.note(ProblemKind::kWrong, visit_.document()->position_of(node),
               fmt::format("{} {}; allowed: {}", path_to(key), problem, known_.back().allowed));
 }
 
@@ -270,11 +270,11 @@ void Keys::finish() {
   for (auto&& [key, node] : *table_) {
     const auto named = [&key = key](const Known& known) { return known.key == key.str(); };
     if (std::any_of(known_.begin(), known_.end(), named)) continue;
-    visit_.note(ProblemKind::kWrong, visit_.document()->place_of(node), unknown_sentence(key));
+    visit_.note(ProblemKind::kWrong, visit_.document()->position_of(node), unknown_message(key));
   }
 }
 
-std::string Keys::unknown_sentence(std::string_view key) const {
+std::string Keys::unknown_message(std::string_view key) const {
   const std::string path = path_to(on_one_line(key));
   std::vector<std::string_view> names;
   std::string all;

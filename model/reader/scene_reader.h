@@ -52,7 +52,7 @@ class SceneVisit {
   /// What was read, in the order of the visit.
   const std::vector<SceneNumber>& numbers() const { return numbers_; }
   void add(SceneNumber number) { numbers_.push_back(std::move(number)); }
-  void note(ProblemKind kind, const TextPlace& place, const std::string& sentence);
+  void note(ProblemKind kind, const TextPosition& position, const std::string& message);
   /// The problem to tell, if there is one.
   std::optional<Error> problem() const;
 
@@ -60,7 +60,7 @@ class SceneVisit {
   struct Problem {
     ProblemKind kind;
     std::uint32_t line;
-    std::string sentence;
+    std::string message;
   };
   const SceneDocument* document_;
   std::vector<ReferenceRow> rows_;
@@ -108,9 +108,9 @@ class Keys {
               const std::function<void(std::size_t)>& further);
 
   /// Where a key stands, or else its section.
-  TextPlace place_of(std::string_view key) const;
+  TextPosition position_of(std::string_view key) const;
   /// These keys contradict each other; told at the overridden one, or else at the first.
-  void refuse(std::initializer_list<std::string_view> keys, const std::string& sentence);
+  void refuse(std::initializer_list<std::string_view> keys, const std::string& message);
 
  private:
   struct Known {
@@ -132,7 +132,7 @@ class Keys {
   void report(std::string_view key, double value, Range range, bool is_whole,
               std::string_view meaning);
   void finish();
-  std::string unknown_sentence(std::string_view key) const;
+  std::string unknown_message(std::string_view key) const;
   std::string path_to(std::string_view key) const;
 
   SceneVisit& visit_;

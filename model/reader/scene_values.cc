@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "model/reader/scene_words.h"
+#include "model/reader/scene_text.h"
 
 namespace tact::model::reader {
 std::string_view type_name(const toml::node& node) {
@@ -67,7 +67,7 @@ Result<std::array<double, n>> as_numbers(const toml::node& node, Range each,
   std::array<double, n> value{};
   for (std::size_t i = 0; i < n; ++i) {
     const Result<double> given = as_number(*array->get(i), each);
-    if (!given) return Error{fmt::format("{} {}", names[i], given.error().sentence)};
+    if (!given) return Error{fmt::format("{} {}", names[i], given.error().message)};
     value[i] = *given;
   }
   return value;
@@ -81,7 +81,7 @@ Result<std::vector<std::array<double, 4>>> as_rows(const toml::node& node, Range
   std::vector<std::array<double, 4>> rows;
   for (const toml::node& row : *array) {
     const auto given = as_numbers<4>(row, each, "1234");
-    if (!given) return Error{fmt::format("entry {}: {}", rows.size(), given.error().sentence)};
+    if (!given) return Error{fmt::format("entry {}: {}", rows.size(), given.error().message)};
     rows.push_back(*given);
   }
   return rows;

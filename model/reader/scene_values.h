@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // scene_values.h - is this TOML value what a key allows?
 //
-// An error is the rest of a sentence about the key, "= 5 is out of range". NaN and infinity are
+// An error is the rest of a message about the key, "= 5 is out of range". NaN and infinity are
 // numbers to TOML and never good here; a whole number may stand for any number, a number with a
 // fraction never for a count. Set-up code only.
 #pragma once

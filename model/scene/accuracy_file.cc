@@ -10,7 +10,7 @@
 
 #include "model/io/input_file.h"
 #include "model/io/toml.h"
-#include "model/reader/scene_words.h"
+#include "model/reader/scene_text.h"
 #include "model/scene/scene.h"
 
 namespace tact::model::scene {
@@ -62,7 +62,7 @@ std::string hash_of_forces(const Scene& scene, const TissueLaw& law) {
   // changes some force, few enough for every --check.
   constexpr std::size_t kPlaces = 9;
   constexpr double kDepths_m[] = {0.0005, 0.002, 0.005, 0.01};
-  contact::SiteLaw& site = law.site_law();
+  contact::ContactLaw& site = law.contact_law();
   const mesh::SurfaceMesh& organ = scene.organ_mesh;
   reader::TextHash hash;
   for (const contact::ProbeSphere& s : scene.tool.spheres)
@@ -71,9 +71,9 @@ std::string hash_of_forces(const Scene& scene, const TissueLaw& law) {
   contact::Indentation before{};
   for (std::size_t k = 0; k < kPlaces; ++k) {
     const std::size_t triangle = k * (organ.triangle.size() - 1) / (kPlaces - 1);
-    contact::Indentation at{
-        .place = {.triangle = static_cast<std::uint32_t>(triangle), .weight = {1.0, 0.0, 0.0}},
-        .normal = organ.vertex_normal[organ.triangle[triangle][0]]};
+    contact::Indentation at{.surface_point = {.triangle = static_cast<std::uint32_t>(triangle),
+                                              .weight = {1.0, 0.0, 0.0}},
+                            .normal = organ.vertex_normal[organ.triangle[triangle][0]]};
     for (const double depth_m : kDepths_m) {
       at.indentation_m = depth_m;
       // Six digits: the last bits may differ between compilers,
@@ -135,7 +135,7 @@ Result<Accuracy> read_accuracy(const Scene& scene) {
   const auto text = io::read_file(path, remedy(scene));
   if (!text) return text.error();
   const auto parsed = io::parse_toml(*text, path);
-  if (!parsed) return Error{fmt::format("{}; {}", parsed.error().sentence, remedy(scene))};
+  if (!parsed) return Error{fmt::format("{}; {}", parsed.error().message, remedy(scene))};
   const toml::table& root = *parsed;
   if (root["schema"].value_or<std::string>("") != kSchema)
     return Error{
@@ -144,7 +144,7 @@ Result<Accuracy> read_accuracy(const Scene& scene) {
   if (table == nullptr) return Error{fmt::format("{} has no [{}]; {}", path, name, remedy(scene))};
   auto out = accuracy_of(*table, name);
   if (!out)
-    return Error{fmt::format("{}: [{}]: {}; {}", path, name, out.error().sentence, remedy(scene))};
+    return Error{fmt::format("{}: [{}]: {}; {}", path, name, out.error().message, remedy(scene))};
   const auto hash = hash_of_linear_forces(scene, scene.law);
   if (!hash) return hash.error();
   if (out->law_hash != *hash)
@@ -166,7 +166,7 @@ bool keeps(const Accuracy& accuracy, const ToleranceSettings& tolerance) {
 
 std::string accuracy_line(const Scene& scene) {
   const auto found = read_accuracy(scene);
-  if (!found) return "force of the whole tool: not known: " + found.error().sentence;
+  if (!found) return "force of the whole tool: not known: " + found.error().message;
   const auto own_percent = [&](std::size_t i) {
     return 100.0 * std::abs(found->own_worst_ratio[i]);
   };

@@ -14,7 +14,7 @@
 #include "model/indent/compliance_law.h"
 #include "model/io/file_writer.h"
 #include "model/io/input_file.h"
-#include "model/reader/scene_words.h"
+#include "model/reader/scene_text.h"
 
 namespace tact::model::scene {
 namespace {

@@ -79,11 +79,11 @@ Result<Plan> plan_of(const toml::table& root) {
 /// Seal before meaning: a damaged plan is told as such.
 Result<Plan> parse_plan(const std::string& path) {
   const auto text = io::read_file(path, "it cannot be used");
-  if (!text) return Error{text.error().sentence};
+  if (!text) return Error{text.error().message};
   // A plan that somebody edited was never measured.
   if (!io::is_sealed(*text)) return Error{"damaged, its sha256 is missing or another"};
   const auto root = io::parse_toml(*text, "the plan");
-  if (!root) return Error{fmt::format("damaged, {}", root.error().sentence)};
+  if (!root) return Error{fmt::format("damaged, {}", root.error().message)};
   return plan_of(*root);
 }
 
@@ -198,7 +198,7 @@ Result<Plan> read_plan(const std::string& path, const Scene& scene,
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return broken("no plan for this scene");
   Result<Plan> plan = parse_plan(path);
-  if (!plan) return broken(plan.error().sentence);
+  if (!plan) return broken(plan.error().message);
   if (plan->scene_hash != scene.hash) return broken("the plan of another scene");
   if (plan->machine != machine_name())
     return broken(fmt::format("measured on another machine, {}", plan->machine));

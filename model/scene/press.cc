@@ -21,7 +21,7 @@ constexpr double kBackOff_m = 0.001;  // further out, where a sphere is in the o
 /// Where the tool is at a depth.
 class Way {
  public:
-  Way(const contact::ContactScene& contact, const Vec3& inward, const PressPlace& place)
+  Way(const contact::ContactScene& contact, const Vec3& inward, const PressPoint& place)
       : point_m_(contact.surface.vertex_m[place.vertex]),
         along_(inward),
         reach_m_(reach_m(contact.spheres, inward)) {
@@ -45,7 +45,8 @@ bool is_outside(const contact::ContactScene& contact, const Tool& tool) {
   return std::ranges::all_of(contact.spheres, [&](const contact::ProbeSphere& sphere) {
     const Vec3 centre_m = tool.position_m + rotate(tool.orientation, sphere.offset_m);
     // Beyond 1 m nothing is near.
-    return contact::nearest_site(contact.tree, contact.surface, centre_m, 1.0, contact::kNoTriangle)
+    return contact::nearest_contact_point(contact.tree, contact.surface, centre_m, 1.0,
+                                          contact::kNoTriangle)
                .distance_m >= sphere.radius_m;
   });
 }
@@ -123,7 +124,7 @@ double stored_J(const contact::Contact& contact) {
 }  // namespace
 
 PressResult press_once(const contact::ContactScene& contact, const Vec3& inward,
-                       const PressPlace& place, const PressSettings& settings,
+                       const PressPoint& place, const PressSettings& settings,
                        const std::function<void(const PressStep&)>& on_step) {
   PressResult out;
   out.place = place;
@@ -172,7 +173,7 @@ Result<std::unique_ptr<Presser>> Presser::make(const Scene& scene, const PressSe
   return presser;
 }
 
-PressResult Presser::press(const PressPlace& place) {
+PressResult Presser::press(const PressPoint& place) {
   PressResult out = press_once(tissue_->contact_scene(), inward_, place, settings_);
   out.energy_ratio = {};
   if (settings_.checks_energy && out.state == PressState::kPressed)
@@ -190,7 +191,7 @@ PressFlaws flaws_of(const PressResult& r, const PressSettings& s) {
           .energy_differs = std::abs(r.energy_ratio.value) > kEnergyTolerance_ratio};
 }
 
-std::string name_of(const PressPlace& place) {
+std::string name_of(const PressPoint& place) {
   return fmt::format("vertex {}, {}", place.vertex,
                      place.way == PressWay::kSquare ? "square" : "upright");
 }

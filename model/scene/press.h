@@ -38,7 +38,7 @@ enum class PressWay : std::uint8_t {
   kUpright,  // along hand.inward, the tool as at rest
 };
 
-struct PressPlace {
+struct PressPoint {
   std::uint32_t vertex = 0;
   PressWay way = PressWay::kSquare;
 };
@@ -63,7 +63,7 @@ struct PressExtreme {
 };
 
 struct PressResult {
-  PressPlace place;
+  PressPoint place;
   PressState state = PressState::kBlocked;
   double deepest_m = 0.0;  // of the tool's lowest point
   double force_N = 0.0;    // F there
@@ -89,7 +89,7 @@ struct PressFlaws {
 
 PressFlaws flaws_of(const PressResult& result, const PressSettings& settings);
 /// "vertex 1586, upright"
-std::string name_of(const PressPlace& place);
+std::string name_of(const PressPoint& place);
 /// What is wrong there, by quantity, size and depth; empty where all is sound.
 std::string describe_flaws(const PressResult& result, const PressSettings& settings);
 
@@ -103,7 +103,7 @@ struct PressStep {
 
 /// One press by the contact of any law. The energy is that of this press, friction and all.
 PressResult press_once(const contact::ContactScene& contact, const Vec3& inward,
-                       const PressPlace& place, const PressSettings& settings,
+                       const PressPoint& place, const PressSettings& settings,
                        const std::function<void(const PressStep&)>& on_step = {});
 
 /// Presses the tool of a scene, on a tissue of its own, as a law may remember.
@@ -112,7 +112,7 @@ class Presser {
   /// `scene` must outlive it.
   static Result<std::unique_ptr<Presser>> make(const Scene& scene, const PressSettings& settings);
   /// The same whatever was pressed before.
-  PressResult press(const PressPlace& place);
+  PressResult press(const PressPoint& place);
   /// With the depth that is pressed, and whether the energy is checked.
   const PressSettings& settings() const { return settings_; }
 

@@ -11,10 +11,10 @@ constexpr double kMinFacing = 0.5;
 
 }  // namespace
 
-std::vector<PressPlace> press_places(const Scene& scene, std::size_t count, bool square,
+std::vector<PressPoint> press_points(const Scene& scene, std::size_t count, bool square,
                                      bool upright) {
   const auto& normals = scene.organ_mesh.vertex_normal;
-  std::vector<PressPlace> out;
+  std::vector<PressPoint> out;
   const auto add = [&](PressWay way, double least_facing) {
     std::vector<std::uint32_t> fit;
     for (std::uint32_t v = 0; v < normals.size(); ++v)
@@ -53,12 +53,12 @@ std::size_t PressSweep::count(PressState state) const {
 }
 
 Result<PressSweep> sweep_presses(
-    const Scene& scene, std::span<const PressPlace> places, const PressSettings& settings,
+    const Scene& scene, std::span<const PressPoint> places, const PressSettings& settings,
     const std::function<bool(std::size_t done, std::size_t all)>& goes_on) {
   const auto presser = Presser::make(scene, settings);
   if (!presser) return presser.error();
   PressSweep out{.settings = (*presser)->settings(), .results = {}};
-  for (const PressPlace& place : places) {
+  for (const PressPoint& place : places) {
     out.results.push_back((*presser)->press(place));
     if (goes_on && !goes_on(out.results.size(), places.size()))
       return Error{"the sweep was stopped"};

@@ -15,7 +15,7 @@ namespace tact::model::scene {
 
 /// Up to `count` vertices of the organ (0: all), spread over their numbers, pressed the ways that
 /// are asked for. Upright: of those that face the hand.
-std::vector<PressPlace> press_places(const Scene& scene, std::size_t count, bool square,
+std::vector<PressPoint> press_points(const Scene& scene, std::size_t count, bool square,
                                      bool upright);
 
 struct PressSweep {
@@ -30,7 +30,7 @@ struct PressSweep {
 /// Every place in turn; `goes_on` is asked after each press, with how many are done. An error if
 /// the scene's law has no meaning or it was stopped.
 Result<PressSweep> sweep_presses(
-    const Scene& scene, std::span<const PressPlace> places, const PressSettings& settings,
+    const Scene& scene, std::span<const PressPoint> places, const PressSettings& settings,
     const std::function<bool(std::size_t done, std::size_t all)>& goes_on = {});
 
 }  // namespace tact::model::scene

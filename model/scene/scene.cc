@@ -8,7 +8,7 @@
 
 #include "model/mesh/obj.h"
 #include "model/mesh/turn.h"
-#include "model/reader/scene_words.h"
+#include "model/reader/scene_text.h"
 #include "model/scene/compliance_file.h"
 #include "model/scene/scene_keys.h"
 
@@ -30,7 +30,7 @@ Result<mesh::ObjMesh> load_mesh(const MeshText& text, const std::string& path) {
   if (!fs::is_regular_file(path, failed)) {
     return Error{
         fmt::format("{}: {} is no file; name an OBJ file, absolute or from the folder of the scene",
-                    text.place.where, path)};
+                    text.position.where, path)};
   }
   return mesh::load_obj(path, text.unit_m);
 }
@@ -52,7 +52,7 @@ std::optional<Error> load_meshes(const SceneText& text, Scene& scene) {
     return Error{fmt::format(
         "{}: look.vertex_colors = true, but {} has no colours: \"v x y z red green blue\", 0 to 1, "
         "at each vertex; tact-mesh keeps those of a scan, or leave the key out",
-        text.vertex_colors_place.where, scene.organ.mesh_path)};
+        text.vertex_colors_position.where, scene.organ.mesh_path)};
   scene.look.vertex_color = std::move(organ->vertex_color);
   return std::nullopt;
 }
@@ -69,18 +69,19 @@ void put_origin_at(const Vec3& handle_m, Scene& scene) {
 
 /// Would another map give other forces?
 bool needs_compliance(const Scene& scene) {
-  return scene.varies_by_place || scene.law == LawKind::kCompliance || scene.law == LawKind::kAuto;
+  return scene.varies_over_surface || scene.law == LawKind::kCompliance ||
+         scene.law == LawKind::kAuto;
 }
 
 /// A map is of one organ: on another mesh the law is felt as it is at every place. A map that
 /// cannot be read stays an error of the law.
 void vary_on_the_own_organ_only(Scene& scene) {
-  if (!scene.varies_by_place) return;
+  if (!scene.varies_over_surface) return;
   const auto map = read_compliance_map(scene.compliance.map_path);
   if (!map || map->mesh_hash == surface_hash(scene.organ_mesh.view())) return;
-  scene.varies_by_place = false;
+  scene.varies_over_surface = false;
   scene.note = fmt::format(
-      "{}: {} is of another organ than {}, so varies_by_place is off: every place feels as a "
+      "{}: {} is of another organ than {}, so varies_over_surface is off: every place feels as a "
       "half-space of this tissue; make a map: tact-lab condense {} --out FILE",
       scene.path, scene.compliance.map_path, scene.organ.mesh_path, scene.path);
 }

@@ -18,8 +18,8 @@ constexpr std::size_t kMaxStrokes = 64;
 constexpr reader::Range kAnywhere_m{-1e6, 1e6};
 
 void visit_mesh(reader::Keys& k, MeshText& mesh) {
-  // For the sentence that says which line names a file that is not there.
-  mesh.place = k.place_of("mesh");
+  // For the message that says which line names a file that is not there.
+  mesh.position = k.position_of("mesh");
   k.text("mesh", "OBJ file, absolute or from the folder of the scene", mesh.file);
   k.number("mesh_unit_m", {1e-6, 1.0}, "length of one unit of the file", mesh.unit_m,
            reader::Need::kOptional);
@@ -77,7 +77,7 @@ void visit_look(reader::Keys& k, SceneText& out) {
               piece.vector("color_ratio", {0.0, 4.0}, "red, green, blue, times the material's",
                            look.piece_color_ratio.emplace_back());
             });
-  out.vertex_colors_place = k.place_of("vertex_colors");
+  out.vertex_colors_position = k.position_of("vertex_colors");
   if (look.has_vertex_colors && !look.piece_color_ratio.empty())
     k.refuse({"vertex_colors"},
              "look.vertex_colors and look.piece both colour the organ; leave one of them out");
@@ -130,7 +130,7 @@ void visit_hand(reader::Keys& k, SceneText& out) {
   k.entries("stroke", {0, kMaxStrokes}, "what the hand does, in this order",
             [&](reader::Keys& stroke) { visit_stroke(stroke, script.strokes.emplace_back()); });
   script.repeat = hand.repeat;
-  script.home_place = k.place_of("home_m");
+  script.home_position = k.position_of("home_m");
 }
 
 }  // namespace

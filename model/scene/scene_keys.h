@@ -19,20 +19,20 @@ namespace tact::model::scene {
 struct MeshText {
   std::string file;  // relative to the scene file
   double unit_m = 0.001;
-  reader::TextPlace place;
+  reader::TextPosition position;
 };
 
 /// Another file as the scene names it.
 struct FileText {
   std::string file;  // relative to the scene file
-  reader::TextPlace place;
+  reader::TextPosition position;
 };
 
 /// A scene before its meshes are read and its strokes become way points.
 struct SceneText {
   Scene scene;
   MeshText organ_mesh;
-  reader::TextPlace vertex_colors_place;
+  reader::TextPosition vertex_colors_position;
   Vec3 organ_orientation_deg;  // axis times angle, about the mesh's origin
   MeshText tool_mesh;
   FileText compliance_map;

@@ -44,7 +44,7 @@ double rounded_up(double value) { return std::ceil(1e3 * value) * 1e-3; }
 /// RT-15: in 10 ms the gate fades the largest force to zero, and its slew must not hold that up.
 void refuse_slow_slew(reader::Keys& k, const Limits& limits) {
   // The gate keeps force_N / ramp_s of the slew for its ramp.
-  const double least_N_per_s = limits.force_N / kStaleFade_s + limits.force_N / limits.ramp_s;
+  const double least_N_per_s = limits.force_N / kStaleRampDown_s + limits.force_N / limits.ramp_s;
   if (limits.slew_N_per_s >= least_N_per_s) return;
   k.refuse({"slew_N_per_s", "force_N"},
            fmt::format("limits.slew_N_per_s = {} is too slow for force_N = {}: a lost device must "
@@ -67,7 +67,7 @@ void refuse_small_budget(reader::Keys& k, double rate_Hz, const Limits& limits) 
                        limits.energy_J, force_N, limits.speed_mps, rounded_up(least_J)));
 }
 
-void refuse_fast_heat(reader::Keys& k, double rate_Hz, const Limits& limits) {
+void refuse_fast_thermal(reader::Keys& k, double rate_Hz, const Limits& limits) {
   const double least_s = least_thermal_time_s(limits, rate_Hz);
   if (limits.thermal_time_s >= least_s) return;
   k.refuse({"thermal_time_s", "continuous_force_N"},
@@ -83,7 +83,7 @@ void visit_limits(reader::Keys& k, double rate_Hz, Limits& limits) {
   visit_keys(k, limits);
   refuse_slow_slew(k, limits);
   refuse_small_budget(k, rate_Hz, limits);
-  refuse_fast_heat(k, rate_Hz, limits);
+  refuse_fast_thermal(k, rate_Hz, limits);
 }
 
 // The allowed force must fall no faster than the slew, and not below what is continuous.
@@ -92,7 +92,7 @@ double least_thermal_time_s(const Limits& limits, double rate_Hz) {
   const double continuous_N = std::min(limits.continuous_force_N, peak_N);
   if (!(continuous_N > 0.0 && rate_Hz > 0.0)) return 0.0;
   // thermal_limit.h: (1 + kappa) T <= tau, and kappa Fp^2 / (2 Fc tau) <= slew.
-  const double steepness = heat_steepness(peak_N, continuous_N);
+  const double steepness = thermal_steepness(peak_N, continuous_N);
   return std::max((1.0 + steepness) / rate_Hz, steepness * 0.5 * peak_N * peak_N / continuous_N /
                                                    slew_beside_ramp_N_per_s(limits));
 }

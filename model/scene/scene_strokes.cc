@@ -103,7 +103,7 @@ class Writer {
   std::vector<HandWaypoint> take() { return std::move(path_); }
 
  private:
-  // p(d) = site + slid - inward (reach - d), here with R handle
+  // p(d) = contact point + slid - inward (reach - d), here with R handle
   Vec3 at_depth(double depth_m) const {
     const Quat r = quat_from_rotation_vector(path_.back().rotation_rad);
     // R offset . inward = offset . R^-1 inward
@@ -156,7 +156,7 @@ void visit_turn(reader::Keys& keys, Stroke& stroke) {
 }  // namespace
 
 void visit_stroke(reader::Keys& keys, Stroke& stroke) {
-  stroke.place = keys.place_of("action");
+  stroke.position = keys.position_of("action");
   keys.one_of("action", kActions, [&](std::size_t index) {
     stroke.action = kActionOf[index];
     switch (stroke.action) {
@@ -194,15 +194,15 @@ double reach_m(std::span<const contact::ProbeSphere> spheres, const Vec3& inward
 std::vector<HandWaypoint> way_points(const HandScript& script,
                                      std::span<const contact::ProbeSphere> spheres,
                                      const Limits& limits, reader::SceneVisit& visit) {
-  const auto refuse = [&](const reader::TextPlace& place, const std::string& why) {
-    visit.note(reader::ProblemKind::kConflict, place, why);
+  const auto refuse = [&](const reader::TextPosition& position, const std::string& why) {
+    visit.note(reader::ProblemKind::kConflict, position, why);
   };
   // A place that the reader did not write himself is told with where it comes from.
   const bool apart = script.handle_m != Vec3{};
   if (const std::optional<Error> error = check_place(script.home_m + script.handle_m, limits))
-    refuse(script.home_place,
+    refuse(script.home_position,
            (apart ? "the handle at hand.home_m + tool.handle_m is " : "hand.home_m is ") +
-               error->sentence);
+               error->message);
   Writer writer(script, spheres);
   for (std::size_t i = 0; i < script.strokes.size(); ++i) {
     const Stroke& stroke = script.strokes[i];
@@ -210,17 +210,17 @@ std::vector<HandWaypoint> way_points(const HandScript& script,
     // An open grip holds nothing: the tool would only leave the surface.
     const bool pulls = stroke.action == Action::kPull || stroke.action == Action::kTear;
     if (pulls && !writer.is_closed())
-      refuse(stroke.place, name + " pulls with an open grip; put a grip stroke before it");
+      refuse(stroke.position, name + " pulls with an open grip; put a grip stroke before it");
     writer.write(stroke);
     // A release ends at home, which has been judged.
     if (stroke.action == Action::kRelease) continue;
     if (const std::optional<Error> error = check_place(writer.position_m(), limits))
-      refuse(stroke.place, fmt::format("{} ends {}at {}", name, apart ? "with the handle " : "",
-                                       error->sentence));
+      refuse(stroke.position,
+             fmt::format("{} ends {}at {}", name, apart ? "with the handle " : "", error->message));
   }
   if (script.repeat && !script.strokes.empty() &&
       script.strokes.back().action != Action::kRelease) {
-    refuse(script.strokes.back().place,
+    refuse(script.strokes.back().position,
            "hand.repeat would make the hand jump home from here; end with a release stroke");
   }
   return writer.take();

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // scene_strokes.h - what the simulated hand does, stroke by stroke, and the way points it becomes.
 //
-//     p(d) = site + slid - inward (reach - d),   reach = max_i (R offset_i . inward + radius_i)
+//     p(d) = contact point + slid - inward (reach - d),   reach = max_i (R offset_i . inward +
+//                                                         radius_i)
 //
 //     p       where the hand wants the tool's origin, W
-//     d       how deep the lowest probe sphere would be, m; at d = 0 it just touches the site
-//     inward  unit direction into the tissue, W;  R: how the tool is turned
+//     d       how deep the lowest probe sphere would be, m; at d = 0 it just touches the contact
+//     point inward  unit direction into the tissue, W;  R: how the tool is turned
 //     slid    sum of the slides since the last release, and of what turns moved the origin along
 //
 // A way point is where the hand wants the handle: p + R handle. A turn leaves tip or handle in
@@ -30,13 +31,13 @@ enum class Action { kPress, kHold, kSlide, kRelease, kGrip, kPull, kTear, kTurn 
 struct Stroke {
   Action action = Action::kHold;
   double duration_s = 0.0;
-  double depth_m = 0.0;       // press
-  double height_m = 0.0;      // pull, tear
-  Vec3 offset_m{};            // slide
-  Vec3 axis{};                // turn; W, any length but zero
-  double angle_rad = 0.0;     // turn; about the axis, from how the tool rests
-  bool about_handle = false;  // turn; else about the tip, the middle of the probe spheres
-  reader::TextPlace place{};  // in the scene file
+  double depth_m = 0.0;             // press
+  double height_m = 0.0;            // pull, tear
+  Vec3 offset_m{};                  // slide
+  Vec3 axis{};                      // turn; W, any length but zero
+  double angle_rad = 0.0;           // turn; about the axis, from how the tool rests
+  bool about_handle = false;        // turn; else about the tip, the middle of the probe spheres
+  reader::TextPosition position{};  // in the scene file
 };
 
 struct HandScript {
@@ -46,7 +47,7 @@ struct HandScript {
   Vec3 handle_m{};  // where the hand and the device hold the tool, tool frame of the file
   bool repeat = false;
   std::vector<Stroke> strokes;
-  reader::TextPlace home_place;  // in the scene file
+  reader::TextPosition home_position;  // in the scene file
 };
 
 /// The keys of one [[hand.stroke]].

@@ -25,7 +25,7 @@ Result<std::unique_ptr<Tissue>> make_tissue(const Scene& scene) {
 
   std::unique_ptr<Tissue> tissue(new Tissue(std::move(*law)));
   tissue->tree_ = contact::make_triangle_tree(scene.organ_mesh.view());
-  tissue->contact_ = {.law = &tissue->law_->site_law(),
+  tissue->contact_ = {.law = &tissue->law_->contact_law(),
                       .parameters = scene.contact,
                       .spheres = scene.tool.spheres,
                       .surface = scene.organ_mesh.view(),

@@ -129,7 +129,7 @@ TissueLawBuilder::Step TissueLawBuilder::add_spring_patch() {
   law_->range_ = {-parameters.working_depth_m, parameters.working_depth_m};
   law_->press_stiffness_N_per_m_ = parameters.coupling_stiffness_N_per_m;
   law_->memory_bytes_ = (*patch)->memory_bytes();
-  law_->site_law_ = std::move(*patch);
+  law_->contact_law_ = std::move(*patch);
   return std::nullopt;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // tissue_law.h - a scene's law made ready to touch: the one owner of curves, tables and memory.
 //
-// Set-up code; what it hands out (SiteLaw) is what the loop calls.
+// Set-up code; what it hands out (ContactLaw) is what the loop calls.
 #pragma once
 
 #include <cmath>
@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "model/contact/contact_law.h"
 #include "model/contact/moved_contact.h"
-#include "model/contact/site_law.h"
 #include "model/result.h"
 #include "model/scene/scene.h"
 #include "model/tissue/elastic_field.h"
@@ -20,7 +20,7 @@ namespace tact::model::scene {
 
 class TissueLaw {
  public:
-  contact::SiteLaw& site_law() const { return *site_law_; }
+  contact::ContactLaw& contact_law() const { return *contact_law_; }
   /// The closed-form law felt where nothing varies, or in the middle of a family; null if stepped.
   const law::Law* curve() const { return curves_.empty() ? nullptr : curves_[curves_.size() / 2]; }
   /// Working range of curve(), less near the held side; of a stepped law, what its parameters say.
@@ -54,7 +54,7 @@ class TissueLaw {
   std::vector<const law::Law*> curves_;           // what the field reads
   std::vector<float> press_coordinate_;           // of each vertex in the family; empty: one curve
   std::vector<float> pull_coordinate_;
-  std::vector<float> rings_times_E_per_m_;  // what its sites are to each other
+  std::vector<float> rings_times_E_per_m_;  // what its contact points are to each other
   std::vector<float> curve_rings_times_E_per_m_;
   std::vector<tissue::TangentTensors> tangent_times_E_per_m_;
   std::vector<Vec3> tilt_times_E_per_m2_;
@@ -62,7 +62,7 @@ class TissueLaw {
   std::vector<contact::SurfaceCorner> corner_;         // of the smooth surface
   std::vector<contact::VertexCompliance> compliance_;  // of each vertex, where the organ bends
   std::optional<contact::BendingOrgan> organ_;
-  std::unique_ptr<contact::SiteLaw> site_law_;
+  std::unique_ptr<contact::ContactLaw> contact_law_;
   law::LawRange range_;
   double pull_limit_N_ = 0.0;
   double press_stiffness_N_per_m_ = 0.0, pull_stiffness_N_per_m_ = 0.0;

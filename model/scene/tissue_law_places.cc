@@ -27,8 +27,8 @@ double stiffer_N_per_m(double a, double b) { return a >= b || std::isnan(a) ? a 
 
 /// One law everywhere, or in series with the give of each place.
 TissueLawBuilder::Step TissueLawBuilder::finish_curve(const law::Law& curve) {
-  if (scene_.varies_by_place)
-    return scene_.compliance.large_strain ? bend(curve) : vary_by_place(curve);
+  if (scene_.varies_over_surface)
+    return scene_.compliance.large_strain ? bend(curve) : vary_over_surface(curve);
   law_->curves_.push_back(&curve);
   if (draws_tissue_) return finish_field();
   auto shape = indent::half_space_under(scene_.tool.spheres[0].radius_m, curve.range().press_m);
@@ -36,9 +36,9 @@ TissueLawBuilder::Step TissueLawBuilder::finish_curve(const law::Law& curve) {
   return finish_field(&keep(std::move(*shape)));
 }
 
-// The law is the tip's own dent, the same everywhere; each curve of the family adds its give, which
-// is one of small strain.
-TissueLawBuilder::Step TissueLawBuilder::vary_by_place(const law::Law& curve) {
+// The law is the tip's own indentation, the same everywhere; each curve of the family adds its
+// give, which is one of small strain.
+TissueLawBuilder::Step TissueLawBuilder::vary_over_surface(const law::Law& curve) {
   auto family = read_scene_family(scene_, false);
   if (!family) return family.error();
   const law::LawRange range = curve.range();
@@ -61,7 +61,7 @@ TissueLawBuilder::Step TissueLawBuilder::vary_by_place(const law::Law& curve) {
   return finish_field();
 }
 
-// The law is the tip's own dent; the organ moves with its compliance, by finite rotations.
+// The law is the tip's own indentation; the organ moves with its compliance, by finite rotations.
 TissueLawBuilder::Step TissueLawBuilder::bend(const law::Law& curve) {
   const auto tip_radius_m = scene_tip_radius_m(scene_);
   if (!tip_radius_m) return tip_radius_m.error();
@@ -81,7 +81,7 @@ TissueLawBuilder::Step TissueLawBuilder::bend(const law::Law& curve) {
       *map, surface, law_->corner_,
       {.min_normal_times_E_per_m = (1.0 / kStiffestTip_ratio - 1.0) * modulus_Pa / stiffest_N_per_m,
        .min_sideways_times_E_per_m =
-           (1.0 / contact::kStiffestPlace - 1.0) * modulus_Pa / held_N_per_m});
+           (1.0 / contact::kMaxStiffness_ratio - 1.0) * modulus_Pa / held_N_per_m});
   auto relaxation = make_relaxation(scene_.relaxation, 1.0 / scene_.rate_Hz);
   if (!relaxation) return blame(relaxation.error());
   law_->organ_ = {.surface = {surface, law_->corner_, law_->compliance_, modulus_Pa},
@@ -112,7 +112,7 @@ TissueLawBuilder::Step TissueLawBuilder::finish_field(const law::Law* shape) {
     law_->pull_stiffness_N_per_m_ *= kStiffestTip_ratio;
   }
   law_->range_ = law_->curve()->range();
-  law_->site_law_ = std::make_unique<tissue::ElasticField>(
+  law_->contact_law_ = std::make_unique<tissue::ElasticField>(
       tissue::ElasticFieldParts{.curves = law_->curves_,
                                 .coordinate = law_->press_coordinate_,
                                 .pull_coordinate = law_->pull_coordinate_,

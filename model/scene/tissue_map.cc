@@ -39,7 +39,7 @@ Result<tissue::ComplianceMap> read_scene_map(const Scene& scene) {
         fmt::format("{}: compliance.map names {}, no such file; correct it, or make it: {}",
                     scene.path, path, command)};
   auto map = read_compliance_map(path);
-  if (!map) return Error{fmt::format("{}: {}", map.error().sentence, command)};
+  if (!map) return Error{fmt::format("{}: {}", map.error().message, command)};
   const ElasticSettings& e = *scene.elastic;
   if (map->mesh_hash != surface_hash(scene.organ_mesh.view()))
     return Error{fmt::format("{} belongs to another organ mesh; make one: {}", path, command)};
@@ -60,7 +60,7 @@ Result<double> scene_tip_radius_m(const Scene& scene) {
     // One family of curves is made for one tip.
     if (sphere.radius_m != spheres[0].radius_m)
       return Error{fmt::format(
-          "{}: tool.sphere has radii of {} and {} m, but compliance, varies_by_place and "
+          "{}: tool.sphere has radii of {} and {} m, but compliance, varies_over_surface and "
           "rhombus.area_m2 know one tip; give every sphere one radius_m, or choose another law and "
           "leave these keys out",
           scene.path, spheres[0].radius_m, sphere.radius_m)};
@@ -69,7 +69,7 @@ Result<double> scene_tip_radius_m(const Scene& scene) {
 
 Result<std::vector<float>> read_scene_compliance(const Scene& scene) {
   std::vector<float> out;
-  if (!scene.varies_by_place) return out;
+  if (!scene.varies_over_surface) return out;
   auto map = read_scene_map(scene);
   if (!map) return map.error();
   out = std::move(map->regular_times_E_per_m);
@@ -89,7 +89,7 @@ Result<tissue::ComplianceFamily> read_scene_family(const Scene& scene, bool larg
                                               .working_depth_m = scene.compliance.working_depth_m,
                                               .curves = scene.compliance.curves,
                                               .table_knots = scene.table_knots});
-  if (!family) return Error{scene.path + ": " + family.error().sentence};
+  if (!family) return Error{scene.path + ": " + family.error().message};
   return family;
 }
 

@@ -28,12 +28,12 @@ PatchRegion::PatchRegion(PatchSurface surface, double node_mass_kg, std::size_t 
   const std::size_t n = surface_.mesh.vertex_m.size();
   slot_of_.assign(n, kNoSlot);
   kept_m_.assign(n, {});
-  is_lip_.assign(n, 0);
+  is_cut_edge_.assign(n, 0);
   edge_is_cut_.assign(surface_.edge.size(), 0);
   triangle_is_cut_.assign(surface_.mesh.triangle.size(), 0);
   cut_triangle_.resize(kMaxCutTriangles);
   // Each cut triangle has three corners.
-  lip_.resize(3 * kMaxCutTriangles);
+  cut_edge_.resize(3 * kMaxCutTriangles);
 }
 
 std::size_t PatchRegion::memory_bytes() const {
@@ -80,7 +80,7 @@ bool PatchRegion::holds(std::uint32_t triangle) const RT_SAFE {
 
 void PatchRegion::rest() RT_SAFE {
   for (std::size_t i = 0; i < count_; ++i) slot_of_[vertex_[i]] = kNoSlot;
-  for (std::size_t i = 0; i < cut_edges_; ++i) kept_m_[lip_[i]] = {};
+  for (std::size_t i = 0; i < cut_edges_; ++i) kept_m_[cut_edge_[i]] = {};
   count_ = springs_ = 0;
   rest_energy_J_ = cut_energy_J_ = energy_deficit_J_ = 0.0;
 }
@@ -118,7 +118,7 @@ void PatchRegion::gather(std::span<const std::uint32_t> triangles) RT_SAFE {
   for (std::size_t i = 0; i < old_count; ++i) {
     const std::uint32_t v = old_vertex_[i];
     const Vec3 moved_m = old_position_m_[i] - surface_.mesh.vertex_m[v];
-    if (is_lip_[v] != 0)
+    if (is_cut_edge_[v] != 0)
       kept_m_[v] = {static_cast<float>(moved_m.x), static_cast<float>(moved_m.y),
                     static_cast<float>(moved_m.z)};
     slot_of_[v] = kNoSlot;
@@ -179,7 +179,7 @@ void PatchRegion::connect() RT_SAFE {
     }
     if (node_inverse_mass_per_kg_[i] > 0.0) continue;
     velocity_mps_[i] = {};
-    if (is_lip_[vertex_[i]] != 0) continue;
+    if (is_cut_edge_[vertex_[i]] != 0) continue;
     position_m_[i] = rest_m_[i];
     memory_.forget(i, rest_m_[i]);
   }
@@ -242,9 +242,9 @@ bool PatchRegion::open(std::uint32_t edge) RT_SAFE {
     triangle_is_cut_[t] = 1;
     cut_triangle_[cut_triangles_++] = t;
     for (const std::uint32_t v : surface_.mesh.triangle[t]) {
-      if (is_lip_[v] != 0) continue;
-      is_lip_[v] = 1;
-      lip_[cut_edges_++] = v;
+      if (is_cut_edge_[v] != 0) continue;
+      is_cut_edge_[v] = 1;
+      cut_edge_[cut_edges_++] = v;
     }
   }
   return true;

@@ -71,8 +71,10 @@ class PatchRegion {
   std::span<const std::uint32_t> cut_triangles() const RT_SAFE {
     return {cut_triangle_.data(), cut_triangles_};
   }
-  std::span<const std::uint32_t> cut_edges() const RT_SAFE { return {lip_.data(), cut_edges_}; }
-  bool is_lip(std::uint32_t vertex) const RT_SAFE { return is_lip_[vertex] != 0; }
+  std::span<const std::uint32_t> cut_edges() const RT_SAFE {
+    return {cut_edge_.data(), cut_edges_};
+  }
+  bool is_cut_edge(std::uint32_t vertex) const RT_SAFE { return is_cut_edge_[vertex] != 0; }
   std::size_t memory_bytes() const;
 
  private:
@@ -98,8 +100,8 @@ class PatchRegion {
   // of the whole mesh
   std::vector<std::uint32_t> slot_of_;
   std::vector<std::array<float, 3>> kept_m_;
-  std::vector<std::uint8_t> is_lip_, edge_is_cut_, triangle_is_cut_;
-  std::vector<std::uint32_t> cut_triangle_, lip_;
+  std::vector<std::uint8_t> is_cut_edge_, edge_is_cut_, triangle_is_cut_;
+  std::vector<std::uint32_t> cut_triangle_, cut_edge_;
   std::size_t cut_triangles_ = 0, cut_edges_ = 0;
 };
 

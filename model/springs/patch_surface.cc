@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "model/contact/site_law.h"
+#include "model/contact/contact_law.h"
 
 namespace tact::model::springs {
 namespace {
@@ -64,7 +64,8 @@ double anchor_of_compliance_N_per_m(const PatchTissue& tissue, double more_m_per
   const double modulus =
       std::max(std::numbers::sqrt3 * across_N_per_m(tissue), kMinModulus_N_per_m);
   const double mean_m_per_N = compliance_m_per_N(modulus, tissue.body_stiffness_N_per_m);
-  const double give = std::max(mean_m_per_N + more_m_per_N, mean_m_per_N / contact::kStiffestPlace);
+  const double give =
+      std::max(mean_m_per_N + more_m_per_N, mean_m_per_N / contact::kMaxStiffness_ratio);
   const double all_waves = 4.0 * std::numbers::pi * modulus;
   return all_waves / std::expm1(all_waves * give / kShortWaves);
 }

@@ -70,7 +70,7 @@ struct SpringNetwork {
 /// w of a probe at these positions.
 double indentation_m(const ProbeSpring& probe, std::span<const Vec3> position_m,
                      std::span<const Vec3> rest_m) RT_SAFE;
-/// Force of the virtual spring on the tool at a dent w.
+/// Force of the virtual spring on the tool at an indentation w.
 double probe_force_N(const ProbeSpring& probe, double indentation_m) RT_SAFE;
 
 /// MA-1 for every node, into force_N; returns the energy stored in springs, anchors and loads.

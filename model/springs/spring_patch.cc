@@ -17,8 +17,8 @@ namespace {
 // the room at most, or an old cut would hide the contact.
 constexpr double kShownMove_m = 1e-6;
 constexpr double kLostIndentations =
-    10.0;  // a dent of so many working depths is no tissue any more
-constexpr std::size_t kShownLips = contact::kMaxShapeNodes / 2;
+    10.0;  // an indentation of so many working depths is no tissue any more
+constexpr std::size_t kShownCutEdges = contact::kMaxShapeNodes / 2;
 
 const char* parameter_error(const SpringPatchParameters& p) {
   const PatchTissue& t = p.tissue;
@@ -123,26 +123,27 @@ void SpringPatch::leave(std::size_t sphere) RT_SAFE {
     broke_ = false;
 }
 
-contact::SiteResponse SpringPatch::respond(const contact::Indentation& in) RT_SAFE {
+contact::ContactLawResponse SpringPatch::respond(const contact::Indentation& in) RT_SAFE {
   if (in.sphere >= contact::kMaxSpheres) return {.law = {.status = law::LawStatus::kInvalid}};
   // Whatever is answered with no force below must not be stepped either.
   Touch& sphere_contact = contact_[in.sphere];
   sphere_contact = {};
   const contact::SurfaceView& mesh = region_.surface().mesh;
-  if (!std::isfinite(in.indentation_m) || !is_a_place(in.place, mesh))
+  if (!std::isfinite(in.indentation_m) || !is_on_surface(in.surface_point, mesh))
     return {.law = {.status = law::LawStatus::kInvalid}};
   if (in.indentation_m <= 0.0 && !in.held) return {.law = {.status = law::LawStatus::kNoContact}};
   const double limit_m = parameters_.working_depth_m;
   const double depth_m = std::clamp(in.indentation_m, -limit_m, limit_m);
-  sphere_contact = {.active = true, .held = in.held, .depth_m = depth_m, .place = in.place};
+  sphere_contact = {
+      .active = true, .held = in.held, .depth_m = depth_m, .surface_point = in.surface_point};
   if (broke_) return {.law = {.status = law::LawStatus::kSingular}};
 
-  const contact::TriangleCorners& corner = mesh.triangle[in.place.triangle];
+  const contact::TriangleCorners& corner = mesh.triangle[in.surface_point.triangle];
   std::array<double, 3> indentation{};
   double w_m = 0.0;
   for (std::size_t c = 0; c < 3; ++c) {
     indentation[c] = -dot(mesh.vertex_normal[corner[c]], region_.moved_m(corner[c]));
-    w_m += in.place.weight[c] * indentation[c];
+    w_m += in.surface_point.weight[c] * indentation[c];
   }
   const double q = parameters_.coupling_stiffness_N_per_m;
   if (!(std::abs(w_m) <= kLostIndentations * limit_m)) {
@@ -151,10 +152,11 @@ contact::SiteResponse SpringPatch::respond(const contact::Indentation& in) RT_SA
   }
   // Without a grip the virtual spring never pulls.
   const double stretch_m = in.held ? depth_m - w_m : std::max(depth_m - w_m, 0.0);
-  contact::SiteResponse out{.law = {.force_N = q * stretch_m,
-                                    .stiffness_N_per_m = stretch_m != 0.0 ? q : 0.0,
-                                    .energy_J = 0.5 * q * stretch_m * stretch_m + network_energy_J_,
-                                    .status = law::LawStatus::kOk}};
+  contact::ContactLawResponse out{
+      .law = {.force_N = q * stretch_m,
+              .stiffness_N_per_m = stretch_m != 0.0 ? q : 0.0,
+              .energy_J = 0.5 * q * stretch_m * stretch_m + network_energy_J_,
+              .status = law::LawStatus::kOk}};
   if (depth_m != in.indentation_m) {
     out.law.energy_J += out.law.force_N * (in.indentation_m - depth_m);
     out.law.stiffness_N_per_m = 0.0;
@@ -165,14 +167,15 @@ contact::SiteResponse SpringPatch::respond(const contact::Indentation& in) RT_SA
 }
 
 // 1 / q + that of the place: linear over each triangle.
-contact::TangentCompliance SpringPatch::tangent_compliance(const contact::Place& place, bool,
-                                                           const contact::Axes&) const RT_SAFE {
+contact::TangentCompliance SpringPatch::tangent_compliance(
+    const contact::SurfacePoint& surface_point, bool, const contact::Axes&) const RT_SAFE {
   const PatchSurface& surface = region_.surface();
-  if (!is_a_place(place, surface.mesh)) return {};
+  if (!is_on_surface(surface_point, surface.mesh)) return {};
   double compliance_m_per_N = 1.0 / parameters_.coupling_stiffness_N_per_m;
   for (std::size_t c = 0; c < 3; ++c)
     compliance_m_per_N +=
-        place.weight[c] * surface.sideways_m_per_N[surface.mesh.triangle[place.triangle][c]];
+        surface_point.weight[c] *
+        surface.sideways_m_per_N[surface.mesh.triangle[surface_point.triangle][c]];
   return {.rest_m_per_N = {.xx = compliance_m_per_N, .yy = compliance_m_per_N}};
 }
 
@@ -183,7 +186,7 @@ void SpringPatch::follow_contacts() RT_SAFE {
   bool must_gather = false;
   for (std::size_t i = 0; i < contact::kMaxSpheres; ++i) {
     if (!contact_[i].active) continue;
-    const std::uint32_t t = contact_[i].place.triangle;
+    const std::uint32_t t = contact_[i].surface_point.triangle;
     triangle[count++] = t;
     // In a very small region even the touched triangle is
     // at the rim: it must not gather in every tick.
@@ -191,7 +194,7 @@ void SpringPatch::follow_contacts() RT_SAFE {
   }
   if (!must_gather) return;
   for (std::size_t i = 0; i < contact::kMaxSpheres; ++i)
-    gathered_[i] = contact_[i].active ? contact_[i].place.triangle : contact::kNoTriangle;
+    gathered_[i] = contact_[i].active ? contact_[i].surface_point.triangle : contact::kNoTriangle;
   region_.gather({triangle.data(), count});
 }
 
@@ -202,14 +205,14 @@ std::span<const ProbeSpring> SpringPatch::probes() RT_SAFE {
   for (const Touch& sphere_contact : contact_) {
     if (!sphere_contact.active) continue;
     ProbeSpring& probe = probe_[count];
-    probe = {.weight = sphere_contact.place.weight,
+    probe = {.weight = sphere_contact.surface_point.weight,
              .depth_m = sphere_contact.depth_m,
              .stiffness_N_per_m = q,
              .damping_Ns_per_m = parameters_.tissue.damping_time_s * q,
              .held = sphere_contact.held};
     bool inside = true;
     for (std::size_t c = 0; c < 3; ++c) {
-      const std::uint32_t v = mesh.triangle[sphere_contact.place.triangle][c];
+      const std::uint32_t v = mesh.triangle[sphere_contact.surface_point.triangle][c];
       probe.node[c] = region_.slot_of(v);
       probe.push[c] = -mesh.vertex_normal[v];
       if (probe.node[c] == kNoSlot)
@@ -273,10 +276,11 @@ bool SpringPatch::shape(contact::PatchShape& out) RT_SAFE {
                                             static_cast<float>(moved_m.z)};
   };
   const std::span<const std::uint32_t> cut_edges = region_.cut_edges();
-  const std::size_t newest = cut_edges.size() - std::min(cut_edges.size(), kShownLips);
+  const std::size_t newest = cut_edges.size() - std::min(cut_edges.size(), kShownCutEdges);
   for (const std::uint32_t v : cut_edges.subspan(newest)) show(v);
   for (const std::uint32_t v : region_.vertices())
-    if (out.node_count < contact::kMaxShapeNodes && (newest > 0 || !region_.is_lip(v))) show(v);
+    if (out.node_count < contact::kMaxShapeNodes && (newest > 0 || !region_.is_cut_edge(v)))
+      show(v);
   const std::span<const std::uint32_t> cut = region_.cut_triangles();
   // The window goes round the list: a viewer that lost some frames learns of all cuts in the end.
   if (next_cut_ >= cut.size()) next_cut_ = 0;

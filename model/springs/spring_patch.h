@@ -4,31 +4,32 @@
 //     nodes     vertices of the surface near the contact (patch_region.h), mass m each
 //     springs   along the edges, and from every node to its rest position (patch_surface.h)
 //     tool      W = q (d - w(s))^2 / 2 + springs,  F = dW/dd = q (d - w),  F_s = dW/ds = -F grad w
-//               w(s) = sum of weight_i(s) (-n_i).(x_i - X_i)        dent at the place s
+//               w(s) = sum of weight_i(s) (-n_i).(x_i - X_i)        indentation at the place s
 //     tick      substeps of an integrator (integrators.h) with d and s held
 //
 //     d  depth of the tool, m    q  coupling, N/m    n_i  vertex normal    x, X  position, rest, m
 //
 // The virtual spring q stands between tool and nodes: it is all the stiffness that the hand can
-// meet in one tick, it never pulls unless the site is held, and its reaction falls on the corners
-// with the same weights and directions with which w is read. So W is one potential for any place,
-// also across an edge, and the tool can only get back what it stored; springs and drag take the
-// rest. Tissue that relaxes shares its energy out (patch_memory.h); the virtual spring does not.
+// meet in one tick, it never pulls unless the contact point is held, and its reaction falls on the
+// corners with the same weights and directions with which w is read. So W is one potential for any
+// place, also across an edge, and the tool can only get back what it stored; springs and drag take
+// the rest. Tissue that relaxes shares its energy out (patch_memory.h); the virtual spring does
+// not.
 //
 // Sideways the tool drags its place with that give, and the nodes do not move (MA-21): the virtual
 // spring and the tissue in a row, whatever the radius, since a node is the smallest contact.
 //
 // Valid for |d| <= working_depth_m; beyond, the force is that of the limit and kSaturated. Cost a
-// tick: the region's nodes, whatever the mesh. Should the nodes leave the finite numbers, or a dent
-// ten times the working depth, they are put to rest and the patch gives zero force and kSingular
-// until every sphere has left; the step check at make keeps that from happening.
+// tick: the region's nodes, whatever the mesh. Should the nodes leave the finite numbers, or an
+// indentation ten times the working depth, they are put to rest and the patch gives zero force and
+// kSingular until every sphere has left; the step check at make keeps that from happening.
 // Source: MA-1 to MA-9; coupling and cut are ours.
 #pragma once
 
 #include <array>
 #include <memory>
 
-#include "model/contact/site_law.h"
+#include "model/contact/contact_law.h"
 #include "model/result.h"
 #include "model/springs/integrators.h"
 #include "model/springs/patch_region.h"
@@ -49,10 +50,11 @@ struct SpringPatchParameters {
   law::Relaxation relaxation{};  // made for tick_s; of springs and anchors, not of the coupling
 };
 
-class SpringPatch final : public contact::SiteLaw {
+class SpringPatch final : public contact::ContactLaw {
  public:
-  contact::SiteResponse respond(const contact::Indentation& in) RT_SAFE override;
-  contact::TangentCompliance tangent_compliance(const contact::Place& place, bool held,
+  contact::ContactLawResponse respond(const contact::Indentation& in) RT_SAFE override;
+  contact::TangentCompliance tangent_compliance(const contact::SurfacePoint& surface_point,
+                                                bool held,
                                                 const contact::Axes& axes) const RT_SAFE override;
   void leave(std::size_t sphere) RT_SAFE override;
   void cut(const contact::BladeSweep& sweep) RT_SAFE override { region_.cut(sweep); }
@@ -80,7 +82,7 @@ class SpringPatch final : public contact::SiteLaw {
     bool active = false;
     bool held = false;
     double depth_m = 0.0;
-    contact::Place place{};
+    contact::SurfacePoint surface_point{};
   };
 
   SpringPatch(PatchSurface surface, const SpringPatchParameters& parameters);

@@ -35,7 +35,7 @@ struct StepLimit {
 
 StepLimit step_limit(const SpringNetwork& network, const Method& method, const ProbeLoad& probe);
 
-/// The sentence that says what to change, or nothing.
+/// The message that says what to change, or nothing.
 std::optional<Error> check_step(const SpringNetwork& network, const StepRule& rule,
                                 const ProbeLoad& probe);
 

@@ -17,14 +17,14 @@ struct Give {
   std::size_t limited_vertices = 0;
 };
 
-/// CF-3, each limited to kStiffestPlace.
+/// CF-3, each limited to kMaxStiffness_ratio.
 Give give_of(const ComplianceMap& map, const indent::ElasticTip& tip) {
   const double disc = 1.0 / tip.pulled_stiffness_N_per_m();
   const double side = 1.0 / tip.sideways_stiffness_N_per_m();
   const double sphere = 1.0 / tip.stiffest_press_N_per_m();
-  // r at which a place is kStiffestPlace times as stiff; the
+  // r at which a place is kMaxStiffness_ratio times as stiff; the
   // smaller give keeps press and pull both within it.
-  const double least = (1.0 / contact::kStiffestPlace - 1.0) * std::min(disc, sphere);
+  const double least = (1.0 / contact::kMaxStiffness_ratio - 1.0) * std::min(disc, sphere);
   Give out;
   for (std::size_t v = 0; v < map.vertices(); ++v) {
     const auto scaled = [&tip](float times_E_per_m) {
@@ -34,7 +34,8 @@ Give give_of(const ComplianceMap& map, const indent::ElasticTip& tip) {
     const SidewaysCompliance& s = map.sideways_times_E_per_m[v];
     // n^2 / (c_side + s), where s, too, is limited: errors of the map may not turn its sign.
     const auto kept = [&](float n, float own) {
-      return scaled(n) * scaled(n) / std::max(side + scaled(own), side / contact::kStiffestPlace);
+      return scaled(n) * scaled(n) /
+             std::max(side + scaled(own), side / contact::kMaxStiffness_ratio);
     };
     // CF-3  r_pull = r - n1^2/(c_side + s1) - n2^2/(c_side + s2)
     const double pull = r - kept(s.n1, s.s1) - kept(s.n2, s.s2);
@@ -118,16 +119,16 @@ std::vector<TangentTensors> tangent_compliance(const ComplianceMap& map,
     const SidewaysCompliance& g = map.sideways_times_E_per_m[v];
     const Vec3 a1 = vector_of(g.axis), a2 = cross(vertex_normal[v], a1);
     const auto no_stiffer = [side](float s) {
-      return std::max(static_cast<double>(s), (1.0 / contact::kStiffestPlace - 1.0) * side);
+      return std::max(static_cast<double>(s), (1.0 / contact::kMaxStiffness_ratio - 1.0) * side);
     };
     const double s1 = no_stiffer(g.s1), s2 = no_stiffer(g.s2);
     // CF-4, with as much of n as leaves S_held within the limit
     const double n1 = static_cast<double>(g.n1), n2 = static_cast<double>(g.n2);
     const double normal = std::max(disc + static_cast<double>(map.regular_times_E_per_m[v]),
-                                   disc / contact::kStiffestPlace);
-    // How much of S may go until that direction is kStiffestPlace times as stiff.
+                                   disc / contact::kMaxStiffness_ratio);
+    // How much of S may go until that direction is kMaxStiffness_ratio times as stiff.
     const auto room = [side](double s) {
-      return std::max(s + (1.0 - 1.0 / contact::kStiffestPlace) * side, 1e-9 * side);
+      return std::max(s + (1.0 - 1.0 / contact::kMaxStiffness_ratio) * side, 1e-9 * side);
     };
     const double most = n1 * n1 / room(s1) + n2 * n2 / room(s2);
     const double share = 1.0 / std::max(normal, most);

@@ -14,7 +14,8 @@
 // (compliance_family_test.cc).
 //
 // Close to the held side the organ is stiffer than its own surface can show: r is limited so that a
-// place is at most kStiffestPlace (site_law.h) times as stiff as a half-space. Set-up code only.
+// place is at most kMaxStiffness_ratio (contact_law.h) times as stiff as a half-space. Set-up code
+// only.
 #pragma once
 
 #include <span>
@@ -32,7 +33,7 @@ struct ComplianceFamily {
   std::vector<float> press_coordinate;         // kappa of r, n vertices
   std::vector<float> pull_coordinate;          // kappa of r_pull, n vertices
   std::vector<float> ring_times_E_per_m;       // of curve k, as its shape has it, at [k N + j - 1]
-  std::size_t limited_vertices = 0;            // vertices held to kStiffestPlace
+  std::size_t limited_vertices = 0;            // vertices held to kMaxStiffness_ratio
 
   /// What the loop may touch.
   std::size_t memory_bytes() const {
@@ -54,8 +55,8 @@ struct ComplianceFamilyParameters {
 ///
 ///     CF-4   S = s1 a1 a1' + s2 a2 a2',   S_held = S - n n' / (c_disc + r),   n = n1 a1 + n2 a2
 ///
-/// so limited that no direction is more than kStiffestPlace times as stiff as on a half-space. The
-/// normals are those of the surface that the map was made of.
+/// so limited that no direction is more than kMaxStiffness_ratio times as stiff as on a half-space.
+/// The normals are those of the surface that the map was made of.
 std::vector<TangentTensors> tangent_compliance(const ComplianceMap& map,
                                                std::span<const Vec3> vertex_normal,
                                                double tip_radius_m);

@@ -33,14 +33,14 @@ std::span<const float> ElasticField::coordinate(double depth_m) const RT_SAFE {
                                                           : parts_.coordinate;
 }
 
-ElasticField::Blend ElasticField::blend_at(const contact::Place& place,
+ElasticField::Blend ElasticField::blend_at(const contact::SurfacePoint& surface_point,
                                            double depth_m) const RT_SAFE {
   if (parts_.curves.size() < 2) return {};
   const std::span<const float> of_vertex = coordinate(depth_m);
-  const contact::TriangleCorners& corner = parts_.surface.triangle[place.triangle];
+  const contact::TriangleCorners& corner = parts_.surface.triangle[surface_point.triangle];
   double kappa = 0.0;
   for (std::size_t i = 0; i < 3; ++i)
-    kappa += place.weight[i] * static_cast<double>(of_vertex[corner[i]]);
+    kappa += surface_point.weight[i] * static_cast<double>(of_vertex[corner[i]]);
   // The last curve has none above it: there f is 1.
   const std::size_t last = parts_.curves.size() - 2;
   const std::size_t low = kappa > 0.0 ? std::min(static_cast<std::size_t>(kappa), last) : 0;
@@ -60,9 +60,9 @@ Vec3 ElasticField::coordinate_slope(std::uint32_t triangle, double depth_m) cons
   return cross(twice_area, sum) / dot(twice_area, twice_area);
 }
 
-ElasticField::Part ElasticField::part_at(const contact::Place& place,
+ElasticField::Part ElasticField::part_at(const contact::SurfacePoint& surface_point,
                                          double depth_m) const RT_SAFE {
-  const Blend blend = blend_at(place, depth_m);
+  const Blend blend = blend_at(surface_point, depth_m);
   // Energies are blended, and with the same f forces: so F stays dU/dd between two curves.
   const law::LawResponse soft = parts_.curves[blend.low]->respond(depth_m);
   if (parts_.curves.size() < 2) return {.law = soft};
@@ -73,25 +73,25 @@ ElasticField::Part ElasticField::part_at(const contact::Place& place,
                                        f * (stiff.stiffness_N_per_m - soft.stiffness_N_per_m),
                   .energy_J = soft.energy_J + f * step_J,
                   .status = worse(soft.status, stiff.status)},
-          .slope_N = step_J * coordinate_slope(place.triangle, depth_m)};
+          .slope_N = step_J * coordinate_slope(surface_point.triangle, depth_m)};
 }
 
 // Where nothing varies, the place does not matter.
 bool ElasticField::is_known(const contact::Indentation& in) const RT_SAFE {
   return in.sphere < contact::kMaxSpheres && std::isfinite(in.indentation_m) &&
-         (parts_.curves.size() < 2 || is_a_place(in.place, parts_.surface));
+         (parts_.curves.size() < 2 || is_on_surface(in.surface_point, parts_.surface));
 }
 
-contact::SiteResponse ElasticField::respond(const contact::Indentation& in) RT_SAFE {
+contact::ContactLawResponse ElasticField::respond(const contact::Indentation& in) RT_SAFE {
   if (!is_known(in)) return {.law = {.status = law::LawStatus::kInvalid}};
   const law::Relaxation& relaxation = parts_.relaxation;
   law::RelaxationState& next = next_[in.sphere];
   // From now_, not from next_: asked again in the same tick, the last answer counts.
   if (relaxation.terms() > 0) next = relaxation.after(now_[in.sphere], in.indentation_m, in.held);
-  contact::SiteResponse sum{};
+  contact::ContactLawResponse sum{};
   for (std::size_t i = 0; i <= relaxation.terms(); ++i) {
     const double depth_m = i == 0 ? in.indentation_m : next.stretch_m[i - 1];
-    const Part part = part_at(in.place, depth_m);
+    const Part part = part_at(in.surface_point, depth_m);
     // RX-4: q of this tick, for the next one.
     if (i > 0) next.flow_ratio[i - 1] = law::flow_ratio(depth_m, part.law);
     const double g = relaxation.share(i);
@@ -107,7 +107,7 @@ contact::SiteResponse ElasticField::respond(const contact::Indentation& in) RT_S
 // b is blended as the energy is.
 double ElasticField::resistance_N(const contact::Indentation& in, double force_N) const RT_SAFE {
   if (!parts_.damps || !is_known(in)) return 0.0;
-  const Blend blend = blend_at(in.place, in.indentation_m);
+  const Blend blend = blend_at(in.surface_point, in.indentation_m);
   double b_Ns_per_m = parts_.curves[blend.low]->damping_Ns_per_m(in.indentation_m);
   if (parts_.curves.size() > 1)
     b_Ns_per_m += blend.fraction *
@@ -116,35 +116,36 @@ double ElasticField::resistance_N(const contact::Indentation& in, double force_N
 }
 
 // g between two rings is linear, within the first and beyond the last it stays.
-double ElasticField::regular_m_per_N(const contact::Place& place, double distance_m) const RT_SAFE {
+double ElasticField::regular_m_per_N(const contact::SurfacePoint& surface_point,
+                                     double distance_m) const RT_SAFE {
   const ElasticNeighbours& near = parts_.neighbours;
-  if (near.rings == 0 || !is_a_place(place, parts_.surface)) return 0.0;
+  if (near.rings == 0 || !is_on_surface(surface_point, parts_.surface)) return 0.0;
   const double last = static_cast<double>(near.rings - 1);
   const double at = std::clamp(distance_m / near.ring_pitch_m - 1.0, 0.0, last);
   const auto low = static_cast<std::size_t>(at), high = std::min(low + 1, near.rings - 1);
   const double f = at - static_cast<double>(low);
   double sum = 0.0;
   for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t row = parts_.surface.triangle[place.triangle][i] * near.rings;
+    const std::size_t row = parts_.surface.triangle[surface_point.triangle][i] * near.rings;
     const double g_low = static_cast<double>(near.ring_times_E_per_m[row + low]);
     const double g_high = static_cast<double>(near.ring_times_E_per_m[row + high]);
-    sum += place.weight[i] * (g_low + f * (g_high - g_low));
+    sum += surface_point.weight[i] * (g_low + f * (g_high - g_low));
   }
   return sum / near.youngs_modulus_Pa;
 }
 
-contact::SiteCoupling ElasticField::coupling(const contact::Indentation& a,
-                                             const contact::Indentation& b,
-                                             double distance_m) const RT_SAFE {
+contact::ContactCoupling ElasticField::coupling(const contact::Indentation& a,
+                                                const contact::Indentation& b,
+                                                double distance_m) const RT_SAFE {
   const double modulus_Pa = parts_.neighbours.contact_modulus_Pa;
   if (!(modulus_Pa > 0.0) || !(distance_m > 0.0)) return {};
   // MC-2   h = 1 / (pi E* s) + min(g, 0),   b = max(g, 0)
   const double half_space_m_per_N = 1.0 / (std::numbers::pi * modulus_Pa * distance_m);
-  const double map_m_per_N =
-      0.5 * (regular_m_per_N(a.place, distance_m) + regular_m_per_N(b.place, distance_m));
-  return {.skin_m_per_N =
+  const double map_m_per_N = 0.5 * (regular_m_per_N(a.surface_point, distance_m) +
+                                    regular_m_per_N(b.surface_point, distance_m));
+  return {.near_field_m_per_N =
               std::max(half_space_m_per_N + std::min(map_m_per_N, 0.0), 0.0),  // the map has errors
-          .lobe_m_per_N = std::max(map_m_per_N, 0.0)};
+          .structural_m_per_N = std::max(map_m_per_N, 0.0)};
 }
 
 double ElasticField::fade_ratio() const RT_SAFE {
@@ -154,11 +155,12 @@ double ElasticField::fade_ratio() const RT_SAFE {
   return sum;
 }
 
-double ElasticField::stiffest_N_per_m(const contact::Place& place, bool held) const RT_SAFE {
+double ElasticField::stiffest_N_per_m(const contact::SurfacePoint& surface_point,
+                                      bool held) const RT_SAFE {
   if (parts_.curves.size() < 2) return stiffest_N_per_m_[0];
-  if (!is_a_place(place, parts_.surface)) return 0.0;
+  if (!is_on_surface(surface_point, parts_.surface)) return 0.0;
   const auto at = [&](double depth_m) RT_SAFE {
-    const Blend blend = blend_at(place, depth_m);
+    const Blend blend = blend_at(surface_point, depth_m);
     const double soft = stiffest_N_per_m_[blend.low];
     return soft + blend.fraction * (stiffest_N_per_m_[blend.low + 1] - soft);
   };
@@ -167,7 +169,8 @@ double ElasticField::stiffest_N_per_m(const contact::Place& place, bool held) co
 }
 
 contact::TangentCompliance ElasticField::tangent_compliance(
-    const contact::Place& place, bool held, const contact::Axes& axes) const RT_SAFE {
+    const contact::SurfacePoint& surface_point, bool held,
+    const contact::Axes& axes) const RT_SAFE {
   const ElasticNeighbours& near = parts_.neighbours;
   if (!(near.contact_modulus_Pa > 0.0)) return {};
   const double nu = near.poisson_ratio;
@@ -175,13 +178,14 @@ contact::TangentCompliance ElasticField::tangent_compliance(
   contact::TangentCompliance give{
       .contact_m2_per_N = (2.0 - nu) / (4.0 * (1.0 - nu) * near.contact_modulus_Pa),
       .rest_m_per_N = {}};
-  if (near.tangent_times_E_per_m.empty() || !is_a_place(place, parts_.surface)) return give;
+  if (near.tangent_times_E_per_m.empty() || !is_on_surface(surface_point, parts_.surface))
+    return give;
   Mat3 s_m_per_N;
   for (std::size_t i = 0; i < 3; ++i) {
     const TangentTensors& both =
-        near.tangent_times_E_per_m[parts_.surface.triangle[place.triangle][i]];
-    s_m_per_N =
-        s_m_per_N + place.weight[i] / near.youngs_modulus_Pa * (held ? both.held : both.touching);
+        near.tangent_times_E_per_m[parts_.surface.triangle[surface_point.triangle][i]];
+    s_m_per_N = s_m_per_N + surface_point.weight[i] / near.youngs_modulus_Pa *
+                                (held ? both.held : both.touching);
   }
   const Vec3 &a = axes.unit[0], &b = axes.unit[1], s_a = s_m_per_N * a, s_b = s_m_per_N * b;
   give.rest_m_per_N = {.xx = dot(a, s_a), .xy = dot(a, s_b), .yy = dot(b, s_b)};
@@ -197,7 +201,7 @@ std::size_t ElasticField::profile(const contact::Indentation& in,
     add_organ(in, ring_m.first(rings));
     return rings;
   }
-  const Blend blend = blend_at(in.place, in.indentation_m);
+  const Blend blend = blend_at(in.surface_point, in.indentation_m);
   const std::size_t count = parts_.curves[blend.low]->profile(in.indentation_m, ring_m);
   if (parts_.curves.size() < 2) return count;
   std::array<double, kMaxProfile> stiff_m{};
@@ -215,16 +219,16 @@ void ElasticField::add_organ(const contact::Indentation& in,
   const ElasticNeighbours& near = parts_.neighbours;
   if (near.regular_times_E_per_m.empty() || ring_m.empty()) return;
   const double force_N = parts_.curves[0]->respond(in.indentation_m).force_N;
-  const contact::TriangleCorners& corner = parts_.surface.triangle[in.place.triangle];
+  const contact::TriangleCorners& corner = parts_.surface.triangle[in.surface_point.triangle];
   double regular_m_per_N = 0.0;
   for (std::size_t i = 0; i < 3; ++i)
-    regular_m_per_N += in.place.weight[i] / near.youngs_modulus_Pa *
+    regular_m_per_N += in.surface_point.weight[i] / near.youngs_modulus_Pa *
                        static_cast<double>(near.regular_times_E_per_m[corner[i]]);
   const double sign = in.indentation_m < 0.0 ? -1.0 : 1.0;
   ring_m[0] += force_N * regular_m_per_N;
   for (std::size_t j = 1; j < ring_m.size(); ++j) {
-    const double more_m =
-        force_N * this->regular_m_per_N(in.place, static_cast<double>(j) * near.ring_pitch_m);
+    const double more_m = force_N * this->regular_m_per_N(in.surface_point, static_cast<double>(j) *
+                                                                                near.ring_pitch_m);
     const double u_m = ring_m[j] + law::ring_taper(j, near.rings) * more_m;
     ring_m[j] = sign * std::clamp(sign * u_m, 0.0, std::abs(ring_m[j - 1]));
   }
@@ -236,8 +240,8 @@ void ElasticField::report_own_rings(const contact::Indentation& in,
                                     std::span<double> ring_m) const RT_SAFE {
   const ElasticNeighbours& near = parts_.neighbours;
   if (parts_.curve_ring_times_E_per_m.empty() || near.rings == 0 || ring_m.empty()) return;
-  const Blend blend = blend_at(in.place, in.indentation_m);
-  const double force_N = part_at(in.place, in.indentation_m).law.force_N;
+  const Blend blend = blend_at(in.surface_point, in.indentation_m);
+  const double force_N = part_at(in.surface_point, in.indentation_m).law.force_N;
   const double sign = in.indentation_m < 0.0 ? -1.0 : 1.0;
   for (std::size_t j = 1; j < std::min(ring_m.size(), near.rings + 1); ++j) {
     const auto of_curve = [&](std::size_t k) RT_SAFE {
@@ -245,7 +249,7 @@ void ElasticField::report_own_rings(const contact::Indentation& in,
     };
     const double soft = of_curve(blend.low), stiff = of_curve(blend.low + 1);
     const double more_m_per_N =
-        regular_m_per_N(in.place, static_cast<double>(j) * near.ring_pitch_m) -
+        regular_m_per_N(in.surface_point, static_cast<double>(j) * near.ring_pitch_m) -
         (soft + blend.fraction * (stiff - soft)) / near.youngs_modulus_Pa;
     const double u_m = ring_m[j] + law::ring_taper(j, near.rings) * force_N * more_m_per_N;
     ring_m[j] = sign * std::clamp(sign * u_m, 0.0, std::abs(ring_m[j - 1]));
@@ -255,12 +259,12 @@ void ElasticField::report_own_rings(const contact::Indentation& in,
 Vec3 ElasticField::tilt(const contact::Indentation& in) const RT_SAFE {
   const ElasticNeighbours& near = parts_.neighbours;
   if (near.tilt_times_E_per_m2.empty() || !is_known(in)) return {};
-  const double force_N = part_at(in.place, in.indentation_m).law.force_N;
-  const contact::TriangleCorners& corner = parts_.surface.triangle[in.place.triangle];
+  const double force_N = part_at(in.surface_point, in.indentation_m).law.force_N;
+  const contact::TriangleCorners& corner = parts_.surface.triangle[in.surface_point.triangle];
   Vec3 sum;
   for (std::size_t i = 0; i < 3; ++i)
-    sum +=
-        force_N / near.youngs_modulus_Pa * in.place.weight[i] * near.tilt_times_E_per_m2[corner[i]];
+    sum += force_N / near.youngs_modulus_Pa * in.surface_point.weight[i] *
+           near.tilt_times_E_per_m2[corner[i]];
   return sum;
 }
 

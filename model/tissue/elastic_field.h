@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// elastic_field.h - closed-form laws over a whole surface, with relaxation: the SiteLaw of them.
+// elastic_field.h - closed-form laws over a whole surface, with relaxation: the ContactLaw of them.
 //
 // One law for every place, or a family of laws from soft to stiff and a coordinate kappa per vertex
 // that says which: linear over each triangle, blended between neighbours k <= kappa <= k + 1,
@@ -9,13 +9,13 @@
 //
 // so the field has one potential and no stroke along the surface makes energy. Press and pull may
 // have a coordinate each: U = 0 between them. An answer costs at most 2 (1 + terms) look-ups,
-// whatever the mesh. Two sites, s apart, couple as those of one elastic body:
+// whatever the mesh. Two contact points, s apart, couple as those of one elastic body:
 //
 //     MC-2   h = 1 / (pi E* s_ij) + min(g, 0) >= 0,   b = max(g, 0),   g = (g_i + g_j) / 2
 //
 // half-space and the organ's regular part, g: that of the rings of the compliance map, below 0
-// beside the held side. Sideways a site gives way by half-space and regular part, too, by another
-// length in each direction:
+// beside the held side. Sideways a contact point gives way by half-space and regular part, too, by
+// another length in each direction:
 //
 //     MC-5   G_i = (2 - nu) / (8 mu a_i) I + S_i,   mu = E* (1 - nu) / 2
 //
@@ -26,7 +26,7 @@
 #include <span>
 #include <vector>
 
-#include "model/contact/site_law.h"
+#include "model/contact/contact_law.h"
 #include "model/law/relaxation.h"
 #include "model/mat3.h"
 
@@ -37,10 +37,12 @@ struct TangentTensors {
   Mat3 touching, held;
 };
 
-/// What two sites of one elastic body are to each other. Without a map the body is a half-space.
+/// What two contact points of one elastic body are to each other. Without a map the body is a
+/// half-space.
 struct ElasticNeighbours {
-  double youngs_modulus_Pa = 0.0;               // E
-  double contact_modulus_Pa = 0.0;              // E*; 0: nothing is known, sites do not couple
+  double youngs_modulus_Pa = 0.0;  // E
+  // E*; 0: nothing is known, contact points do not couple
+  double contact_modulus_Pa = 0.0;
   double poisson_ratio = 0.5;                   // nu
   std::span<const float> ring_times_E_per_m{};  // g_j E of vertex v at [v rings + j - 1]; or empty
   std::span<const float> regular_times_E_per_m{};  // r E, where the curves are the tip's alone
@@ -62,20 +64,22 @@ struct ElasticFieldParts {
   std::span<const float> curve_ring_times_E_per_m{};
   bool damps = false;  // a curve depends on speed
   const law::Law* indentation_shape =
-      nullptr;  // of the dent, where the curves are springs that have none
+      nullptr;  // of the indentation, where the curves are springs that have none
 };
 
-class ElasticField final : public contact::SiteLaw {
+class ElasticField final : public contact::ContactLaw {
  public:
   explicit ElasticField(const ElasticFieldParts& parts);
 
-  contact::SiteResponse respond(const contact::Indentation& in) RT_SAFE override;
+  contact::ContactLawResponse respond(const contact::Indentation& in) RT_SAFE override;
   double resistance_N(const contact::Indentation& in, double force_N) const RT_SAFE override;
-  contact::SiteCoupling coupling(const contact::Indentation& a, const contact::Indentation& b,
-                                 double distance_m) const RT_SAFE override;
-  double stiffest_N_per_m(const contact::Place& place, bool held) const RT_SAFE override;
+  contact::ContactCoupling coupling(const contact::Indentation& a, const contact::Indentation& b,
+                                    double distance_m) const RT_SAFE override;
+  double stiffest_N_per_m(const contact::SurfacePoint& surface_point,
+                          bool held) const RT_SAFE override;
   double fade_ratio() const RT_SAFE override;
-  contact::TangentCompliance tangent_compliance(const contact::Place& place, bool held,
+  contact::TangentCompliance tangent_compliance(const contact::SurfacePoint& surface_point,
+                                                bool held,
                                                 const contact::Axes& axes) const RT_SAFE override;
   void leave(std::size_t sphere) RT_SAFE override { now_[sphere] = next_[sphere] = {}; }
   void advance() RT_SAFE override {
@@ -101,9 +105,10 @@ class ElasticField final : public contact::SiteLaw {
   };
   bool is_known(const contact::Indentation& in) const RT_SAFE;
   std::span<const float> coordinate(double depth_m) const RT_SAFE;
-  Blend blend_at(const contact::Place& place, double depth_m) const RT_SAFE;
-  Part part_at(const contact::Place& place, double depth_m) const RT_SAFE;
-  double regular_m_per_N(const contact::Place& place, double distance_m) const RT_SAFE;
+  Blend blend_at(const contact::SurfacePoint& surface_point, double depth_m) const RT_SAFE;
+  Part part_at(const contact::SurfacePoint& surface_point, double depth_m) const RT_SAFE;
+  double regular_m_per_N(const contact::SurfacePoint& surface_point,
+                         double distance_m) const RT_SAFE;
   void add_organ(const contact::Indentation& in, std::span<double> ring_m) const RT_SAFE;
   void report_own_rings(const contact::Indentation& in, std::span<double> ring_m) const RT_SAFE;
   Vec3 coordinate_slope(std::uint32_t triangle, double depth_m) const RT_SAFE;

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// indentation_tilt.h - how the dent of a site leans: an organ sinks more towards a free lobe than
-// towards the side where it is held.
+// indentation_tilt.h - how the indentation of a contact point leans: an organ sinks more towards a
+// free lobe than towards the side where it is held.
 //
 //     CF-5   u(x) = u(rho) + T(rho) F t . (x - s)
 //     CF-6   t = grad r / 2
 //
-//     u     displacement of the skin, m; u(rho) its mean around the site, the rings of the map
-//     F     force at the site s, N             T   the taper of the outer rings (ring_taper)
+//     u     displacement of the skin, m; u(rho) its mean around the contact point, the rings of the
+//           map
+//     F     force at the contact point s, N             T   the taper of the outer rings
+//           (ring_taper)
 //     r     give of a place beyond a half-space (compliance_map.h), m/N;  t   1/N
 //
 // G(x, s), how far x sinks with a unit force at s, beyond a half-space, is symmetric and r(s) is

@@ -2,7 +2,7 @@
 // CANopen replies are taken from this node alone and whole, and no status leads to a command that a
 // drive in that state must not get.
 #include "hal/cia402/canopen_frames.h"
-#include "hal/cia402/canopen_words.h"
+#include "hal/cia402/canopen_text.h"
 #include "hal/cia402/cia402_cst.h"
 #include "hal/cia402/cia402_state.h"
 #include "tests/fuzz/fuzz.h"
@@ -38,11 +38,11 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     require(sdo->size <= 4);
     if (sdo->kind == hal::cia402::SdoReplyKind::kUpload) require(sdo->size <= 4);
     if (sdo->kind == hal::cia402::SdoReplyKind::kAbort)
-      require(hal::cia402::sdo_abort_sentence(sdo->value)[0] != '\0');
+      require(hal::cia402::sdo_abort_message(sdo->value)[0] != '\0');
   }
   if (const auto emergency = hal::cia402::decode_canopen_emergency(*frame, node)) {
     require(!hal::cia402::decode_canopen_emergency(*frame, other));
-    require(hal::cia402::emergency_sentence(emergency->code)[0] != '\0');
+    require(hal::cia402::emergency_message(emergency->code)[0] != '\0');
   }
   if (hal::cia402::decode_canopen_heartbeat(*frame, node))
     require(!hal::cia402::decode_canopen_heartbeat(*frame, other));

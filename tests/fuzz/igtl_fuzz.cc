@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bytes of a stranger on the network are a pose that keeps its promises, or one sentence.
+// Bytes of a stranger on the network are a pose that keeps its promises, or one message.
 #include <cmath>
 #include <string_view>
 
@@ -10,8 +10,8 @@ namespace {
 
 using tact::fuzz::require;
 
-bool is_sentence(const tact::model::Error& error) {
-  return !error.sentence.empty() && error.sentence.find('\n') == std::string::npos;
+bool is_message(const tact::model::Error& error) {
+  return !error.message.empty() && error.message.find('\n') == std::string::npos;
 }
 
 }  // namespace
@@ -21,7 +21,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   const auto head = read_head(bytes.substr(0, kHeaderBytes));
   if (!head) {
-    require(is_sentence(head.error()));
+    require(is_message(head.error()));
     return 0;
   }
   require(size >= kHeaderBytes && std::isfinite(head->time_s) && head->time_s >= 0.0);
@@ -30,13 +30,13 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   crc64(body);  // whether it is right is not asked: a stranger can count
   const auto content = content_of(*head, body);
   if (!content) {
-    require(is_sentence(content.error()));
+    require(is_message(content.error()));
     return 0;
   }
   require(content->bytes.size() <= body.size());
   const auto pose = pose_of(head->type, content->bytes);
   if (!pose) {
-    require(is_sentence(pose.error()));
+    require(is_message(pose.error()));
     return 0;
   }
   require(pose->position_m.allFinite() && std::abs(pose->rotation.norm() - 1.0) < 1e-6);

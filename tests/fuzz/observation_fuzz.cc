@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bytes of a tracker are an observation that keeps its promises, or one sentence.
+// Bytes of a tracker are an observation that keeps its promises, or one message.
 #include <cmath>
 #include <string_view>
 
@@ -12,8 +12,8 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   const model::Result<host::tracking::Observation> read = host::tracking::parse_observation(bytes);
   if (!read) {
-    const std::string& sentence = read.error().sentence;
-    require(!sentence.empty() && sentence.find('\n') == sentence.npos);
+    const std::string& message = read.error().message;
+    require(!message.empty() && message.find('\n') == message.npos);
     return 0;
   }
   const host::tracking::Observation& seen = *read;

@@ -11,7 +11,7 @@
 namespace tact::hal::device_lock_test {
 
 using tests::Forked;
-using tests::sentence_of;
+using tests::message_of;
 
 /// Neither another test nor another run of this one has a device of this name.
 std::string device_of_mine() {
@@ -21,7 +21,7 @@ std::string device_of_mine() {
 TEST(DeviceLock, ASecondProgramIsRefusedByThePidOfTheFirst) {
   const std::string name = device_of_mine();
   const Forked other([&] { lock_device(name); });
-  const std::string said = sentence_of(lock_device(name));
+  const std::string said = message_of(lock_device(name));
   EXPECT_TRUE(
       said.starts_with(name + " is driven by process " + std::to_string(other.process()) + " ("))
       << said;
@@ -32,27 +32,27 @@ TEST(DeviceLock, GoesWithTheProcessHoweverItEnds) {
   Forked other([&] { lock_device(name); });
   ASSERT_TRUE(lock_device(name));
   other.kill_now();
-  EXPECT_EQ(sentence_of(lock_device(name)), "");
+  EXPECT_EQ(message_of(lock_device(name)), "");
 }
 
 TEST(DeviceLock, IsOfOneDeviceAndOneProgramMayTakeItAgain) {
   const std::string name = device_of_mine();
   const Forked other([&] { lock_device(name); });
-  EXPECT_EQ(sentence_of(lock_device(name + "b")), "");
-  EXPECT_EQ(sentence_of(lock_device(name + "b")), "");
+  EXPECT_EQ(message_of(lock_device(name + "b")), "");
+  EXPECT_EQ(message_of(lock_device(name + "b")), "");
 }
 
 TEST(DeviceLock, NamesThePidHoweverManyHaveAsked) {
   const std::string name = device_of_mine();
   const Forked other([&] { lock_device(name); });
   for (int i = 0; i < 1000; ++i)
-    ASSERT_NE(sentence_of(lock_device(name)).find(std::to_string(other.process())),
+    ASSERT_NE(message_of(lock_device(name)).find(std::to_string(other.process())),
               std::string::npos)
         << i;
 }
 
 TEST(DeviceLock, ANameThatFitsNowhereIsRefused) {
-  EXPECT_NE(sentence_of(lock_device(std::string(200, 'x'))).find("too long"), std::string::npos);
+  EXPECT_NE(message_of(lock_device(std::string(200, 'x'))).find("too long"), std::string::npos);
 }
 
 }  // namespace tact::hal::device_lock_test

@@ -58,24 +58,24 @@ TEST(Mounting, SixMountingsHaveDownWhereTheyStand) {
   for (const auto& one : kMountings) {
     const Mounting m = mounting_of(settings_of(one));
     EXPECT_LT(distance(m.gravity_in_base_mps2(), kG_mps2 * one.down_B), 1e-3) << one.words;
-    EXPECT_NE(words_of(m).find(one.words), std::string::npos) << words_of(m);
+    EXPECT_NE(text_of(m).find(one.words), std::string::npos) << text_of(m);
   }
 }
 
 TEST(Mounting, WordsNameDownInTheBasesOwnAxesAndWhatIsScaled) {
   model::DeviceSettings settings;
-  EXPECT_EQ(words_of(mounting_of(settings)),
+  EXPECT_EQ(text_of(mounting_of(settings)),
             "the base lies on its side, its axis points towards you; down is (0, 0, -1) in its own "
             "axes");
   settings.base_orientation_deg = {0.0, 90.0, 0.0};
   settings.base_position_m = {0.0, 0.0, 0.1};
   settings.motion_scale = 3.0;
-  EXPECT_EQ(words_of(mounting_of(settings)),
+  EXPECT_EQ(text_of(mounting_of(settings)),
             "the base hangs from above, its axis points down; down is (1, 0, 0) in its own axes; "
             "its origin is at (0, 0, 0.1) m of W; the tool goes 3 times the way of the handle, and "
             "the hand feels 3 times the tool's force");
   settings.base_orientation_deg = {0.0, 45.0, 0.0};
-  EXPECT_NE(words_of(mounting_of(settings))
+  EXPECT_NE(text_of(mounting_of(settings))
                 .find("is tilted, its axis points along (0.707, 0, "
                       "-0.707) of W"),
             std::string::npos);
@@ -125,10 +125,10 @@ TEST(Mounting, TheWorkspaceIsReachedFromEveryMounting) {
     ASSERT_GT(info.workspace_radius_m, 0.0);
     for (int k = 0; k < 40; ++k) {
       const double angle = 0.05 * std::numbers::pi * k;
-      const Vec3 rim_W{k % 2 == 0 ? info.workspace_half_length_m : -info.workspace_half_length_m,
-                       info.workspace_radius_m * std::cos(angle),
-                       info.workspace_radius_m * std::sin(angle)};
-      const Vec3 p = m.point_in_base(rim_W);
+      const Vec3 stop_W{k % 2 == 0 ? info.workspace_half_length_m : -info.workspace_half_length_m,
+                        info.workspace_radius_m * std::cos(angle),
+                        info.workspace_radius_m * std::sin(angle)};
+      const Vec3 p = m.point_in_base(stop_W);
       ASSERT_LE(std::hypot(p.y, p.z), own.workspace_radius_m * (1.0 + 1e-9)) << i;
       ASSERT_LE(std::abs(p.x), own.workspace_half_length_m * (1.0 + 1e-9)) << i;
     }

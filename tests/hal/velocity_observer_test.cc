@@ -101,7 +101,7 @@ TEST(VelocityObserver, FollowsACountedHandMotionBetterThanDifferences) {
   for (const auto& row : file.at("rows")) {
     const Vec3 p = vec(row.at("p_from_counts")), v = vec(row.at("v_true"));
     const Vec3 seen = observer.step(p, dt);
-    if (row.at("t").get<double>() > 0.1) {  // after the start from rest has faded
+    if (row.at("t").get<double>() > 0.1) {  // after the start from rest has ramped down
       observed += dot(seen - v, seen - v);
       differenced += dot((p - last) / dt - v, (p - last) / dt - v);
       ++count;

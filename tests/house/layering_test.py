@@ -34,7 +34,7 @@ VOUCHES = {
          "hal/gpio/libgpiod_1.cc", "hal/gpio/libgpiod_2.cc", "hal/can/can_socket.cc",
          "hal/falcon_usb/usbfs_port.cc",
          # broken devices and a fake kernel, which only tests have
-         "tests/support/watched_loop.h", "tests/hal/falcon_usb/usbfs_bus.h"}),
+         "tests/support/monitored_loop.h", "tests/hal/falcon_usb/usbfs_bus.h"}),
     "hides a call from the real-time sanitizer": (
         re.compile(r"ScopedDisabler|__rtsan_disable|rtsan_interface|no_sanitize\w*\W+realtime"),
         {"hal/can/can_socket.cc"}),

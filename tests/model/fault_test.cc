@@ -16,7 +16,7 @@ TEST(Fault, EveryEntryHasNameCauseAndRemedy) {
   }
 }
 
-// One fault serves classic CAN and CAN FD; the sentence beside it knows which, and where.
+// One fault serves classic CAN and CAN FD; the message beside it knows which, and where.
 TEST(Fault, NoRemedyNamesOneInterfaceOrOneKindOfBus) {
   for (const FaultEntry& entry : fault_table()) {
     EXPECT_EQ(std::string(entry.remedy).find("can0"), std::string::npos) << entry.name;

@@ -13,15 +13,15 @@ TEST(Result, HasAValueOrASentence) {
   EXPECT_EQ(*good, 7);
   const Result<int> bad = Error{"scene.toml:3: no number"};
   ASSERT_FALSE(bad);
-  EXPECT_EQ(bad.error().sentence, "scene.toml:3: no number");
+  EXPECT_EQ(bad.error().message, "scene.toml:3: no number");
 }
 
 TEST(Result, ReadingTheValueOfAnErrorAbortsWithItsMessage) {
   Result<std::string> bad = Error{"scene.toml:3: no number"};
   const auto ends = testing::KilledBySignal(SIGABRT);
-  const char* sentence = "value\\(\\) of an error: scene.toml:3: no number";
-  EXPECT_EXIT(static_cast<void>(bad.value()), ends, sentence);
-  EXPECT_EXIT(static_cast<void>(std::as_const(bad)->size()), ends, sentence);
+  const char* message = "value\\(\\) of an error: scene.toml:3: no number";
+  EXPECT_EXIT(static_cast<void>(bad.value()), ends, message);
+  EXPECT_EXIT(static_cast<void>(std::as_const(bad)->size()), ends, message);
   const Result<int> good = 7;
   EXPECT_EXIT(static_cast<void>(good.error()), ends, "error\\(\\) of a value");
 }

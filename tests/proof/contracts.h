@@ -86,11 +86,11 @@ static void observe(int tank, int tool, bool fresh, double periods, int held) {
 static bool overdrawn(int tank) { return is_tank_overdrawn; }
 static void refill(int tank) {}
 static double passive(int tank) { return nondet_double(); }
-static void heat(int of, double* x, double* y, double* z, double periods) {}
-static double peak_of(int heat);
-static double warm(int heat) {
+static void thermal(int of, double* x, double* y, double* z, double periods) {}
+static double peak_of(int thermal);
+static double warm(int thermal) {
   double allowed = nondet_double();
-  ASSUME(allowed >= 0 && allowed <= peak_of(heat));
+  ASSUME(allowed >= 0 && allowed <= peak_of(thermal));
   return allowed;
 }
 #endif

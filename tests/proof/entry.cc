@@ -53,8 +53,10 @@ void make(Gate* gate, const Limits* limits, double period_s, double share) {
 #ifdef TACT_WHOLE
 bool shorten(Vec3* v, double limit) { return limit_magnitude(*v, limit); }
 bool take(Vec3* v, double surplus, const Vec3* d) { return take_along(*v, surplus, *d); }
-double warm(const ThermalLimit* heat) { return heat->allowed(); }
-void heat(ThermalLimit* heat, const Vec3* held, double periods) { heat->heat(*held, periods); }
+double warm(const ThermalLimit* thermal) { return thermal->allowed(); }
+void thermal(ThermalLimit* thermal, const Vec3* held, double periods) {
+  thermal->thermal(*held, periods);
+}
 void observe(EnergyTank* tank, const Tool* tool, bool fresh, double periods,
              const tact::model::Wrench* held) {
   tank->observe(*tool, fresh, periods, *held);

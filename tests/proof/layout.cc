@@ -39,14 +39,14 @@ void name_state() {
   name("TORQUE_STEP", "gate", offsetof(Gate, torque_step_Nm_));
   name("POWER_LIMIT", "gate", offsetof(Gate, limits_.power_W));
   name("PERIOD", "gate", offsetof(Gate, period_s_));
-  name("WORKSPACE_FADE", "gate", offsetof(Gate, workspace_.fade_s_));
-  name("SPEED_FADE", "gate", offsetof(Gate, speed_.fade_s_));
+  name("WORKSPACE_FADE", "gate", offsetof(Gate, workspace_.ramp_s_));
+  name("SPEED_FADE", "gate", offsetof(Gate, speed_.ramp_s_));
   name("RADIUS", "gate", offsetof(Gate, limits_.workspace_radius_m));
   name("SPEED", "gate", offsetof(Gate, limits_.speed_mps));
   name("TURN_SPEED", "gate", offsetof(Gate, limits_.turn_radps));
   name("HALF_LENGTH", "gate", offsetof(Gate, limits_.workspace_half_length_m));
   name("MISSED", "gate", offsetof(Gate, missed_), "q");
-  std::printf("#define HOT_FORCE %zu\n", offsetof(Gate, warm_force_));
+  std::printf("#define HOT_FORCE %zu\n", offsetof(Gate, thermal_force_));
   vector("BEFORE_FORCE", "gate", offsetof(Gate, before_ramp_.force_N));
   vector("BEFORE_TORQUE", "gate", offsetof(Gate, before_ramp_.torque_Nm));
   vector("WRITTEN_FORCE", "gate", offsetof(Gate, written_.force_N));
@@ -82,7 +82,7 @@ void name_parts() {
   name("CONTINUOUS_SQUARED", "heat", offsetof(gate::ThermalLimit, continuous_squared_));
   name("STEEPNESS", "heat", offsetof(gate::ThermalLimit, steepness_));
   name("SHARE", "heat", offsetof(gate::ThermalLimit, share_));
-  name("HEAT", "heat", offsetof(gate::ThermalLimit, heat_));
+  name("HEAT", "heat", offsetof(gate::ThermalLimit, mean_square_));
   name("ENERGY", "tank", offsetof(gate::EnergyTank, level_J_));
   name("BUDGET", "tank", offsetof(gate::EnergyTank, settings_.budget_J));
   name("UNSEEN", "tank", offsetof(gate::EnergyTank, unseen_J_));

@@ -3,9 +3,10 @@
 //
 // The whole controller with the simulated delta and its safety lines: random strokes, faults,
 // stops, late ticks and operators by a seed; after each tick its promises are checked: force,
-// torque, their slew, power, energy and RMS by accounts of its own (accounts.h), states, latching,
-// the grid. A quarter as many ticks, but 100 000 at least, follow with narrower limits, so that
-// every stage of the gate has its say. The same seed gives the same hashes with every compiler.
+// torque, their slew, power, energy and RMS by accounts of its own (energy_ledger.h), states,
+// latching, the grid. A quarter as many ticks, but 100 000 at least, follow with narrower limits,
+// so that every stage of the gate has its say. The same seed gives the same hashes with every
+// compiler.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -25,8 +26,8 @@
 #include "firmware/telemetry/force_hash.h"
 #include "model/scene/tissue.h"
 #include "model/time_ns.h"
-#include "tests/soak/mischief.h"
-#include "tests/soak/promises.h"
+#include "tests/soak/fault_injection.h"
+#include "tests/soak/invariants.h"
 
 namespace tact::soak {
 namespace {
@@ -91,8 +92,8 @@ model::Result<Outcome> soak(const model::scene::Scene& scene, std::uint64_t tick
       /*hard_real_time=*/true);
   firmware::loop::RtLoop loop({.period_ns = period_ns}, **device, lines, *controller, clock,
                               requests, *ring);
-  Mischief mischief(seed, scene.hand, period_ns);
-  Promises promises(limits, period_ns);
+  FaultInjection mischief(seed, scene.hand, period_ns);
+  Invariants promises(limits, period_ns);
   Outcome outcome;
   firmware::loop::State state = firmware::loop::State::kOff;
   firmware::loop::TickRecord record;
@@ -179,7 +180,7 @@ int run(const std::string& path, std::uint64_t ticks, std::uint64_t seed) {
   const auto narrow = soak_with(kNarrowLimits, path, narrow_ticks, seed);
   for (const auto* outcome : {&tight, &narrow})
     if (!*outcome) {
-      fmt::print(stderr, "tact-soak: {}\n", outcome->error().sentence);
+      fmt::print(stderr, "tact-soak: {}\n", outcome->error().message);
       return 2;
     }
   nlohmann::ordered_json out = to_json(*tight, seed);

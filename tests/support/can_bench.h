@@ -72,10 +72,10 @@ struct CanBench {
 
   explicit CanBench(const model::DeviceSettings& wanted) : settings(wanted) {}
 
-  /// Empty, or the sentence why not.
+  /// Empty, or the message why not.
   std::string open(Start start, double rate_Hz = 1000.0) {
     auto opened = start(drives.bus.bus(), settings, rate_Hz);
-    if (!opened) return opened.error().sentence;
+    if (!opened) return opened.error().message;
     device = std::move(*opened);
     drives.listen();
     return {};

@@ -26,7 +26,7 @@ class DeviceLoop : public testing::Test {
 
   void open(const model::scene::Scene& scene) {
     auto opened = hal::registry::open_device(scene);
-    ASSERT_TRUE(opened) << opened.error().sentence;
+    ASSERT_TRUE(opened) << opened.error().message;
     device = std::move(*opened);
     fault = hal::Fault::kNone;
     device->permit(permitted);

@@ -52,8 +52,8 @@ class GateRules {
   const firmware::gate::Gate& gate() const { return gate_; }
   /// Where no step was too long for its time.
   double most_given_J() const { return most_given_J_; }
-  double most_heat_ratio() const { return witness_.rms_ratio(); }
-  double most_torque_heat_ratio() const { return witness_.rms_torque_ratio(); }
+  double most_thermal_ratio() const { return witness_.rms_ratio(); }
+  double most_torque_thermal_ratio() const { return witness_.rms_torque_ratio(); }
 
  private:
   const char* broken_latch_rule(const GateInput& input) const {

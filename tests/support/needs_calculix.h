@@ -12,7 +12,7 @@ class NeedsCalculiX : public testing::Test {
  protected:
   void SetUp() override {
     const auto version = tools::reference::calculix_version();
-    if (!version) GTEST_SKIP() << version.error().sentence;
+    if (!version) GTEST_SKIP() << version.error().message;
   }
 };
 

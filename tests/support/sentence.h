@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// sentence.h - what an error says, so that a test that fails shows it.
+// message.h - what an error says, so that a test that fails shows it.
 #pragma once
 
 #include <optional>
@@ -10,14 +10,14 @@
 namespace tact::tests {
 
 /// Empty: no error.
-inline std::string sentence_of(const std::optional<model::Error>& error) {
-  return error ? error->sentence : std::string();
+inline std::string message_of(const std::optional<model::Error>& error) {
+  return error ? error->message : std::string();
 }
 
 /// Empty: there is a value.
 template <typename T>
-std::string sentence_of(const model::Result<T>& result) {
-  return result ? std::string() : result.error().sentence;
+std::string message_of(const model::Result<T>& result) {
+  return result ? std::string() : result.error().message;
 }
 
 }  // namespace tact::tests

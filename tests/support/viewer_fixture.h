@@ -51,7 +51,7 @@ class Viewer : public ::testing::Test {
             [this](const host::server::HandRequest& request) {
               client_.move_hand(request.position_m, request.rotation_rad, request.grip_ratio);
             },
-            [this](const std::string& sentence) { warnings_.push_back(sentence); }) {
+            [this](const std::string& message) { warnings_.push_back(message); }) {
     fs::create_directories(folder_);
     std::ofstream(folder_ / "index.html") << "<html>page";
   }
@@ -63,10 +63,10 @@ class Viewer : public ::testing::Test {
 
   void start(const std::string& bind_address = "127.0.0.1",
              std::chrono::milliseconds request_timeout = std::chrono::seconds(10)) {
-    ASSERT_EQ(tests::sentence_of(server_.open({.bind_address = bind_address,
-                                               .port = 0,
-                                               .page_folder = folder_,
-                                               .request_timeout = request_timeout})),
+    ASSERT_EQ(tests::message_of(server_.open({.bind_address = bind_address,
+                                              .port = 0,
+                                              .page_folder = folder_,
+                                              .request_timeout = request_timeout})),
               "");
     server_.start();
     client_.start();

@@ -132,7 +132,7 @@ TEST_F(Tactd, ARunOfAnAutomaticLawIsReplayedWithoutThePlan) {
   EXPECT_EQ(unplanned.status, 2);
   EXPECT_TRUE(has(unplanned, "run tact-lab plan " + kLiver + " --reference FILE"));
   const auto scene = tact::model::scene::load_scene(kLiver, {"law=\"auto\""});
-  ASSERT_TRUE(scene) << scene.error().sentence;
+  ASSERT_TRUE(scene) << scene.error().message;
   ASSERT_TRUE(tact::model::scene::write_plan(
       {.sizes = {.law = tact::model::scene::LawKind::kRhombus, .table_knots = 33},
        .machine = tact::model::scene::machine_name(),

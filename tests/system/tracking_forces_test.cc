@@ -30,7 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 const std::string kScenes = TACT_SOURCE_DIR "/model/scenes/";
 const std::string kLiver = kScenes + "liver.toml", kMaintenance = kScenes + "maintenance.toml";
-const std::string kDesk = "desk.tracking.toml", kTroubled = "troubled.tracking.toml";
+const std::string kTable = "desk.tracking.toml", kTroubled = "troubled.tracking.toml";
 
 class Forces : public ::testing::Test {
  protected:
@@ -46,9 +46,9 @@ class Forces : public ::testing::Test {
       lines += test::line_of(test::look(eye, {}, "h", hand, time_s, i, &noise)) + "\n";
     }
     test::write_file(in("a.jsonl"), lines);
-    test::write_file(in(kDesk), test::description("recording = \"a.jsonl\"", {{"h", "hand"}},
-                                                  "[registration]\nposition_m = [0, 0, 0]\n"
-                                                  "rotation_wxyz = [1, 0, 0, 0]\n"));
+    test::write_file(in(kTable), test::description("recording = \"a.jsonl\"", {{"h", "hand"}},
+                                                   "[registration]\nposition_m = [0, 0, 0]\n"
+                                                   "rotation_wxyz = [1, 0, 0, 0]\n"));
   }
   ~Forces() override {
     end_viewer();
@@ -66,7 +66,7 @@ class Forces : public ::testing::Test {
     EXPECT_EQ(outcome.status, 0) << outcome.output;
   }
   /// tact-view with the tracker, in a process of its own, recording.
-  void start_viewer(const std::string& recording) { start_viewer(recording, in(kDesk)); }
+  void start_viewer(const std::string& recording) { start_viewer(recording, in(kTable)); }
   void start_viewer(const std::string& recording, const std::string& tracking) {
     const std::string program = tests::program_path("tact-view");
     viewer_ = fork();

@@ -22,7 +22,7 @@
 #include "tests/hal/falcon/falcon_bench.h"
 #include "tests/hal/falcon_usb/usbfs_bus.h"
 #include "tests/hal/odrive/odrive_drives.h"
-#include "tests/soak/mischief.h"
+#include "tests/soak/fault_injection.h"
 #include "tests/support/can_bench.h"
 #include "tests/tick_reach/counters.h"
 
@@ -56,7 +56,7 @@ class Counted final : public hal::Device {
 // The same laws, loop and gate drive every device.
 int reach_sim(const std::string& path) {
   const auto scene = model::scene::load_scene(path, {});
-  if (!scene) return fmt::print(stderr, "tact-tick-reach: {}\n", scene.error().sentence), 2;
+  if (!scene) return fmt::print(stderr, "tact-tick-reach: {}\n", scene.error().message), 2;
   const auto tissue = model::scene::make_tissue(*scene);
   auto device = hal::sim::make_sim_delta(scene->device.sim, scene->hand);
   if (!tissue || !device) return 2;
@@ -71,7 +71,7 @@ int reach_sim(const std::string& path) {
                                         /*hard_real_time=*/true);
   firmware::loop::RtLoop loop({.period_ns = kPeriod_ns}, counted, lines, controller, clock,
                               requests, *ring);
-  soak::Mischief mischief(1, scene->hand, kPeriod_ns);
+  soak::FaultInjection mischief(1, scene->hand, kPeriod_ns);
   firmware::loop::State state = firmware::loop::State::kOff;
   firmware::loop::TickRecord record;
   for (int tick = 0; tick < 100'000; ++tick) {
@@ -99,7 +99,7 @@ int reach_odrive() {
   tests::PlayedOdrives drives;
   auto device = hal::odrive::start_odrive_delta(
       drives.bus.bus(), tests::jig_settings(tests::published_pose()), 1e9 / kPeriod_ns);
-  if (!device) return fmt::print(stderr, "tact-tick-reach: {}\n", device.error().sentence), 2;
+  if (!device) return fmt::print(stderr, "tact-tick-reach: {}\n", device.error().message), 2;
   hal::Sample sample;
   bool was_ready = false;
   for (int tick = 0; tick < 2000; ++tick) {

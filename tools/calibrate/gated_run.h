@@ -10,7 +10,7 @@
 #include "firmware/gate/limits_for.h"
 #include "firmware/gate/workspace.h"
 #include "firmware/loop/clock.h"
-#include "firmware/loop/grid.h"
+#include "firmware/loop/release_schedule.h"
 #include "hal/device.h"
 #include "model/fault.h"
 #include "model/limits.h"

@@ -126,7 +126,7 @@ Result<std::vector<FalconBalance>> measure(FalconDevice& device, const Options& 
       const auto sample = balance(device, mass_kg);
       if (program::is_interrupted()) return Error{"interrupted"};
       if (!sample) {
-        fmt::print("left out: {}\n", sample.error().sentence);
+        fmt::print("left out: {}\n", sample.error().message);
         if (device.trouble().empty()) continue;
         return sample.error();
       }

@@ -14,8 +14,8 @@ namespace {
 
 using model::Result;
 using model::Vec3;
+using model::contact::ContactLaw;
 using model::contact::Indentation;
-using model::contact::SiteLaw;
 
 // More than a law of a scene has.
 constexpr std::size_t kMaxRings = 128;
@@ -25,11 +25,11 @@ constexpr double kRestRatio = 1e-6;  // a tick, of the force
 
 Indentation indentation_at(const FitSite& site, const FitSample& sample) {
   Indentation in{.indentation_m = sample.depth_m, .held = sample.depth_m < 0.0};
-  if (site.at) in.place = site.at->place, in.normal = site.at->normal;
+  if (site.at) in.surface_point = site.at->surface_point, in.normal = site.at->normal;
   return in;
 }
 
-double settled_force_N(SiteLaw& law, const Indentation& in) {
+double settled_force_N(ContactLaw& law, const Indentation& in) {
   double force_N = 0.0;
   // Still for many ticks: a body that swings stands for one at its turning points.
   for (int tick = 0, still = 0; tick < kMaxTicks && still < kRestTicks; ++tick) {
@@ -56,19 +56,20 @@ void read_profile(std::span<const double> own, double pitch_m, std::span<const d
 }
 
 /// Vertices within a ring pitch of a radius, the nearer the heavier.
-void read_shape(SiteLaw& law, const model::mesh::SurfaceMesh& surface, const Indentation& in,
+void read_shape(ContactLaw& law, const model::mesh::SurfaceMesh& surface, const Indentation& in,
                 std::span<const double> radius_m, std::vector<double>& ring_m) {
   model::contact::PatchShape shape{};
   law.shape(shape);
   Vec3 centre{};
   for (std::size_t i = 0; i < 3; ++i)
-    centre += in.place.weight[i] * surface.vertex_m[surface.triangle[in.place.triangle][i]];
+    centre += in.surface_point.weight[i] *
+              surface.vertex_m[surface.triangle[in.surface_point.triangle][i]];
   for (const double r_m : radius_m) {
     double sum = 0.0, weights = 0.0;
     for (std::uint32_t i = 0; i < shape.node_count; ++i) {
       const double away_m = norm(surface.vertex_m[shape.vertex[i]] - centre);
       // At radius 0 the one vertex that is pressed: a mean with its neighbours would flatten the
-      // dent.
+      // indentation.
       const double weight = r_m > 0.0 ? 1.0 - std::abs(away_m - r_m) / law.ring_pitch_m()
                                       : (away_m == 0.0 ? 1.0 : 0.0);
       if (!(weight > 0.0)) continue;
@@ -125,7 +126,7 @@ Result<std::vector<FitAnswer>> solve(const model::scene::Scene& scene, model::sc
 
 /// Not a patch of chains nor what is in series with an organ: their tables take less time.
 bool is_solved(const model::scene::Scene& scene, model::scene::LawKind kind) {
-  if (scene.varies_by_place) return false;
+  if (scene.varies_over_surface) return false;
   return (kind == model::scene::LawKind::kRhombus && scene.rhombus_area_m2 == 0.0) ||
          (kind == model::scene::LawKind::kHexSheet && scene.hex_sheet.rings > 0);
 }
@@ -138,12 +139,12 @@ Result<std::vector<FitAnswer>> answers_of(const model::scene::Scene& scene,
   if (by == AnswerBy::kSolving && is_solved(scene, kind)) return solve(scene, kind, data);
   auto made = make_tissue_law(scene, kind);
   if (!made) return made.error();
-  SiteLaw& law = (*made)->site_law();
+  ContactLaw& law = (*made)->contact_law();
   const bool is_stepped = (*made)->curve() == nullptr;
   // Springs in a row are drawn as a half-space; their parameters show in their own displacements.
   const model::law::Law* springs =
-      scene.varies_by_place || kind == model::scene::LawKind::kCompliance ? nullptr
-                                                                          : (*made)->curve();
+      scene.varies_over_surface || kind == model::scene::LawKind::kCompliance ? nullptr
+                                                                              : (*made)->curve();
   std::vector<FitAnswer> out;
   for (const FitSite& site : data.sites) {
     for (const FitSample& sample : site.samples) {

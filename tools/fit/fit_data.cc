@@ -46,15 +46,15 @@ bool FitData::has_places() const {
                      [](const FitSite& site) { return site.at.has_value(); });
 }
 
-std::optional<FitPlace> place_at_vertex(const model::mesh::SurfaceMesh& surface,
-                                        std::size_t vertex) {
+std::optional<FitPoint> surface_point_at_vertex(const model::mesh::SurfaceMesh& surface,
+                                                std::size_t vertex) {
   if (vertex >= surface.vertex_m.size()) return std::nullopt;
   // A vertex of no triangle is no place of a surface.
   if (surface.fan_start[vertex] == surface.fan_start[vertex + 1]) return std::nullopt;
-  FitPlace out{.normal = surface.vertex_normal[vertex]};
-  out.place.triangle = surface.fan[surface.fan_start[vertex]];
-  const model::contact::TriangleCorners& corner = surface.triangle[out.place.triangle];
-  for (std::size_t i = 0; i < 3; ++i) out.place.weight[i] = corner[i] == vertex ? 1.0 : 0.0;
+  FitPoint out{.normal = surface.vertex_normal[vertex]};
+  out.surface_point.triangle = surface.fan[surface.fan_start[vertex]];
+  const model::contact::TriangleCorners& corner = surface.triangle[out.surface_point.triangle];
+  for (std::size_t i = 0; i < 3; ++i) out.surface_point.weight[i] = corner[i] == vertex ? 1.0 : 0.0;
   return out;
 }
 
@@ -85,7 +85,7 @@ Result<FitData> fit_data_of(const ground_truth::ReferenceData& reference,
   std::size_t rings = 0;
   for (const ground_truth::SolvedSite& solved : reference.sites) {
     FitSite site{.name = std::to_string(solved.vertex),
-                 .at = place_at_vertex(scene.organ_mesh, solved.vertex)};
+                 .at = surface_point_at_vertex(scene.organ_mesh, solved.vertex)};
     // The reference pressed along its own direction: the law is asked along the same one.
     site.at->normal = -solved.direction;
     for (const model::scene::ReferenceSite& known : scene.reference_sites)

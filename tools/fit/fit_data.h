@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "model/contact/site.h"
+#include "model/contact/contact_point.h"
 #include "model/result.h"
 #include "model/scene/scene.h"
 #include "tools/ground_truth/reference_data.h"
@@ -26,15 +26,15 @@ struct FitSample {
 };
 
 /// Where laws that differ from place to place are asked.
-struct FitPlace {
-  model::contact::Place place{};
+struct FitPoint {
+  model::contact::SurfacePoint surface_point{};
   model::Vec3 normal{};  // outward, unit
 };
 
 struct FitSite {
   std::string name;
   bool held_out = false;  // not fitted, only judged
-  std::optional<FitPlace> at{};
+  std::optional<FitPoint> at{};
   std::vector<FitSample> samples{};
 };
 
@@ -53,8 +53,8 @@ struct FitData {
 };
 
 /// The vertex as a place, if the surface has it.
-std::optional<FitPlace> place_at_vertex(const model::mesh::SurfaceMesh& surface,
-                                        std::size_t vertex);
+std::optional<FitPoint> surface_point_at_vertex(const model::mesh::SurfaceMesh& surface,
+                                                std::size_t vertex);
 
 /// Marks sites by name. An error names one that is not there, or says that none is left to fit.
 std::optional<model::Error> hold_out(FitData& data, const std::vector<std::string>& names);

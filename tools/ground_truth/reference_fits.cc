@@ -75,7 +75,7 @@ std::optional<Error> check_tool_reference_fits(const ToolReference& reference, c
   if (!std::equal(spheres.begin(), spheres.end(), reference.sphere.begin(), reference.sphere.end(),
                   same))
     return differs(scene, "the tool's spheres are not those of the reference", kTool);
-  for (const ToolPlace& place : reference.places) {
+  for (const ToolPoint& place : reference.places) {
     const auto& vertices = scene.organ_mesh.vertex_m;
     Vec3 there = scene.hand_site_m + place.slid_m;
     if (place.vertex && *place.vertex < vertices.size()) there = vertices[*place.vertex];

@@ -72,7 +72,7 @@ auto read_json(const std::string& path, const char* schema, const char* make, Da
           fmt::format("{}: \"schema\" is not \"{}\"; make it again: {}", path, schema, make)};
     auto data = data_of(j);
     if (const std::optional<Error> error = check(data))
-      return Error{fmt::format("{}: {}; make it again: {}", path, error->sentence, make)};
+      return Error{fmt::format("{}: {}; make it again: {}", path, error->message, make)};
     return data;
   } catch (const nlohmann::json::exception& e) {
     return Error{fmt::format("{}: {}; make it again: {}", path, e.what(), make)};

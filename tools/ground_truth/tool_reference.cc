@@ -24,9 +24,9 @@ ToolCase tool_case_of(const json& j) {
           .skin_m = j.value("skin_m", std::vector<double>{})};
 }
 
-ToolPlace place_of(const json& j) {
+ToolPoint place_of(const json& j) {
   const json &v = j.at("vertex"), &q = j.at("orientation_wxyz");
-  ToolPlace place{.vertex = {},
+  ToolPoint place{.vertex = {},
                   .slid_m = j.contains("slid_m") ? vector_of(j.at("slid_m")) : Vec3{},
                   .point_m = vector_of(j.at("point_m")),
                   .direction = vector_of(j.at("direction")),
@@ -55,7 +55,7 @@ std::optional<Error> check_tool(const ToolReference& data) {
     return Error{fmt::format("more than {} spheres", model::contact::kMaxSpheres)};
   const auto& depths = data.places.front().cases;
   if (depths.empty()) return Error{"no case"};
-  for (const ToolPlace& place : data.places) {
+  for (const ToolPoint& place : data.places) {
     const Quat& q = place.orientation;
     const double turn = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
     if (std::abs(norm(place.direction) - 1.0) > 1e-4 || std::abs(turn - 1.0) > 1e-4)
@@ -87,7 +87,7 @@ std::string text_of(const ToolCase& c) {
       list_text(",\n   \"skin_m\": [{:.4g}]", c.skin_m));
 }
 
-std::string text_of(const ToolPlace& place) {
+std::string text_of(const ToolPoint& place) {
   const Quat& q = place.orientation;
   std::string cases;
   for (const ToolCase& c : place.cases) cases += (cases.empty() ? "\n  " : ",\n  ") + text_of(c);
@@ -102,7 +102,7 @@ std::string text_of(const ToolPlace& place) {
 
 }  // namespace
 
-std::string name_of(const ToolPlace& place) {
+std::string name_of(const ToolPoint& place) {
   if (place.vertex) return std::to_string(*place.vertex);
   if (place.slid_m == Vec3{}) return "hand's";
   return fmt::format("slid {:.3g} mm", norm(place.slid_m) * 1e3);
@@ -131,7 +131,7 @@ std::string tool_reference_text(const ToolReference& data) {
   for (const auto& s : data.sphere)
     spheres += fmt::format("{}{{\"offset_m\": {}, \"radius_m\": {:.7g}}}",
                            spheres.empty() ? "" : ", ", vector_text(s.offset_m), s.radius_m);
-  for (const ToolPlace& p : data.places) places += (places.empty() ? "\n " : ",\n ") + text_of(p);
+  for (const ToolPoint& p : data.places) places += (places.empty() ? "\n " : ",\n ") + text_of(p);
   return fmt::format("{{\"schema\": \"{}\",\n{},\n\"spheres\": [{}],\n\"places\": [{}]}}\n",
                      kToolSchema, body_text(data.body), spheres, places);
 }

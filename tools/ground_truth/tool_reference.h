@@ -31,7 +31,7 @@ struct ToolCase {
   std::vector<double> skin_m{};    // how far each vertex of the place's `skin` goes along the way
 };
 
-struct ToolPlace {
+struct ToolPoint {
   std::optional<std::uint32_t> vertex;  // of the organ's mesh; none: the hand's own site, slid
   model::Vec3 slid_m{};                 // from the hand's own site by a stroke, 0: not
   model::Vec3 point_m{};                // of the tool's lowest point at depth 0, mesh's own frame
@@ -44,11 +44,11 @@ struct ToolPlace {
 struct ToolReference {
   SolvedBody body;
   std::vector<model::contact::ProbeSphere> sphere;  // tool frame
-  std::vector<ToolPlace> places;
+  std::vector<ToolPoint> places;
 };
 
 /// "hand's", "slid 10 mm", "1586"
-std::string name_of(const ToolPlace& place);
+std::string name_of(const ToolPoint& place);
 
 /// The shortest turn that brings one unit vector to another.
 model::Quat turn_between(const model::Vec3& from, const model::Vec3& to);

@@ -179,7 +179,7 @@ int measure(const program::Program& program, Options& o) {
     return program.fail(program::interruption(),
                         "what was measured until then is told, without a picture");
   const auto verdict = check_peer(*result);
-  if (verdict && !verdict->passed()) fmt::print(stderr, "tact-jitter: {}\n", verdict->sentence());
+  if (verdict && !verdict->passed()) fmt::print(stderr, "tact-jitter: {}\n", verdict->message());
   return exit_status(*result);
 }
 

@@ -11,7 +11,7 @@
 #include "firmware/pc/environment.h"
 #include "model/io/file_writer.h"
 #include "model/io/input_file.h"
-#include "model/reader/scene_words.h"
+#include "model/reader/scene_text.h"
 #include "tools/chart/report/pictures.h"
 #include "tools/chart/report/report.h"
 #include "tools/chart/report/tool_report.h"
@@ -64,7 +64,7 @@ std::string hash_of_files(std::initializer_list<std::string> paths) {
   for (const std::string& path : paths) {
     if (path.empty()) continue;
     const auto text = model::io::read_file(path);
-    // A file that cannot be read is told by whoever needs it, with its name.
+    // A file that cannot be read is told by any user needs it, with its name.
     hash.add(text ? *text : std::string());
   }
   return hash.hex();
@@ -123,7 +123,7 @@ Result<report::Table> table_of(const Options& o, const Scene& scene,
   }
   const auto rows = measure_chart(scene, reference, options);
   if (!rows) return rows.error();
-  // One sentence instead of a table of failures.
+  // One message instead of a table of failures.
   if (std::ranges::none_of(*rows, &std::string::empty, &ChartRow::failure))
     return Error{rows->front().failure};
   report::Table table = empty_chart();

@@ -88,7 +88,7 @@ Result<FitData> read_data(const Options& o, const Scene& scene) {
         !site.name.empty() && site.name.size() < 10 &&
         std::all_of(
             site.name.begin(), site.name.end(), [](char c) { return c >= '0' && c <= '9'; });
-    if (is_number) site.at = place_at_vertex(scene.organ_mesh, std::stoul(site.name));
+    if (is_number) site.at = surface_point_at_vertex(scene.organ_mesh, std::stoul(site.name));
   }
   return data;
 }
@@ -143,7 +143,7 @@ std::optional<Error> fit_laws(const Options& o, const Scene& scene, FitReport& r
       report.laws.push_back(std::move(**fitted[i]));
     else
       // One law that cannot be made must not cost the others.
-      report.notes.push_back((*laws)[i].name + " was not fitted: " + fitted[i]->error().sentence);
+      report.notes.push_back((*laws)[i].name + " was not fitted: " + fitted[i]->error().message);
   if (report.laws.empty()) return Error{report.notes.front()};
   return std::nullopt;
 }
@@ -152,7 +152,7 @@ std::optional<Error> fit_relaxation(const Options& o, FitReport& report) {
   const auto held = read_relaxation_csv(o.relaxation, o.columns);
   if (!held) return held.error();
   auto fit = fit_prony(*held, {.terms = o.terms});
-  if (!fit) return Error{o.relaxation + ": " + fit.error().sentence};
+  if (!fit) return Error{o.relaxation + ": " + fit.error().message};
   report.relaxation = std::move(*fit);
   return std::nullopt;
 }

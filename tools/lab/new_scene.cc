@@ -113,7 +113,7 @@ Result<Organ> read(const Options& o, const std::string& folder) {
 }
 
 std::string text_of(const Options& o, const OutputNames& names, const Organ& organ,
-                    const new_scene::ScenePlace& place, const char* law) {
+                    const new_scene::ScenePlacement& place, const char* law) {
   const auto beside = [](const std::string& path) { return fs::path(path).filename().string(); };
   std::error_code failed;
   const std::string source = fs::absolute(o.organ.source, failed).lexically_normal().string();
@@ -151,14 +151,14 @@ std::optional<Error> condense(const std::string& scene_path, const std::string& 
   return bytes ? std::nullopt : std::optional(bytes.error());
 }
 
-/// `sentence` with the folder where the files will come; none is there yet.
-std::string about(std::string sentence, const std::string& scratch, const OutputNames& names) {
+/// `message` with the folder where the files will come; none is there yet.
+std::string about(std::string message, const std::string& scratch, const OutputNames& names) {
   std::error_code failed;
   const std::string folder = fs::absolute(names.scene, failed).parent_path().string();
-  for (std::size_t at = 0; (at = sentence.find(scratch, at)) != std::string::npos;
+  for (std::size_t at = 0; (at = message.find(scratch, at)) != std::string::npos;
        at += folder.size())
-    sentence.replace(at, scratch.size(), folder);
-  return sentence;
+    message.replace(at, scratch.size(), folder);
+  return message;
 }
 
 /// What lies in the scratch folder, under the names it will have; the scene is the last to appear.
@@ -197,7 +197,7 @@ Result<bool> make_scene(const Options& o, const OutputNames& names, const std::s
   if (auto error = model::io::write_file(made->tool, new_scene::tool_mesh())) return *error;
   if (auto error = write_scene("compliance")) return *error;
   if (auto error = condense(made->scene, made->map)) return *error;
-  // Its own sentence if it does not.
+  // Its own message if it does not.
   if (const auto taken = new_scene::ask("tactd", {made->scene, "--check"}, log); !taken)
     return taken.error();
   bool is_planned = o.plan;
@@ -209,7 +209,7 @@ Result<bool> make_scene(const Options& o, const OutputNames& names, const std::s
     if (const auto none = new_scene::choose_law(*made, log, report_here)) {
       if (program::was_interrupted(*none)) return *none;
       is_planned = false;
-      report_here("plan", "none: " + none->sentence);
+      report_here("plan", "none: " + none->message);
       if (auto error = write_scene("compliance")) return *error;
     }
   }
@@ -253,7 +253,7 @@ Result<int> run(const program::Program&, Options& o) {
   const auto folder = program::ScratchFolder::make("tact-new-scene");
   if (!folder) return folder.error();
   const auto is_planned = make_scene(o, *names, folder->path());
-  if (!is_planned) return Error{about(is_planned.error().sentence, folder->path(), *names)};
+  if (!is_planned) return Error{about(is_planned.error().message, folder->path(), *names)};
   report_what_next(*names, o.plan, *is_planned);
   return 0;
 }

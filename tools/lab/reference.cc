@@ -145,7 +145,7 @@ Result<Solved> solve_all(const Organ& organ, const std::vector<Indentation>& cas
     if (!result) {
       if (!cases[job].large_strain || !found_no_solution(result.error())) return result.error();
       // No mesh stands every pull: that is an answer, no failure of the run.
-      why_not[job] = result.error().sentence;
+      why_not[job] = result.error().message;
       return std::nullopt;
     }
     solved[job] = std::move(*result);
@@ -207,7 +207,7 @@ void print_table(const ground_truth::ReferenceData& data) {
 void print_table(const ground_truth::ToolReference& data) {
   fmt::print("{:>9} {:>9} {:>10} {:>11}  {}\n", "place", "depth mm", "force N", "mesh err %",
              "of each sphere N");
-  for (const ground_truth::ToolPlace& place : data.places)
+  for (const ground_truth::ToolPoint& place : data.places)
     for (const ground_truth::ToolCase& c : place.cases)
       fmt::print("{:>9} {:>9.3g} {:>10.5f} {:>11.2f}  {:.5f}\n", name_of(place), c.depth_m * 1e3,
                  c.force_N, c.force_error_ratio * 100.0, fmt::join(c.sphere_N, " "));

@@ -48,7 +48,7 @@ void print_text(const std::vector<MapReport>& reports) {
   for (const MapReport& report : reports) {
     fmt::print("{}: {} rows\n", report.name, report.rows);
     for (const Finding& f : report.findings)
-      fmt::print("  {}  {}\n", f.holds ? "ok  " : "FAIL", f.sentence);
+      fmt::print("  {}  {}\n", f.holds ? "ok  " : "FAIL", f.message);
     for (const std::string& file : report.files) fmt::print("  {}\n", file);
   }
 }
@@ -58,7 +58,7 @@ json to_json(const std::vector<MapReport>& reports) {
   for (const MapReport& report : reports) {
     json findings = json::array();
     for (const Finding& f : report.findings)
-      findings.push_back({{"holds", f.holds}, {"sentence", f.sentence}, {"numbers", f.numbers}});
+      findings.push_back({{"holds", f.holds}, {"sentence", f.message}, {"numbers", f.numbers}});
     maps.push_back({{"map", report.name},
                     {"rows", report.rows},
                     {"findings", findings},
@@ -87,7 +87,7 @@ model::Result<int> run(const program::Program& program, Options& o) {
     print_text(maps.reports);
   if (maps.error)
     return program.fail(*maps.error, fmt::format("{} maps are written", maps.reports.size()));
-  // 1: measured, and a sentence about it is false.
+  // 1: measured, and a message about it is false.
   return all_hold(maps.reports) ? 0 : 1;
 }
 

@@ -21,7 +21,7 @@ namespace {
 
 using model::Error;
 using model::Result;
-using model::scene::PressPlace;
+using model::scene::PressPoint;
 using model::scene::PressSettings;
 using model::scene::PressStep;
 using model::scene::PressSweep;
@@ -95,11 +95,11 @@ Result<double> limit_N_per_m(const Options& o, const Scene& scene) {
   return firmware::admission::stiffness_limit_N_per_m(scene, (*tissue)->law(), (*device)->info());
 }
 
-Result<std::vector<PressPlace>> places_of(const Options& o, const Scene& scene) {
+Result<std::vector<PressPoint>> places_of(const Options& o, const Scene& scene) {
   const bool both = o.square == o.upright;
   if (o.vertex.empty())
-    return press_places(scene, *count_in(o.vertices), o.square || both, o.upright || both);
-  std::vector<PressPlace> out;
+    return press_points(scene, *count_in(o.vertices), o.square || both, o.upright || both);
+  std::vector<PressPoint> out;
   for (const std::uint32_t vertex : o.vertex) {
     if (vertex >= scene.organ_mesh.vertex_m.size())
       return Error{fmt::format("--vertex {}: the organ has the vertices 0 to {}", vertex,

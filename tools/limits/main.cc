@@ -67,7 +67,7 @@ std::optional<Error> ask_for_consent(const Options& o, const Scene& scene) {
   const double force_N = scene.limits.force_N;
   fmt::print(stderr, "{}Type: {}\n> ",
              warning_text(scene.device.kind, force_N, scene.device.lines.wired()),
-             consent_words(force_N));
+             consent_text(force_N));
   std::fflush(stderr);
   return read_consent(std::cin, force_N);
 }
@@ -84,7 +84,7 @@ int test_limits(const program::Program& program, const Options& o) {
   if (!cases) return program.fail(cases.error());
   const auto scene = o.scene.load();
   if (!scene) return program.fail(scene.error());
-  // Before the run: whoever changes a file meanwhile must not get its digest into the report.
+  // Before the run: any user changes a file meanwhile must not get its digest into the report.
   auto evidence = collect_evidence(o.scene.path, o.scene.overrides, o.people);
   if (!evidence) return program.fail(evidence.error());
   if (const auto error = program::prepare_folder(o.out)) return program.fail(*error);
@@ -105,7 +105,7 @@ int test_limits(const program::Program& program, const Options& o) {
   else
     fmt::print("{}", to_text(*report));
   if (!files) return program.fail(files.error(), "the tables are written, the page is not");
-  if (!o.json) fmt::print("{}: {}/limits.html\n", report->result_words(), o.out);
+  if (!o.json) fmt::print("{}: {}/limits.html\n", report->result_text(), o.out);
   return report->passed() ? 0 : 1;
 }
 

@@ -109,7 +109,7 @@ Result<LimitsReport> run_simulated(const model::scene::Scene& scene, const hal::
 Result<LimitsReport> run_real(const model::scene::Scene& scene, hal::Device& device,
                               const PlanOptions& options) {
   auto lines = hal::gpio::open_safety_lines(scene.device.lines);
-  if (!lines) return Error{fmt::format("{}: {}", scene.path, lines.error().sentence)};
+  if (!lines) return Error{fmt::format("{}: {}", scene.path, lines.error().message)};
   std::vector<firmware::pc::Shortfall> shortfalls;
   firmware::pc::use_small_thread_stacks();
   const firmware::pc::ProcessSetup setup(shortfalls);
@@ -144,7 +144,7 @@ Result<LimitsReport> run_real(const model::scene::Scene& scene, hal::Device& dev
   const auto filter =
       firmware::watch::CallFilter::make(device.loop_calls(), (*lines)->loop_calls(), requests);
   // A kernel without it is no reason not to test; the report says so.
-  if (!filter) fmt::print(stderr, "tact-limits: {}\n", filter.error().sentence);
+  if (!filter) fmt::print(stderr, "tact-limits: {}\n", filter.error().message);
   report.call_filter =
       play_guarded(runs, bench, filter ? filter->get() : nullptr, options.progress).call_filter;
   if (const Fault found = requests.fault.load(); found != Fault::kNone)

@@ -45,7 +45,7 @@ void check_sites(const Scene& after, bool is_same_file, std::vector<Misfit>& mis
 void check_map(const Scene& after, std::vector<Misfit>& misfits) {
   if (after.compliance.map_path.empty()) return;
   const auto map = read_scene_map(after);
-  if (!map) misfits.push_back({.keys = "compliance.map", .text = map.error().sentence});
+  if (!map) misfits.push_back({.keys = "compliance.map", .text = map.error().message});
 }
 
 }  // namespace

@@ -110,16 +110,16 @@ class Listener {
   const std::function<void(const std::string&, int)>& on_percent_;
 };
 
-/// `sentence` with the name of the file that a person knows.
-std::string about(const std::string& source, const std::string& scratch, std::string sentence) {
-  const std::size_t at = sentence.find(scratch);
-  return at == std::string::npos ? sentence : sentence.replace(at, scratch.size(), source);
+/// `message` with the name of the file that a person knows.
+std::string about(const std::string& source, const std::string& scratch, std::string message) {
+  const std::size_t at = message.find(scratch);
+  return at == std::string::npos ? message : message.replace(at, scratch.size(), source);
 }
 
 /// Why repair.py ended without a mesh and without a word.
 Error no_mesh(const std::string& source, const Error& ran, const std::string& log_path) {
   if (program::was_interrupted(ran)) return ran;
-  if (ran.sentence.find("ended with signal") != std::string::npos) {
+  if (ran.message.find("ended with signal") != std::string::npos) {
     return Error{
         fmt::format("{}: its reader in VTK crashed: the file is damaged, or not of the "
                     "format that its ending says; export the mesh again",
@@ -147,8 +147,8 @@ Result<Repaired> repair_file(const RepairOrder& order,
   if (const auto file = model::io::InputFile::open(order.source, kFileRemedy); !file)
     return file.error();
   const auto script = find_script();
-  if (!script) return Error{fmt::format("{}: {}", order.source, script.error().sentence)};
-  // In memory: whoever kills this program with all the numbers of a scan in it cleans up nothing.
+  if (!script) return Error{fmt::format("{}: {}", order.source, script.error().message)};
+  // In memory: any user kills this program with all the numbers of a scan in it cleans up nothing.
   const auto plain = program::MemoryFile::make(), repaired = program::MemoryFile::make(),
              log = program::MemoryFile::make();
   for (const auto* file : {&plain, &repaired, &log})
@@ -180,12 +180,12 @@ Result<Repaired> repair_file(const RepairOrder& order,
   auto obj = model::mesh::load_obj(target, 1.0);
   if (!obj) {
     // "PATH:LINE: the face ...; remedy in a mesh editor"
-    const std::string& reported = obj.error().sentence;
+    const std::string& reported = obj.error().message;
     const std::size_t what = reported.find(": ", target.size());
-    std::string sentence = what == std::string::npos ? reported : reported.substr(what + 2);
+    std::string message = what == std::string::npos ? reported : reported.substr(what + 2);
     // The reader's remedy is this repair.
-    sentence.resize(std::min(sentence.find("; "), sentence.size()));
-    return Error{fmt::format("{}: after these steps {}; {}", order.source, sentence,
+    message.resize(std::min(message.find("; "), message.size()));
+    return Error{fmt::format("{}: after these steps {}; {}", order.source, message,
                              remedy_of(order.options))};
   }
   return Repaired{

@@ -110,7 +110,7 @@ std::optional<Error> write_placement(const std::string& scene_path, const Placem
   const auto before = model::io::read_file(scene_path);
   if (!before) return before.error();
   const auto after = placed_in(*before, placement);
-  if (!after) return Error{fmt::format("{}: {}", scene_path, after.error().sentence)};
+  if (!after) return Error{fmt::format("{}: {}", scene_path, after.error().message)};
   return model::io::write_file(scene_path, *after);
 }
 

@@ -28,8 +28,8 @@ std::string four_digits(double x) { return fmt::format("{:.4g}", x); }
 
 }  // namespace
 
-ScenePlace place_of(const model::mesh::SurfaceMesh& organ) {
-  ScenePlace place;
+ScenePlacement place_of(const model::mesh::SurfaceMesh& organ) {
+  ScenePlacement place;
   const auto& p_m = organ.vertex_m;
   for (std::size_t v = 0; v < p_m.size(); ++v)
     if (p_m[v].z > p_m[place.top].z) place.top = v;
@@ -43,7 +43,7 @@ ScenePlace place_of(const model::mesh::SurfaceMesh& organ) {
 
 std::string tool_mesh() { return kForceps; }
 
-std::string scene_text(const SceneValues& values, const ScenePlace& place) {
+std::string scene_text(const SceneValues& values, const ScenePlacement& place) {
   const double nu = values.poisson_ratio;
   const double of_liver = values.youngs_modulus_Pa / (1.0 - nu * nu) / kLiver_Pa;
   const double press_m = mesh::rounded_m(kPress_ratio * place.working_depth_m);

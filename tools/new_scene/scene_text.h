@@ -25,18 +25,18 @@ struct SceneValues {
 };
 
 /// What the organ's shape decides.
-struct ScenePlace {
+struct ScenePlacement {
   std::size_t top = 0;  // vertex
   model::Vec3 position_m;
   mesh::HeldBox held;
   double working_depth_m = 0.0;
 };
 
-ScenePlace place_of(const model::mesh::SurfaceMesh& organ);
+ScenePlacement place_of(const model::mesh::SurfaceMesh& organ);
 
 /// The forceps of the shipped liver, mm.
 std::string tool_mesh();
 
-std::string scene_text(const SceneValues& values, const ScenePlace& place);
+std::string scene_text(const SceneValues& values, const ScenePlacement& place);
 
 }  // namespace tact::tools::new_scene

@@ -94,7 +94,7 @@ PaperShape shape_at(double pitch_m, std::size_t rings, double t) RT_SAFE {
     out.drop_m[i - 1] = drop(pitch_m, i, t).drop_m;
     out.ring_m[i - 1] = z += out.drop_m[i - 1];  // HX-6
   }
-  out.rim_slope = out.drop_m[rings - 1] / pitch_m;
+  out.boundary_slope = out.drop_m[rings - 1] / pitch_m;
   return out;
 }
 
@@ -126,9 +126,10 @@ double paper_force_N(const PaperShape& shape, double stiffness_N_per_m, HexWeigh
   return stiffness_N_per_m * sum_m;
 }
 
-PaperRings paper_rings(double first_strain, double rim_slope) RT_SAFE {
-  if (!is_positive(first_strain) || !is_positive(rim_slope)) return {.status = LawStatus::kInvalid};
-  const double b2 = rim_slope * rim_slope, c = first_strain / (1.0 + first_strain);
+PaperRings paper_rings(double first_strain, double boundary_slope) RT_SAFE {
+  if (!is_positive(first_strain) || !is_positive(boundary_slope))
+    return {.status = LawStatus::kInvalid};
+  const double b2 = boundary_slope * boundary_slope, c = first_strain / (1.0 + first_strain);
   // HX-13  eps_m = sqrt(1 + b^2) - 1 = b^2/(sqrt(1 + b^2) + 1)
   const double strain = b2 / (std::sqrt(1.0 + b2) + 1.0);
   const double exact = 0.5 * (1.0 + c * (1.0 + strain) / strain);

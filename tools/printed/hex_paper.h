@@ -43,7 +43,7 @@ inline constexpr std::size_t kMaxPaperRings = 64;
 struct PaperShape {
   std::size_t rings = 0;
   double first_strain = 0.0;                        // eps_1
-  double rim_slope = 0.0;                           // l_m/r
+  double boundary_slope = 0.0;                      // l_m/r
   std::array<double, kMaxPaperRings> strain{};      // eps_i, ring 1 first
   std::array<double, kMaxPaperRings> drop_m{};      // l_i, ring 1 first
   std::array<double, kMaxPaperRings + 1> ring_m{};  // Z_j
@@ -63,7 +63,7 @@ struct PaperRings {
   std::size_t rings = 0;
   LawStatus status = LawStatus::kOk;
 };
-PaperRings paper_rings(double first_strain, double rim_slope) RT_SAFE;
+PaperRings paper_rings(double first_strain, double boundary_slope) RT_SAFE;
 
 struct HexPaperParameters {
   double ring_pitch_m = 0.0;            // r, > 0

@@ -25,7 +25,7 @@ void remember(int signal) {
 
 }  // namespace
 
-InterruptWatch::InterruptWatch() {
+InterruptFlag::InterruptFlag() {
   pressed.store(false);
   for (std::size_t i = 0; i < kSignals.size(); ++i) {
     struct sigaction watched{};
@@ -38,7 +38,7 @@ InterruptWatch::InterruptWatch() {
   }
 }
 
-InterruptWatch::~InterruptWatch() {
+InterruptFlag::~InterruptFlag() {
   for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &before_[i], nullptr);
   pressed.store(false);
 }

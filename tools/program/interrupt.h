@@ -9,12 +9,12 @@ namespace tact::tools::program {
 
 /// While it lives, the first Ctrl-C, SIGTERM or closed terminal is remembered. A second Ctrl-C or
 /// SIGTERM ends the program at once, with status 130 or 143, and what runs for it (run_program.h).
-class InterruptWatch {
+class InterruptFlag {
  public:
-  InterruptWatch();
-  ~InterruptWatch();
-  InterruptWatch(const InterruptWatch&) = delete;
-  InterruptWatch& operator=(const InterruptWatch&) = delete;
+  InterruptFlag();
+  ~InterruptFlag();
+  InterruptFlag(const InterruptFlag&) = delete;
+  InterruptFlag& operator=(const InterruptFlag&) = delete;
 
  private:
   std::array<struct sigaction, 4> before_{};

@@ -58,7 +58,7 @@ int Program::run(int argc, char** argv) {
 int Program::fail(const Error& error, std::string_view kept) const {
   const bool interrupted = was_interrupted(error);
   fmt::print(stderr, "{}{}: {}\n", name_, part_,
-             interrupted ? fmt::format("interrupted; {}", kept) : error.sentence);
+             interrupted ? fmt::format("interrupted; {}", kept) : error.message);
   return interrupted ? 1 : 2;
 }
 

@@ -69,14 +69,14 @@ class Program {
   std::string name_, part_, command_;  // part_: " chart" once it was named
   std::unique_ptr<CLI::App> options_;
   std::map<std::string, std::function<model::Result<int>(const Program&)>> parts_;
-  std::optional<InterruptWatch> watch_;
+  std::optional<InterruptFlag> watch_;
 };
 
 /// SCENE and --set.
 struct SceneArguments {
   std::string path;
   std::vector<std::string> overrides;
-  bool trust_library = false;  // of the vendor, whoever's file it is
+  bool trust_library = false;  // of the vendor, any user's file it is
 
   void add_to(CLI::App& options, const std::string& needs = "");
   model::Result<model::scene::Scene> load() const;

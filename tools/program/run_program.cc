@@ -75,7 +75,7 @@ bool still_runs(pid_t child) {
          info.si_pid == 0;
 }
 
-/// The child, in the table of those to end; or a sentence about what kept it from starting.
+/// The child, in the table of those to end; or a message about what kept it from starting.
 Result<pid_t> start_child(const ProgramCall& call) {
   std::vector<std::string> words{call.program};
   words.insert(words.end(), call.arguments.begin(), call.arguments.end());
@@ -211,7 +211,7 @@ bool RunningProgram::is_running() const { return child_ > 0 && still_runs(child_
 
 Error interruption() { return Error{std::string(kInterrupted)}; }
 
-bool was_interrupted(const Error& error) { return error.sentence == kInterrupted; }
+bool was_interrupted(const Error& error) { return error.message == kInterrupted; }
 
 Result<ScratchFolder> ScratchFolder::make(const std::string& name) {
   std::error_code failed;

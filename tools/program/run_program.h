@@ -25,14 +25,14 @@ struct ProgramCall {
   std::vector<std::string> arguments;
   std::string directory;      // where it runs
   std::string log_path;       // absolute, of everything it prints
-  std::string package;        // the Debian package that has it, for the sentence when it is missing
+  std::string package;        // the Debian package that has it, for the message when it is missing
   double time_limit_s = 0.0;  // 0: none
   bool any_status = false;    // some programs end well with a status above 0
   std::vector<std::pair<std::string, std::string>> environment;  // on top of ours
   std::function<void(std::string_view)> on_line{};  // each line that it prints, as it comes
 };
 
-/// What the program printed, if it ended with status 0. Otherwise a sentence: not installed (and
+/// What the program printed, if it ended with status 0. Otherwise a message: not installed (and
 /// what to install), interrupted, over its time, or its last lines and where all of them are.
 model::Result<std::string> run_program(const ProgramCall& call);
 

@@ -24,7 +24,7 @@ class Pressers {
     idle_.push_back(std::move(first));
   }
 
-  model::scene::PressResult press(const model::scene::PressPlace& place) {
+  model::scene::PressResult press(const model::scene::PressPoint& place) {
     std::unique_ptr<Presser> presser = take();
     const auto result = presser->press(place);
     const std::lock_guard lock(mutex_);
@@ -54,7 +54,7 @@ class Pressers {
 }  // namespace
 
 Result<PressSweep> sweep_on_all_cores(const model::scene::Scene& scene,
-                                      std::span<const model::scene::PressPlace> places,
+                                      std::span<const model::scene::PressPoint> places,
                                       const model::scene::PressSettings& settings) {
   auto first = Presser::make(scene, settings);
   if (!first) return first.error();

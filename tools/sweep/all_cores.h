@@ -11,7 +11,7 @@ namespace tact::tools::sweep {
 
 /// As sweep_presses, to the same numbers; interruption() of run_program.h after Ctrl-C.
 model::Result<model::scene::PressSweep> sweep_on_all_cores(
-    const model::scene::Scene& scene, std::span<const model::scene::PressPlace> places,
+    const model::scene::Scene& scene, std::span<const model::scene::PressPoint> places,
     const model::scene::PressSettings& settings);
 
 }  // namespace tact::tools::sweep

@@ -38,11 +38,12 @@ struct Way {
 double gap_m(const model::contact::ContactScene& contact, const Tool& tool) {
   double least_m = 1.0;
   for (const model::contact::ProbeSphere& s : contact.spheres)
-    least_m = std::min(least_m, nearest_site(contact.tree, contact.surface,
-                                             tool.position_m + rotate(tool.orientation, s.offset_m),
-                                             1.0, model::contact::kNoTriangle)
-                                        .distance_m -
-                                    s.radius_m);
+    least_m = std::min(
+        least_m, nearest_contact_point(contact.tree, contact.surface,
+                                       tool.position_m + rotate(tool.orientation, s.offset_m), 1.0,
+                                       model::contact::kNoTriangle)
+                         .distance_m -
+                     s.radius_m);
   return least_m;
 }
 
@@ -124,7 +125,7 @@ Result<std::vector<ReferencePress>> press_reference(const model::scene::Scene& s
                  is_of_vertex ? -smooth.organ_mesh.vertex_normal[v] : smooth.hand_inward,
                  truth.value("turned_deg", 0.0));
       auto press = check(contact, way, truth);
-      if (!press) return Error{path + ": " + press.error().sentence};
+      if (!press) return Error{path + ": " + press.error().message};
       out.push_back(std::move(*press));
     }
   } catch (const json::exception& wrong) {

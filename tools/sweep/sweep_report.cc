@@ -12,7 +12,7 @@
 namespace tact::tools::sweep {
 namespace {
 
-using model::scene::PressPlace;
+using model::scene::PressPoint;
 using model::scene::PressResult;
 using model::scene::PressState;
 using model::scene::PressSweep;
@@ -33,7 +33,7 @@ const char* word_of(PressState state) {
 }
 
 /// "changes+draws_in", or "none"
-std::string flaw_words(const PressResult& result, const PressSweep& sweep) {
+std::string flaw_text(const PressResult& result, const PressSweep& sweep) {
   const auto flaws = flaws_of(result, sweep.settings);
   std::string out;
   const auto add = [&out](bool holds, const char* word) {
@@ -78,9 +78,9 @@ report::Table presses_table(const model::scene::Scene& scene, const PressSweep& 
   for (const PressResult& r : sweep.results) {
     const model::Vec3& at_m = scene.organ_mesh.vertex_m[r.place.vertex];
     table.add({static_cast<double>(r.place.vertex), word_of(r.place.way), at_m.x, at_m.y, at_m.z,
-               word_of(r.state), flaw_words(r, sweep), r.deepest_m, r.force_N,
-               r.slope_N_per_m.value, r.slope_N_per_m.depth_m, r.change_N.value, r.change_N.depth_m,
-               r.least_N.value, r.least_N.depth_m, r.energy_ratio.value, r.energy_ratio.depth_m});
+               word_of(r.state), flaw_text(r, sweep), r.deepest_m, r.force_N, r.slope_N_per_m.value,
+               r.slope_N_per_m.depth_m, r.change_N.value, r.change_N.depth_m, r.least_N.value,
+               r.least_N.depth_m, r.energy_ratio.value, r.energy_ratio.depth_m});
   }
   return table;
 }
@@ -128,7 +128,7 @@ unset multiplot
 )gp"};
 }
 
-std::string command_to_repeat(const std::string& command, const PressPlace& place) {
+std::string command_to_repeat(const std::string& command, const PressPoint& place) {
   return fmt::format("{} --vertex {} --{}", command, place.vertex, word_of(place.way));
 }
 

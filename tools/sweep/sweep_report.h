@@ -19,7 +19,7 @@ report::Table presses_table(const model::scene::Scene& scene,
 report::Picture presses_picture(const model::scene::PressSweep& sweep);
 
 /// The command that repeats one press and writes its force along the way.
-std::string command_to_repeat(const std::string& command, const model::scene::PressPlace& place);
+std::string command_to_repeat(const std::string& command, const model::scene::PressPoint& place);
 
 /// The result for people; `command`: as it was typed.
 std::string text_of(const model::scene::PressSweep& sweep, const std::string& command,

@@ -265,8 +265,8 @@ void print_help() {
       "Google Benchmark. Exit status: 0 measured, 2 bad usage or input.\n");
 }
 
-int fail(const std::string& sentence) {
-  fmt::print(stderr, "tact-tracking-bench: {}\n", sentence);
+int fail(const std::string& message) {
+  fmt::print(stderr, "tact-tracking-bench: {}\n", message);
   return 2;
 }
 
@@ -276,9 +276,9 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv, print_help);
   if (argc != 2) return fail("give one SCENE and options of Google Benchmark; see --help");
   const auto scene = tact::model::scene::load_scene(argv[1], {});
-  if (!scene) return fail(scene.error().sentence);
+  if (!scene) return fail(scene.error().message);
   const auto motion = scene_motion(*scene);
-  if (!motion) return fail(motion.error().sentence);
+  if (!motion) return fail(motion.error().message);
   const Vector3d grip_m = figure::grip_m(summarize(scene->tool_mesh).high_m.z);
   const auto add = [&](const char* name, const std::vector<MotionFrame>& frames, RootRule rule) {
     benchmark::RegisterBenchmark(name, count_updates, frames, grip_m, rule)->Iterations(1);

@@ -65,7 +65,7 @@ void compare_encoded(Report& report, const std::optional<CanFrame>& frame, const
 
 namespace can_cases {
 
-json names_of(std::uint32_t bits, std::span<const hal::can::CanErrorWords> words) {
+json names_of(std::uint32_t bits, std::span<const hal::can::CanErrorText> words) {
   json names = json::array();
   for (const auto& one : words)
     if ((bits & one.bit) != 0) names.push_back(one.name);
@@ -75,10 +75,10 @@ json names_of(std::uint32_t bits, std::span<const hal::can::CanErrorWords> words
 json error_results(const std::vector<std::uint8_t>& bytes) {
   const auto error = hal::can::decode_can_error(bytes);
   if (!error) return {{"classes", "nothing"}};
-  json got{{"classes", names_of(error->classes, hal::can::can_error_class_words())},
+  json got{{"classes", names_of(error->classes, hal::can::can_error_class_texts())},
            {"action", hal::can::can_error_action_name(error->action)}};
   if (error->has(hal::can::CanErrorClass::kController))
-    got["controller"] = names_of(error->controller, hal::can::can_controller_words());
+    got["controller"] = names_of(error->controller, hal::can::can_controller_texts());
   if (error->has_counters) {
     got["tx_errors"] = error->tx_errors;
     got["rx_errors"] = error->rx_errors;

@@ -47,7 +47,7 @@ json energy_results(const json& one_case) {
           {"F", at.force_N},
           {"U", at.energy_J},
           {"profile", ring_m},
-          {"boundary_reaction", at.rim_force_N}};
+          {"boundary_reaction", at.boundary_force_N}};
 }
 
 json boundary_results(const json& inputs) {
@@ -84,7 +84,7 @@ json paper_results(const json& one_case) {
           {"eps", strain},
           {"l", l},
           {"Z", z},
-          {"lm_over_r", at.rim_slope},
+          {"lm_over_r", at.boundary_slope},
           // HX-12 with both weights (X17).
           {"F_ring", printed::paper_force_N(at, stiffness_N_per_m, HexWeight::kRing)},
           {"F_node", printed::paper_force_N(at, stiffness_N_per_m, HexWeight::kNode)}};

@@ -56,8 +56,8 @@ void Report::begin_case(const std::string& id) {
   ++cases_;
 }
 
-void Report::call_damaged(const std::string& sentence) {
-  if (damage_.empty()) damage_ = sentence;
+void Report::call_damaged(const std::string& message) {
+  if (damage_.empty()) damage_ = message;
 }
 
 void Report::fail(Failure failure) {

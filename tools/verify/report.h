@@ -49,8 +49,8 @@ class Report {
   void compare_all(const nlohmann::json& got, const nlohmann::json& expect,
                    const Tolerance& tolerance);
 
-  /// The file itself is wrong. The first sentence is kept; what follows is computed for nothing.
-  void call_damaged(const std::string& sentence);
+  /// The file itself is wrong. The first message is kept; what follows is computed for nothing.
+  void call_damaged(const std::string& message);
   const std::string& damage() const { return damage_; }  // empty: none
 
   int passed() const { return cases_ - failed(); }

@@ -22,7 +22,8 @@ model::contact::Coupling coupling_of(const model::tissue::ElasticField& tissue,
   for (std::size_t i = 0; i < sphere.size(); ++i)
     for (std::size_t j = 0; j < sphere.size(); ++j)
       if (i != j)
-        c[i][j] = tissue.coupling(sphere[i].in, sphere[j].in, norm(at_m[i] - at_m[j])).skin_m_per_N;
+        c[i][j] =
+            tissue.coupling(sphere[i].in, sphere[j].in, norm(at_m[i] - at_m[j])).near_field_m_per_N;
   return c;
 }
 

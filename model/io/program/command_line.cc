@@ -18,10 +18,10 @@ bool is_empty_value(std::string_view word) {
 }
 
 /// With the subcommand that was named, as its --help tells its options.
-std::string refusal(const CLI::App& options, const char* program, std::string_view sentence) {
+std::string refusal(const CLI::App& options, const char* program, std::string_view message) {
   std::string name = program;
   for (const CLI::App* part : options.get_subcommands()) name += " " + part->get_name();
-  return fmt::format("{0}: {1}; see {0} --help\n", name, sentence);
+  return fmt::format("{0}: {1}; see {0} --help\n", name, message);
 }
 
 }  // namespace
@@ -50,7 +50,7 @@ std::optional<int> parse_command_line(CLI::App& options, const char* program, in
     return options.exit(error) == 0 ? 0 : 2;
   }
   if (const auto error = check ? check() : std::nullopt) {
-    fmt::print(stderr, "{}", refusal(options, program, error->sentence));
+    fmt::print(stderr, "{}", refusal(options, program, error->message));
     return 2;
   }
   return std::nullopt;

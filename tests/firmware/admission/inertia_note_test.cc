@@ -36,7 +36,7 @@ TEST(InertiaNote, OfTheShippedScenesTheHeartIsPressedTooFastForItsLaw) {
   for (const std::string name : {"gum", "heart", "liver", "liver_twist", "maintenance", "skin"}) {
     const auto scene =
         model::scene::load_scene(TACT_SOURCE_DIR "/model/scenes/" + name + ".toml", {});
-    ASSERT_TRUE(scene) << scene.error().sentence;
+    ASSERT_TRUE(scene) << scene.error().message;
     const auto tissue = std::move(*model::scene::make_tissue(*scene));
     const std::string note = inertia_note(*scene, tissue->law());
     EXPECT_EQ(note.empty(), name != "heart") << note;

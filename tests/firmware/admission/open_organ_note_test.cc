@@ -26,7 +26,7 @@ TEST(OpenOrganNote, OfTheShippedScenesOnlyTheHeartIsOpen) {
   for (const std::string name : {"gum", "heart", "liver", "liver_twist", "maintenance", "skin"}) {
     const auto scene =
         model::scene::load_scene(TACT_SOURCE_DIR "/model/scenes/" + name + ".toml", {});
-    ASSERT_TRUE(scene) << scene.error().sentence;
+    ASSERT_TRUE(scene) << scene.error().message;
     const std::string note = open_organ_note(*scene);
     if (name == "heart")
       EXPECT_NE(note.find("645 boundary edges"), std::string::npos) << note;

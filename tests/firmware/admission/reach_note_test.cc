@@ -47,7 +47,7 @@ TEST(ReachNote, EveryShippedSceneIsReached) {
   for (const std::string name : {"gum", "heart", "liver", "liver_twist", "maintenance", "skin"}) {
     const auto scene =
         model::scene::load_scene(TACT_SOURCE_DIR "/model/scenes/" + name + ".toml", {});
-    ASSERT_TRUE(scene) << scene.error().sentence;
+    ASSERT_TRUE(scene) << scene.error().message;
     EXPECT_EQ(reach_note(*scene), "");
   }
 }

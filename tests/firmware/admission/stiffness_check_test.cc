@@ -19,7 +19,7 @@ hal::DeviceInfo device_with(double damping_Ns_per_m) {
 }
 
 bool has(const model::Error& error, const std::string& part) {
-  return error.sentence.find(part) != std::string::npos;
+  return error.message.find(part) != std::string::npos;
 }
 
 TEST(StiffnessCheck, RefusesStiffnessBeyondTheDeviceLimitAndNamesTheKey) {
@@ -27,13 +27,13 @@ TEST(StiffnessCheck, RefusesStiffnessBeyondTheDeviceLimitAndNamesTheKey) {
   const auto tissue = std::move(*model::scene::make_tissue(scene));
   // One sphere, 100 N/m along the surface: K < b / (T/2 + t_d) = 1000 b.
   const auto fits = check_renderable(scene, *tissue, device_with(0.101));
-  ASSERT_TRUE(fits) << fits.error().sentence;
+  ASSERT_TRUE(fits) << fits.error().message;
   EXPECT_NEAR(fits->needed_N_per_m, 100.0, 1e-9);
   EXPECT_NEAR(fits->limit_N_per_m, 101.0, 1e-9);
   const auto refused = check_renderable(scene, *tissue, device_with(0.099));
   ASSERT_FALSE(refused);
   EXPECT_EQ(
-      refused.error().sentence,
+      refused.error().message,
       "plate.toml: contact.sliding_stiffness_N_per_m is too stiff: 100 N/m on 1 sphere is 100 "
       "N/m, this device is stable to 99 N/m at 1000 Hz; lower it to 99 N/m or less, raise "
       "rate_Hz, or take a device with more damping (device.sim.joint_damping_Nms_per_rad says what "
@@ -41,8 +41,8 @@ TEST(StiffnessCheck, RefusesStiffnessBeyondTheDeviceLimitAndNamesTheKey) {
   scene.tool.spheres.push_back({{}, 0.004});  // two spheres push at once
   const auto two = check_renderable(scene, *tissue, device_with(0.101));
   ASSERT_FALSE(two);
-  EXPECT_TRUE(has(two.error(), "100 N/m on 2 spheres is 200 N/m")) << two.error().sentence;
-  EXPECT_TRUE(has(two.error(), "to 50.5 N/m or less")) << two.error().sentence;
+  EXPECT_TRUE(has(two.error(), "100 N/m on 2 spheres is 200 N/m")) << two.error().message;
+  EXPECT_TRUE(has(two.error(), "to 50.5 N/m or less")) << two.error().message;
 }
 
 // Of a real device it is measured: raising the number would make no hand safer.
@@ -53,10 +53,10 @@ TEST(StiffnessCheck, NeverAsksForALargerNumberOfTheDevicesDamping) {
   device.damping_key = "device.falcon.joint_damping_Nms_per_rad";
   const auto refused = check_renderable(scene, *tissue, device);
   ASSERT_FALSE(refused);
-  EXPECT_FALSE(has(refused.error(), "raise device.")) << refused.error().sentence;
+  EXPECT_FALSE(has(refused.error(), "raise device.")) << refused.error().message;
   EXPECT_TRUE(
       has(refused.error(), "device.falcon.joint_damping_Nms_per_rad says what this one has"))
-      << refused.error().sentence;
+      << refused.error().message;
 }
 
 TEST(StiffnessCheck, NamesTheKeyWhereTheTissueIsTooStiffTangentially) {
@@ -67,9 +67,9 @@ TEST(StiffnessCheck, NamesTheKeyWhereTheTissueIsTooStiffTangentially) {
   const auto refused = check_renderable(scene, *tissue, device_with(0.6));
   ASSERT_FALSE(refused);
   EXPECT_TRUE(has(refused.error(), "the tissue, held and pulled along its surface, is too stiff"))
-      << refused.error().sentence;
+      << refused.error().message;
   EXPECT_TRUE(has(refused.error(), "set contact.sliding_stiffness_N_per_m to 600 N/m or less"))
-      << refused.error().sentence;
+      << refused.error().message;
 }
 
 TEST(StiffnessCheck, NamesThePullWhereItIsTheStifferOne) {
@@ -80,7 +80,7 @@ TEST(StiffnessCheck, NamesThePullWhereItIsTheStifferOne) {
   const auto refused = check_renderable(scene, *tissue, device_with(0.05));
   ASSERT_FALSE(refused);
   EXPECT_TRUE(has(refused.error(), "soften pull.stiffness_N_per_m to 50 N/m"))
-      << refused.error().sentence;
+      << refused.error().message;
 }
 
 TEST(StiffnessCheck, NamesTheLawWhereItIsTheStifferOne) {
@@ -92,10 +92,10 @@ TEST(StiffnessCheck, NamesTheLawWhereItIsTheStifferOne) {
   device.damping_key.clear();
   const auto refused = check_renderable(scene, *tissue, device);
   ASSERT_FALSE(refused);
-  EXPECT_TRUE(has(refused.error(), "law rhombus is too stiff")) << refused.error().sentence;
-  EXPECT_TRUE(has(refused.error(), "soften [rhombus] to 50 N/m")) << refused.error().sentence;
-  EXPECT_TRUE(refused.error().sentence.ends_with("or take a device with more damping"))
-      << refused.error().sentence;
+  EXPECT_TRUE(has(refused.error(), "law rhombus is too stiff")) << refused.error().message;
+  EXPECT_TRUE(has(refused.error(), "soften [rhombus] to 50 N/m")) << refused.error().message;
+  EXPECT_TRUE(refused.error().message.ends_with("or take a device with more damping"))
+      << refused.error().message;
 }
 
 TEST(StiffnessCheck, RefusesADeviceThatDoesNotTellItsDamping) {
@@ -104,7 +104,7 @@ TEST(StiffnessCheck, RefusesADeviceThatDoesNotTellItsDamping) {
   const auto refused =
       check_renderable(scene, *tissue, {.name = "mute", .grip = hal::GripKind::kNone});
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().sentence,
+  EXPECT_EQ(refused.error().message,
             "device mute does not tell its damping at the tool: fill DeviceInfo::at_tool");
 }
 
@@ -119,14 +119,14 @@ TEST(StiffnessCheck, RefusesADampingThatLeavesTheDeviceTooLittle) {
     scene.hunt_crossley.dissipation_s_per_m = dissipation_s_per_m;
     const auto tissue = std::move(*model::scene::make_tissue(scene));
     const auto fits = check_renderable(scene, *tissue, device_with(0.2));
-    ASSERT_TRUE(fits) << fits.error().sentence;
+    ASSERT_TRUE(fits) << fits.error().message;
     EXPECT_NEAR(fits->limit_N_per_m, 200.0 - 950.0 * dissipation_s_per_m, 1e-6) << "0.95 of d_w";
   }
   scene.hunt_crossley.dissipation_s_per_m = 0.12;
   const auto tissue = std::move(*model::scene::make_tissue(scene));
   const auto refused = check_renderable(scene, *tissue, device_with(0.2));
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().sentence,
+  EXPECT_EQ(refused.error().message,
             "plate.toml: law hunt_crossley damps too much: 0.057 N s/m on 2 spheres, where this "
             "device has 0.2 N s/m of its own and 100 N/m to show at 1000 Hz; lower the damping of "
             "[hunt_crossley] to 0.05 N s/m or less");
@@ -137,7 +137,7 @@ TEST(PressCheck, TellsTheLargestSlopeAndWhereTheSameEachTime) {
   const auto tissue = std::move(*model::scene::make_tissue(scene));
   const model::scene::TissueLaw& law = tissue->law();
   const auto check = check_presses(scene, law, device_with(0.3), 300.0);
-  ASSERT_TRUE(check) << check.error().sentence;
+  ASSERT_TRUE(check) << check.error().message;
   // One sphere on a plate: the steepest press of the law.
   double steepest_N_per_m = 0.0;
   for (double d_m = 0.0; d_m < law.range().press_m; d_m += 1e-5)
@@ -170,7 +170,7 @@ TEST(PressCheck, RefusesASlopeAboveTheLimitWhereTheHandPresses) {
   const auto refused = check_sweep(scene, tissue->law(), device_with(0.3), sweep);
   ASSERT_FALSE(refused);
   EXPECT_EQ(
-      refused.error().sentence,
+      refused.error().message,
       "plate.toml: the whole tool is too stiff where the hand presses: 301 N/m at vertex 7, "
       "upright, 3.2 mm deep; this device is stable to 300 N/m at 1000 Hz; soften [rhombus], raise "
       "rate_Hz, or take a device with more damping (device.sim.joint_damping_Nms_per_rad says what "
@@ -187,7 +187,7 @@ TEST(PressCheck, NamesABadPlaceWithTheRemedyAndDoesNotRefuseIt) {
   model::scene::PressSweep sweep{.settings = {.limit_N_per_m = 300.0}, .results = {}};
   sweep.results = {pressed(7, 200.0, 0.001), pressed(3080, 200.0, 0.262), pressed(5, 310.0, 0.001)};
   const auto check = check_sweep(scene, tissue->law(), device_with(0.3), sweep);
-  ASSERT_TRUE(check) << check.error().sentence;
+  ASSERT_TRUE(check) << check.error().message;
   EXPECT_EQ(check->slope_N_per_m, 310.0);
   EXPECT_EQ(check->place, "vertex 5, upright");
   EXPECT_EQ(

@@ -11,13 +11,13 @@
 namespace tact::firmware::admission::tick_budget_test {
 
 bool has(const model::Error& error, const std::string& part) {
-  return error.sentence.find(part) != std::string::npos;
+  return error.message.find(part) != std::string::npos;
 }
 
 TEST(TickBudget, RefusesALawThatCannotKeepItsBudget) {
   model::scene::Scene scene = tests::make_plate_scene();
   const auto free = check_budget(scene, {});
-  ASSERT_TRUE(free) << free.error().sentence;
+  ASSERT_TRUE(free) << free.error().message;
   EXPECT_EQ(free->budget_us, 500.0) << "without a tolerance: half a period";
   EXPECT_GT(free->measured.median_us, 0.0);
   EXPECT_LE(free->measured.median_us, free->measured.p999_us);
@@ -26,26 +26,27 @@ TEST(TickBudget, RefusesALawThatCannotKeepItsBudget) {
   const auto refused = check_budget(scene, {});
   ASSERT_FALSE(refused);
   for (const char* part : {"tolerance.tick_budget_us is 0.0001", "tact-lab plan", "median"})
-    EXPECT_TRUE(has(refused.error(), part)) << refused.error().sentence;
+    EXPECT_TRUE(has(refused.error(), part)) << refused.error().message;
 }
 
 TEST(TickBudget, WithHardRealTimeTheTailIsJudged) {
   model::scene::Scene scene = tests::make_plate_scene();
   scene.tolerance = {.force_error_ratio = 0.07, .shape_error_ratio = 0.2, .tick_budget_us = 1e6};
   const auto checked = check_budget(scene, pc::RtSettings{});
-  ASSERT_TRUE(checked) << checked.error().sentence;
+  ASSERT_TRUE(checked) << checked.error().message;
   EXPECT_EQ(checked->checked_us, checked->measured.p999_us);
   scene.tolerance->tick_budget_us = 1e-4;
   const auto refused = check_budget(scene, pc::RtSettings{});
   ASSERT_FALSE(refused);
-  EXPECT_TRUE(has(refused.error(), "(p99.9)")) << refused.error().sentence;
+  EXPECT_TRUE(has(refused.error(), "(p99.9)")) << refused.error().message;
 }
 
 // A patch that stays where it is costs less than one that follows the hand: count what is asked.
-class AskedLaw final : public model::contact::SiteLaw {
+class AskedLaw final : public model::contact::ContactLaw {
  public:
-  model::contact::SiteResponse respond(const model::contact::Indentation& in) RT_SAFE override {
-    asked[in.place.triangle % asked.size()] = true;
+  model::contact::ContactLawResponse respond(
+      const model::contact::Indentation& in) RT_SAFE override {
+    asked[in.surface_point.triangle % asked.size()] = true;
     return {};
   }
   void leave(std::size_t) RT_SAFE override {}

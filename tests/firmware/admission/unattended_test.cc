@@ -12,8 +12,8 @@ TEST(Unattended, AServiceDoesNotHomeOnAJigThatNobodySees) {
     scene.device.can.homing = model::Homing::kJig;
     const auto refused = why_not_unattended(scene, true);
     ASSERT_TRUE(refused) << kind;
-    EXPECT_NE(refused->sentence.find("\"absolute\""), std::string::npos) << "the remedy";
-    EXPECT_EQ(refused->sentence.find("\"index\"") != std::string::npos,
+    EXPECT_NE(refused->message.find("\"absolute\""), std::string::npos) << "the remedy";
+    EXPECT_EQ(refused->message.find("\"index\"") != std::string::npos,
               scene.device.kind == "can-odrive")
         << "the others cannot";
     EXPECT_FALSE(why_not_unattended(scene, false)) << "a person sees the arms";

@@ -159,7 +159,7 @@ TEST_F(BlackBoxTest, AnOrdinaryTickLogIsRefusedByTheViewerWithAReason) {
   const std::string path = folder + "/run.tactlog";
   auto log = std::move(*telemetry::TickLogWriter::create(path, {}));
   log.add(loop::TickRecord{});
-  ASSERT_EQ(tests::sentence_of(log.close()), "");
+  ASSERT_EQ(tests::message_of(log.close()), "");
   const host::record::ReadResult read = host::record::read_recording(path);
   EXPECT_FALSE(read.usable);
   EXPECT_NE(read.damage.find("holds no pictures"), std::string::npos) << read.damage;
@@ -216,7 +216,7 @@ TEST_F(BlackBoxTest, AFolderThatCannotBeWrittenIsRefusedWithItsRemedy) {
   std::ofstream(folder + "/file") << "no folder";
   const auto refused = black_box_folder(folder + "/file");
   ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().sentence.find("--black-box"), std::string::npos);
+  EXPECT_NE(refused.error().message.find("--black-box"), std::string::npos);
   const auto made = black_box_folder(folder + "/new/one");
   ASSERT_TRUE(made);
   EXPECT_FALSE(fs::exists(*made)) << "a run without faults leaves nothing behind";

@@ -39,7 +39,7 @@ TEST_F(ControlNames, WhatDeadOnesLeftGoesAndTheLivingAndOtherFilesStay) {
   const std::string dead = control_path(folder, "a.toml", 7), file = folder + "/control-x.sock.txt";
   touch_file(file);
   auto living = ControlSocket::open(control_path(folder, "a.toml", 8));
-  ASSERT_TRUE(living) << living.error().sentence;
+  ASSERT_TRUE(living) << living.error().message;
   {
     const auto address = model::io::socket_address(dead);
     const int fd = socket(AF_UNIX, SOCK_SEQPACKET, 0);
@@ -56,7 +56,7 @@ TEST_F(ControlNames, WhatDeadOnesLeftGoesAndTheLivingAndOtherFilesStay) {
 TEST_F(ControlNames, APathThatIsTooLongIsRefusedWithTheRemedy) {
   const auto refused = ControlSocket::open(folder + "/" + std::string(120, 'x'));
   ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().sentence.find("XDG_RUNTIME_DIR"), std::string::npos);
+  EXPECT_NE(refused.error().message.find("XDG_RUNTIME_DIR"), std::string::npos);
 }
 
 }  // namespace tact::firmware::console::control_name_test

@@ -48,26 +48,26 @@ TEST_F(Control, AWordGetsOneSentence) {
   Answer answer;
   std::thread person([&] {
     auto got = ask_tactd({.folder = folder, .scene_path = "liver.toml", .word = "arm"});
-    answer = got ? *got : Answer{.done = false, .sentence = got.error().sentence};
+    answer = got ? *got : Answer{.done = false, .message = got.error().message};
   });
   std::string word;
   while (word.empty()) {
     const auto request = socket->next();
     if (!request) continue;
     word = request->word();
-    request->answer({.done = true, .sentence = "puppet: armed"});
+    request->answer({.done = true, .message = "puppet: armed"});
   }
   person.join();
   EXPECT_EQ(word, "arm");
   EXPECT_TRUE(answer.done);
-  EXPECT_EQ(answer.sentence, "puppet: armed");
+  EXPECT_EQ(answer.message, "puppet: armed");
 }
 
 TEST_F(Control, WhoeverGoesAtOnceIsStillHeardAndHarmsNothing) {
   const auto request = ask("stop");
   ASSERT_TRUE(request);
   EXPECT_EQ(request->word(), "stop");
-  request->answer({.done = true, .sentence = "nobody listens"});
+  request->answer({.done = true, .message = "nobody listens"});
   EXPECT_FALSE(socket->next());
 }
 
@@ -143,7 +143,7 @@ TEST_F(Control, AFileThatADeadOneLeftIsReplaced) {
   socket.reset();
   std::filesystem::rename(path + ".dead", path);
   auto next = ControlSocket::open(path);
-  ASSERT_TRUE(next) << tests::sentence_of(next);
+  ASSERT_TRUE(next) << tests::message_of(next);
   socket = std::move(*next);
   EXPECT_TRUE(ask("status"));
 }
@@ -152,17 +152,15 @@ TEST_F(Control, ClientsAreToldOfNoneOfSeveralAndOfOneThatIsSilent) {
   const ControlQuestion question{.folder = folder, .scene_path = "liver.toml", .word = "arm"};
   ControlQuestion other = question;
   other.scene_path = "skin.toml";
-  EXPECT_NE(tests::sentence_of(ask_tactd(other)).find("no tactd runs skin.toml"),
-            std::string::npos);
+  EXPECT_NE(tests::message_of(ask_tactd(other)).find("no tactd runs skin.toml"), std::string::npos);
   auto second = ControlSocket::open(control_path(folder, "liver.toml", 1));
   ASSERT_TRUE(second);
-  const std::string several = tests::sentence_of(ask_tactd(question));
+  const std::string several = tests::message_of(ask_tactd(question));
   EXPECT_NE(several.find("processes 1 and " + std::to_string(getpid())), std::string::npos)
       << several;
   ControlQuestion one = question;
   one.process = 1;
-  EXPECT_NE(tests::sentence_of(ask_tactd(one)).find("process 1 does not answer"),
-            std::string::npos);
+  EXPECT_NE(tests::message_of(ask_tactd(one)).find("process 1 does not answer"), std::string::npos);
 }
 
 }  // namespace tact::firmware::console::control_socket_test

@@ -28,7 +28,7 @@ class Requests : public testing::Test {
   void SetUp() override {
     testing::internal::CaptureStderr();
     auto opened = ControlSocket::open(path);
-    ASSERT_TRUE(opened) << opened.error().sentence;
+    ASSERT_TRUE(opened) << opened.error().message;
     control = std::move(*opened);
     request_handler = make_handler(view, tick);
   }
@@ -64,7 +64,7 @@ class Requests : public testing::Test {
   std::string refusal(const char* word) {
     const Answer answer = ask(word);
     EXPECT_FALSE(answer.done);
-    return answer.sentence;
+    return answer.message;
   }
   /// What the terminal is told meanwhile.
   std::string show(State state) {
@@ -108,7 +108,7 @@ TEST_F(Requests, ArmsOnlyAfterTheWordsThatItMayBe) {
   EXPECT_NE(show(State::kReady).find("ready, force is off"), std::string::npos);
   const Answer armed = ask("arm");
   EXPECT_TRUE(armed.done);
-  EXPECT_EQ(armed.sentence, "puppet: armed, force is on");
+  EXPECT_EQ(armed.message, "puppet: armed, force is on");
   EXPECT_EQ(edges, (std::vector<std::string>{"arm"}));
   EXPECT_EQ(requests.refused.load(), 2u);
 }
@@ -118,7 +118,7 @@ TEST_F(Requests, ARequestThatWaitsWhileTheWordsAreToldIsRefused) {
   show(State::kReady);
   request_handler->obey(0);
   for (const int one : early)
-    EXPECT_NE(hear(one).sentence.find("came before it was ready"), std::string::npos);
+    EXPECT_NE(hear(one).message.find("came before it was ready"), std::string::npos);
   EXPECT_TRUE(edges.empty()) << "queued";
   EXPECT_EQ(requests.refused.load(), 3u);
 }
@@ -182,7 +182,7 @@ TEST_F(Requests, DisarmsAtAnyTime) {
   EXPECT_TRUE(ask("disarm").done);
   show(State::kReady);
   show(State::kArmed);
-  EXPECT_EQ(ask("disarm").sentence, "puppet: no force; arm it again when it shall have one");
+  EXPECT_EQ(ask("disarm").message, "puppet: no force; arm it again when it shall have one");
   EXPECT_EQ(edges, (std::vector<std::string>{"disarm", "disarm"}));
 }
 
@@ -191,20 +191,20 @@ TEST_F(Requests, ADisarmThatIsNotAnsweredStandsForTheNextTick) {
   stands = true;
   const Answer answer = ask("disarm");
   EXPECT_FALSE(answer.done);
-  EXPECT_NE(answer.sentence.find("its next tick takes the force away"), std::string::npos);
+  EXPECT_NE(answer.message.find("its next tick takes the force away"), std::string::npos);
   EXPECT_EQ(static_cast<loop::Request>(requests.asked.load() & 3U), loop::Request::kDisarm);
 }
 
 TEST_F(Requests, AStopThatIsDisarmedStillHasToBeReset) {
   show(State::kStopped);
-  EXPECT_EQ(ask("disarm").sentence, "puppet: no force; it has stopped: reset it, then arm it");
+  EXPECT_EQ(ask("disarm").message, "puppet: no force; it has stopped: reset it, then arm it");
 }
 
 TEST_F(Requests, WhatWouldArmItselfWaitsForAPersonOnceItIsDisarmed) {
   OperatorView itself(device, lines, true);
   request_handler = make_handler(itself, tick);
   show(State::kReady);
-  EXPECT_EQ(ask("arm").sentence, "puppet: not armed: it arms itself as soon as it has power");
+  EXPECT_EQ(ask("arm").message, "puppet: not armed: it arms itself as soon as it has power");
   stands = true;
   EXPECT_FALSE(ask("disarm").done);
   EXPECT_FALSE(ask("arm").done);
@@ -224,10 +224,10 @@ TEST_F(Requests, StopsAtAnyTimeEvenInTheMomentOfTheWords) {
 TEST_F(Requests, ToldOfItsStateAndOfWordsThatItDoesNotKnow) {
   frame.force_N[0] = 3.0F, frame.force_N[1] = 4.0F;
   show(State::kArmed);
-  EXPECT_EQ(ask("status").sentence, "puppet: armed, 5.000 N");
+  EXPECT_EQ(ask("status").message, "puppet: armed, 5.000 N");
   frame.fault = static_cast<std::uint16_t>(model::Fault::kEmergencyStop);
   show(State::kStopped);
-  const std::string stopped = ask("status").sentence;
+  const std::string stopped = ask("status").message;
   EXPECT_TRUE(stopped.starts_with("puppet: stopped, 5.000 N, fault ")) << stopped;
   EXPECT_FALSE(ask("ARM").done);
   EXPECT_TRUE(edges.empty());

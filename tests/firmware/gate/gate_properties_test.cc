@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What gate.h promises, over random sequences (gate_tempers.h), for every setting of
+// What gate.h promises, over random sequences (gate_input_strategies.h), for every setting of
 // gate_settings.h. Seeds are fixed; extent.h says how many.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -7,21 +7,21 @@
 #include <string>
 #include <vector>
 
-#include "tests/firmware/gate/gate_tempers.h"
+#include "tests/firmware/gate/gate_input_strategies.h"
 #include "tests/support/extent.h"
 #include "tests/support/no_alloc.h"
 
 namespace tact::tests::gate_properties_test {
 
 /// Many short sequences of one temper on one gate; the rule that broke, with its seed and tick.
-std::string run(Temper temper, const GateSetting& setting, GateRules& rules,
+std::string run(InputStrategy strategy, const GateSetting& setting, GateRules& rules,
                 std::uint64_t sequences, int ticks) {
   for (std::uint64_t seed = 0; seed < sequences; ++seed) {
-    Sequence sequence(seed, temper, setting);
+    Sequence sequence(seed, strategy, setting);
     for (int tick = 0; tick < ticks; ++tick)
       if (const char* broken = rules.check(sequence.next(rules.verdict().wrench)))
         return std::string(broken) + ": " + setting.name + ", temper " +
-               std::to_string(static_cast<int>(temper)) + ", seed " + std::to_string(seed) +
+               std::to_string(static_cast<int>(strategy)) + ", seed " + std::to_string(seed) +
                ", tick " + std::to_string(tick);
   }
   return {};
@@ -31,9 +31,9 @@ std::string run(Temper temper, const GateSetting& setting, GateRules& rules,
 void run_all(std::uint64_t ordinary, std::uint64_t others, int ticks) {
   for (const GateSetting& setting : kGateSettings) {
     const std::uint64_t sequences = &setting == &kGateSettings.front() ? ordinary : others;
-    for (int temper = 0; temper < kTempers; ++temper) {
+    for (int strategy = 0; strategy < kInputStrategies; ++strategy) {
       GateRules rules(setting);
-      EXPECT_EQ(run(static_cast<Temper>(temper), setting, rules, sequences, ticks), "");
+      EXPECT_EQ(run(static_cast<InputStrategy>(strategy), setting, rules, sequences, ticks), "");
     }
   }
 }
@@ -53,14 +53,14 @@ TEST(GateProperties, EveryRuleHoldsForMoreThanAMillionShortSequences) {
 
 TEST(GateProperties, WhoFleesWithTheForceGetsNoMoreThanTheBudgetAndMostOfIt) {
   GateRules rules;
-  EXPECT_EQ(run(Temper::kFollow, {}, rules, 50, 2000), "");
+  EXPECT_EQ(run(InputStrategy::kFollow, {}, rules, 50, 2000), "");
   EXPECT_GT(rules.most_given_J(), 0.5 * kRulesLimits.energy_J);
   EXPECT_GT(count(rules, firmware::gate::Stage::kPassivity), 1000u);
 }
 
 TEST(GateProperties, EnergyBoundHoldsWhenHandReverses) {
   GateRules rules;
-  EXPECT_EQ(run(Temper::kRattle, {}, rules, 50, 2000), "");
+  EXPECT_EQ(run(InputStrategy::kRattle, {}, rules, 50, 2000), "");
   EXPECT_GT(rules.most_given_J(), 0.5 * kRulesLimits.energy_J);
 }
 
@@ -70,7 +70,7 @@ TEST(GateProperties, WhoPushesForEverComesToTheContinuousForceFromBelow) {
   push.gate.wanted.force_N = {50, 0, 0};
   push.gate.fresh = push.gate.armed = true;
   for (int i = 0; i < 10000; ++i) ASSERT_EQ(rules.check(push), nullptr);
-  EXPECT_GT(rules.most_heat_ratio(), 0.999);
+  EXPECT_GT(rules.most_thermal_ratio(), 0.999);
   EXPECT_NEAR(rules.verdict().wrench.force_N.x, kRulesLimits.continuous_force_N, 0.01);
   EXPECT_EQ(rules.verdict().acting, model::Fault::kContinuousLimited);
 }
@@ -81,7 +81,7 @@ TEST(GateProperties, WhoTwistsForEverComesToTheContinuousTorqueFromBelow) {
   twist.gate.wanted.torque_Nm = {0, 1, 0};
   twist.gate.fresh = twist.gate.armed = true;
   for (int i = 0; i < 10000; ++i) ASSERT_EQ(rules.check(twist), nullptr);
-  EXPECT_GT(rules.most_torque_heat_ratio(), 0.999);
+  EXPECT_GT(rules.most_torque_thermal_ratio(), 0.999);
   EXPECT_NEAR(rules.verdict().wrench.torque_Nm.y, 0.1, 0.001) << "half of its peak, as the force";
   EXPECT_EQ(rules.verdict().acting, model::Fault::kContinuousLimited);
 }
@@ -156,8 +156,8 @@ TEST(GateProperties, EveryStageActsInEveryConfiguration) {
     const model::Limits& limits = setting.limits;
     if (!(limits.force_N > 0.0)) continue;
     GateRules rules(setting);
-    for (int temper = 0; temper < kTempers; ++temper)
-      EXPECT_EQ(run(static_cast<Temper>(temper), setting, rules, 20, 1000), "");
+    for (int strategy = 0; strategy < kInputStrategies; ++strategy)
+      EXPECT_EQ(run(static_cast<InputStrategy>(strategy), setting, rules, 20, 1000), "");
     const bool any_step = limits.slew_N_per_s * setting.period_s() > 2.0 * limits.force_N;
     for (std::size_t i = 0; i < firmware::gate::kStageCount; ++i) {
       if (any_step && static_cast<firmware::gate::Stage>(i) == firmware::gate::Stage::kSlew)
@@ -174,17 +174,17 @@ TEST(GateProperties, TheWholeBudgetAndTheContinuousForceAreThereInEverySetting) 
     if (!(setting.limits.force_N > 0.0)) continue;
     GateRules flee(setting), push(setting);
     const int ticks = setting.rate_Hz > 1000.0 ? 5000 : 2000;  // 25 s and more of heat
-    EXPECT_EQ(run(Temper::kFollow, setting, flee, 50, ticks), "");
-    EXPECT_EQ(run(Temper::kPush, setting, push, 50, ticks), "");
+    EXPECT_EQ(run(InputStrategy::kFollow, setting, flee, 50, ticks), "");
+    EXPECT_EQ(run(InputStrategy::kPush, setting, push, 50, ticks), "");
     EXPECT_GT(flee.most_given_J(), 0.99 * setting.limits.energy_J) << setting.name;
-    EXPECT_GT(push.most_heat_ratio(), 0.99) << setting.name;
-    EXPECT_GT(push.most_torque_heat_ratio(), setting.limits.torque_Nm > 0.0 ? 0.99 : -1.0)
+    EXPECT_GT(push.most_thermal_ratio(), 0.99) << setting.name;
+    EXPECT_GT(push.most_torque_thermal_ratio(), setting.limits.torque_Nm > 0.0 ? 0.99 : -1.0)
         << setting.name;
   }
 }
 
 /// What a scene says for a setting, with the limit at its edge made so much smaller.
-std::vector<std::string> scene_words(const GateSetting& setting, double edge_ratio) {
+std::vector<std::string> scene_text(const GateSetting& setting, double edge_ratio) {
   const model::Limits& l = setting.limits;
   std::vector<std::string> words{fmt::format("rate_Hz={}", setting.rate_Hz)};
   const auto say = [&](const std::string& key, double value) {
@@ -210,20 +210,20 @@ std::vector<std::string> scene_words(const GateSetting& setting, double edge_rat
 TEST(GateProperties, ASceneMaySayEachSettingAndNothingBeyondItsEdge) {
   const std::string liver = TACT_SOURCE_DIR "/model/scenes/liver.toml";
   for (const GateSetting& setting : kGateSettings) {
-    const auto scene = model::scene::load_scene(liver, scene_words(setting, 1.0));
-    ASSERT_TRUE(scene) << setting.name << ": " << scene.error().sentence;
+    const auto scene = model::scene::load_scene(liver, scene_text(setting, 1.0));
+    ASSERT_TRUE(scene) << setting.name << ": " << scene.error().message;
     EXPECT_EQ(scene->limits.thermal_time_s, setting.limits.thermal_time_s) << setting.name;
     if (setting.edge == nullptr) continue;
-    const auto beyond = model::scene::load_scene(liver, scene_words(setting, 0.9999));
+    const auto beyond = model::scene::load_scene(liver, scene_text(setting, 0.9999));
     ASSERT_FALSE(beyond) << setting.name;
-    EXPECT_NE(beyond.error().sentence.find(setting.edge), std::string::npos)
-        << beyond.error().sentence;
+    EXPECT_NE(beyond.error().message.find(setting.edge), std::string::npos)
+        << beyond.error().message;
   }
 }
 
 TEST(GateProperties, JudgingLeavesTheHeapAlone) {
   GateRules rules;
-  Sequence sequence(1, Temper::kAny);
+  Sequence sequence(1, InputStrategy::kAny);
   const NoAlloc guard;
   for (int i = 0; i < 10000; ++i) rules.check(sequence.next({}));
   EXPECT_EQ(guard.calls(), 0u);

@@ -10,8 +10,8 @@
 #include <random>
 #include <vector>
 
-#include "firmware/gate/fader.h"
 #include "firmware/gate/limiter.h"
+#include "firmware/gate/ramp_down.h"
 #include "firmware/gate/thermal_limit.h"
 #include "tests/firmware/gate/number_classes.h"
 
@@ -169,9 +169,9 @@ TEST(GateScalars, AFaderStaysBetweenShutAndOpen) {
   for (const double dt_s : all_classes())
     for (const bool open : {false, true})
       for (const double level : {0.0, Doubles::denorm_min(), beside(1.0, -1), 1.0}) {
-        Fader fader(0.01);
-        fader.set(level);
-        const double after = fader.step(open, dt_s);
+        RampDown ramp(0.01);
+        ramp.set(level);
+        const double after = ramp.step(open, dt_s);
         ASSERT_GE(after, 0.0);
         ASSERT_LE(after, 1.0);
       }
@@ -182,7 +182,7 @@ TEST(GateScalars, AThermalLimitIsBetweenContinuousAndPeakHoweverHot) {
     for (const double force_N : finite_classes()) {
       ThermalLimit limit(8.0, 4.0, 0.001);
       for (const double held : {before, force_N}) {
-        limit.heat({held, 0, 0}, 1.0);
+        limit.add({held, 0, 0}, 1.0);
         ASSERT_GE(limit.allowed(), 4.0);
         ASSERT_LE(limit.allowed(), 8.0);
       }
@@ -192,13 +192,13 @@ TEST(GateScalars, AThermalLimitIsBetweenContinuousAndPeakHoweverHot) {
 TEST(GateScalars, AHotMotorIsAllowedItsContinuousForceAColdOneItsPeak) {
   ThermalLimit limit(8.0, 4.0, 0.01);
   EXPECT_EQ(limit.allowed(), 8.0);
-  for (int i = 0; i < 55; ++i) limit.heat({4, 0, 0}, 1.0);
+  for (int i = 0; i < 55; ++i) limit.add({4, 0, 0}, 1.0);
   // h = 16 (1 - 0.99^55) = 6.79: A^2 = 16 + 6 (16 - 6.79) = 71.2, above the peak's 64
   EXPECT_EQ(limit.allowed(), 8.0);
-  for (int i = 0; i < 55; ++i) limit.heat({4, 0, 0}, 1.0);
+  for (int i = 0; i < 55; ++i) limit.add({4, 0, 0}, 1.0);
   // h = 16 (1 - 0.99^110) = 10.70: A^2 = 16 + 6 * 5.30 = 47.8
   EXPECT_NEAR(limit.allowed(), 6.91, 0.01);
-  for (int i = 0; i < 10000; ++i) limit.heat({4, 0, 0}, 1.0);
+  for (int i = 0; i < 10000; ++i) limit.add({4, 0, 0}, 1.0);
   EXPECT_NEAR(limit.allowed(), 4.0, 1e-6);
   EXPECT_NEAR(limit.rms(), 4.0, 1e-9);
 }

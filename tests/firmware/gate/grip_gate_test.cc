@@ -20,7 +20,7 @@ model::Limits limits() {
   return limits;
 }
 
-/// An armed gate whose fingers are still, and whose fade-in is over.
+/// An armed gate whose fingers are still, and whose ramp-up is over.
 class GripGateTest : public testing::Test {
  protected:
   GripGateTest() { ticks(300, 0.0); }

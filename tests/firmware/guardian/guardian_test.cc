@@ -50,7 +50,7 @@ struct Wire {
 std::unique_ptr<Guardian> start(const hal::ShutdownFrames& words) {
   auto guardian =
       Guardian::start(words, {.priority = 1, .program = tests::program_path("tact-guardian")});
-  EXPECT_TRUE(guardian) << guardian.error().sentence;
+  EXPECT_TRUE(guardian) << guardian.error().message;
   return guardian ? std::move(*guardian) : nullptr;
 }
 
@@ -176,9 +176,9 @@ TEST(Guardian, AMissingProgramIsRefusedWithTheRemedy) {
   const auto guardian =
       Guardian::start(wire.words, {.priority = 1, .program = "/nowhere/tact-guardian"});
   ASSERT_FALSE(guardian);
-  EXPECT_NE(guardian.error().sentence.find("cannot be started (No such file or directory)"),
+  EXPECT_NE(guardian.error().message.find("cannot be started (No such file or directory)"),
             std::string::npos)
-      << guardian.error().sentence;
+      << guardian.error().message;
 }
 
 TEST(Guardian, StartedByAPersonItRefuses) {

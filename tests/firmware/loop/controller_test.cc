@@ -15,9 +15,10 @@ constexpr double kPeriod_s = 1e-3;
 constexpr double kBall_m = 0.004;
 
 // A spring that can be told to break, and counts the blades that went through it.
-class PuppetLaw final : public model::contact::SiteLaw {
+class PuppetLaw final : public model::contact::ContactLaw {
  public:
-  model::contact::SiteResponse respond(const model::contact::Indentation& in) RT_SAFE override {
+  model::contact::ContactLawResponse respond(
+      const model::contact::Indentation& in) RT_SAFE override {
     return {.law = {.force_N = 200.0 * in.indentation_m,
                     .status = is_beyond ? model::law::LawStatus::kSaturated
                                         : model::law::LawStatus::kOk}};

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "firmware/loop/grid.h"
+#include "firmware/loop/release_schedule.h"
 #include "tests/support/no_alloc.h"
 #include "tests/support/puppet_loop.h"
 

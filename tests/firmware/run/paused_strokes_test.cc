@@ -64,7 +64,7 @@ std::vector<Pause> random_pauses(std::uint64_t seed, int count, int first, int p
   const int part = (periods - first) / count;
   std::vector<Pause> pauses;
   for (int i = 0; i < count; ++i) {
-    // Some periods stay between two of them: late ticks in a row latch (late_watch.h).
+    // Some periods stay between two of them: late ticks in a row latch (overrun_counter.h).
     const int at = first + i * part + static_cast<int>(chance.uniform() * (part - 25));
     pauses.push_back({.at_period = at, .skipped = 2 + static_cast<int>(chance.uniform() * 18.0)});
   }

@@ -64,7 +64,7 @@ class ReplayTest : public testing::Test {
       loop.step();
       while (ring->pop(record)) log.add(record);
     }
-    EXPECT_EQ(tests::sentence_of(log.close()), "");
+    EXPECT_EQ(tests::message_of(log.close()), "");
   }
 
   model::scene::Scene scene = tests::make_plate_scene();
@@ -74,7 +74,7 @@ class ReplayTest : public testing::Test {
 
 TEST_F(ReplayTest, TheSameSamplesGiveTheSameForcesBitForBit) {
   const auto outcome = replay(path, scene, *tissue);
-  ASSERT_TRUE(outcome) << outcome.error().sentence;
+  ASSERT_TRUE(outcome) << outcome.error().message;
   EXPECT_EQ(outcome->ticks, 3000u);
   EXPECT_EQ(outcome->different, 0u);
   EXPECT_EQ(outcome->damage, "");
@@ -94,7 +94,7 @@ TEST_F(ReplayTest, AnotherSampleGivesAnotherForceAndIsNamed) {
       if (tick.tick == 1800) tick.input.sample.tool.position_m.z += 2e-4;  // in contact
       writer.add(tick);
     }
-    EXPECT_EQ(tests::sentence_of(writer.close()), "");
+    EXPECT_EQ(tests::message_of(writer.close()), "");
   }
   const auto outcome = replay(other, scene, *tissue);
   std::remove(other.c_str());
@@ -110,7 +110,7 @@ TEST_F(ReplayTest, EveryDamageIsToldWithHowMuchIsGood) {
   record(200);
   tests::expect_all_damage_is_reported(path, [&](const std::string& damaged) {
     const auto outcome = replay(damaged, scene, *tissue);
-    if (!outcome) return !outcome.error().sentence.empty();
+    if (!outcome) return !outcome.error().message.empty();
     return outcome->damage.find(" good ticks were read") != std::string::npos;
   });
 }
@@ -137,7 +137,7 @@ TEST_F(ReplayTest, ADamagedTickCostsItselfAndIsNeverCompared) {
 TEST_F(ReplayTest, TheTableHasEveryTickAndSaysWhichRunItWas) {
   const std::string csv = path + ".csv";
   const auto damage = telemetry::write_tick_csv(path, csv);
-  ASSERT_TRUE(damage) << damage.error().sentence;
+  ASSERT_TRUE(damage) << damage.error().message;
   EXPECT_EQ(*damage, "");
   std::ifstream file(csv);
   std::string line, names, row;
@@ -164,7 +164,7 @@ TEST_F(ReplayTest, AnotherSceneIsRefused) {
   scene.hash = "fedcba9876543210";
   const auto outcome = replay(path, scene, *tissue);
   ASSERT_FALSE(outcome);
-  EXPECT_NE(outcome.error().sentence.find("another scene"), std::string::npos);
+  EXPECT_NE(outcome.error().message.find("another scene"), std::string::npos);
 }
 
 TEST_F(ReplayTest, ATornLogIsReplayedUpToItsTear) {
@@ -190,9 +190,9 @@ TEST_F(ReplayTest, ALogOfAnotherVersionIsRefusedByItsNumber) {
   file.close();
   const auto outcome = replay(path, scene, *tissue);
   ASSERT_FALSE(outcome);
-  EXPECT_NE(outcome.error().sentence.find("version 2, this tactd reads version A"),
+  EXPECT_NE(outcome.error().message.find("version 2, this tactd reads version A"),
             std::string::npos)
-      << outcome.error().sentence;
+      << outcome.error().message;
 }
 
 TEST_F(ReplayTest, EveryRecordOfAPCWithoutHardRealTimeIsStamped) {

@@ -135,16 +135,16 @@ class TwistOnRealDevices : public testing::TestWithParam<RealDevice> {
                              "organ.position_m=[0, 0, -0.123]", "hand.site_m=[0, 0, -0.093]",
                              "hand.home_m=[0, 0, -0.073]"});
     auto loaded = model::scene::load_scene(TACT_SOURCE_DIR "/model/scenes/liver_twist.toml", keys);
-    ASSERT_EQ(tests::sentence_of(loaded), "");
+    ASSERT_EQ(tests::message_of(loaded), "");
     scene_ = std::move(*loaded);
     scene_.device.trust_library = true;
     mounting_ = hal::mounting_of(scene_.device);
     lead(scene_.hand.path.front());
     auto tissue = model::scene::make_tissue(scene_);
-    ASSERT_EQ(tests::sentence_of(tissue), "");
+    ASSERT_EQ(tests::message_of(tissue), "");
     tissue_ = std::move(*tissue);
     auto device = hal::registry::open_device(scene_);
-    ASSERT_EQ(tests::sentence_of(device), "");
+    ASSERT_EQ(tests::message_of(device), "");
     device_ = std::move(*device);
     controller_ = std::make_unique<loop::Controller>(
         tissue_->contact_scene(),

@@ -17,10 +17,10 @@ using model::Vec3;
 using model::contact::ContactState;
 using model::contact::Indentation;
 
-/// A law whose dents lean, the more the deeper.
-class LeaningLaw final : public model::contact::SiteLaw {
+/// A law whose indentations lean, the more the deeper.
+class LeaningLaw final : public model::contact::ContactLaw {
  public:
-  model::contact::SiteResponse respond(const Indentation&) RT_SAFE override { return {}; }
+  model::contact::ContactLawResponse respond(const Indentation&) RT_SAFE override { return {}; }
   void leave(std::size_t) RT_SAFE override {}
   void advance() RT_SAFE override {}
   std::size_t profile(const Indentation&, std::span<double>) const RT_SAFE override { return 1; }

@@ -39,8 +39,7 @@ TEST_F(OwnFolder, AFolderInWhichOthersCouldPutASocketIsRefused) {
   ASSERT_EQ(chmod(folder_.c_str(), 0777), 0);
   const auto refused = TelemetrySocket::open(path_, Hello{}, -1);
   ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().sentence.find("another user may put a socket there"),
-            std::string::npos);
+  EXPECT_NE(refused.error().message.find("another user may put a socket there"), std::string::npos);
 }
 
 /// Whether one of `user` gets anything at the socket.

@@ -23,7 +23,7 @@
 
 namespace tact::firmware::telemetry::telemetry_test {
 
-using tests::sentence_of;
+using tests::message_of;
 
 std::string fresh_socket_path() {
   static int count = 0;
@@ -82,7 +82,7 @@ class WholeController {
         controller_(tissue_->contact_scene(), gate::Gate(scene_.limits, 0.001, 1.0),
                     /*hard_real_time=*/true),
         loop_({.period_ns = 1'000'000}, *device_, lines_, controller_, clock_, requests_, *ring_),
-        telemetry_(*ring_, FrameBuilder(tissue_->law().site_law(), controller_.shapes(), true),
+        telemetry_(*ring_, FrameBuilder(tissue_->law().contact_law(), controller_.shapes(), true),
                    FramePace{}, {.socket = open(path)}) {
     requests_.arm_at_start.store(true);
   }
@@ -218,7 +218,7 @@ TEST(Telemetry, ThreadAndLoopShareOnlyTheRing) {  // for the thread sanitizer
   const auto tissue = std::move(*model::scene::make_tissue(scene));
   const auto ring = std::make_unique<loop::TickRing>();  // large: not on the stack
   const auto shapes = std::make_unique<loop::ShapeSlot>();
-  Telemetry telemetry(*ring, FrameBuilder(tissue->law().site_law(), *shapes, false),
+  Telemetry telemetry(*ring, FrameBuilder(tissue->law().contact_law(), *shapes, false),
                       {.frame_rate_Hz = 200.0}, Sinks{});
   telemetry.start();
   loop::TickRecord record;
@@ -227,7 +227,7 @@ TEST(Telemetry, ThreadAndLoopShareOnlyTheRing) {  // for the thread sanitizer
     ring->push(record);
     if (i % 1000 == 0) usleep(2000);
   }
-  EXPECT_EQ(tests::sentence_of(telemetry.stop()), "");
+  EXPECT_EQ(tests::message_of(telemetry.stop()), "");
   EXPECT_GT(telemetry.newest_frame().tick, 0u);
 }
 
@@ -236,7 +236,7 @@ TEST(Telemetry, ThreadAndLoopShareOnlyTheRing) {  // for the thread sanitizer
 // latest_slot_test and, here, the thread sanitizer.)
 TEST(Telemetry, TheShapeOfAPatchReachesThePageWhole) {
   const auto scene = model::scene::load_scene(TACT_SOURCE_DIR "/model/scenes/gum.toml", {});
-  ASSERT_TRUE(scene) << scene.error().sentence;
+  ASSERT_TRUE(scene) << scene.error().message;
   const auto tissue = std::move(*model::scene::make_tissue(*scene));
   const auto device = std::move(*hal::registry::open_device(*scene));
   loop::Controller controller(tissue->contact_scene(), gate::Gate(scene->limits, 0.001, 1.0),
@@ -248,7 +248,7 @@ TEST(Telemetry, TheShapeOfAPatchReachesThePageWhole) {
   const auto ring = std::make_unique<loop::TickRing>();
   loop::RtLoop loop({.period_ns = 1'000'000, .ticks_per_shape = 4}, *device, lines, controller,
                     clock, requests, *ring);
-  Telemetry telemetry(*ring, FrameBuilder(tissue->law().site_law(), controller.shapes(), false),
+  Telemetry telemetry(*ring, FrameBuilder(tissue->law().contact_law(), controller.shapes(), false),
                       {.frame_rate_Hz = 1000.0}, Sinks{});
   const Hello hello = make_hello(
       *scene, *tissue, {.device = device->info(), .limits_checksum = "", .hand_socket = ""});
@@ -258,14 +258,14 @@ TEST(Telemetry, TheShapeOfAPatchReachesThePageWhole) {
     loop.step();
     if (i % 50 != 0) continue;
     const Frame frame = telemetry.newest_frame();
-    ASSERT_EQ(sentence_of(host::record::check_frame(frame, hello)), "") << "tick " << frame.tick;
+    ASSERT_EQ(message_of(host::record::check_frame(frame, hello)), "") << "tick " << frame.tick;
     const auto patch = nlohmann::json::parse(host::server::frame_json(frame, hello)).at("patch");
     ASSERT_EQ(patch.at("count"), frame.patch.vertex_count);
     ASSERT_EQ(patch.at("cut").size(), frame.patch.cut_count);
     displaced = std::max(displaced, frame.patch.vertex_count);
     usleep(500);
   }
-  EXPECT_EQ(tests::sentence_of(telemetry.stop()), "");
+  EXPECT_EQ(tests::message_of(telemetry.stop()), "");
   EXPECT_GT(displaced, 10u);
   EXPECT_GT(telemetry.newest_frame().patch.cut_total, 5u);
   EXPECT_EQ(telemetry.newest_frame().fault, 0);
@@ -276,7 +276,7 @@ TEST(Telemetry, ASecondControllerOnTheSameSocketIsRefused) {
   const WholeController run(path);
   const auto second = TelemetrySocket::open(path, Hello{}, -1);
   ASSERT_FALSE(second);
-  EXPECT_NE(second.error().sentence.find("another tactd"), std::string::npos);
+  EXPECT_NE(second.error().message.find("another tactd"), std::string::npos);
 }
 
 TEST(Telemetry, TheSocketOfADeadControllerIsReplaced) {
@@ -293,7 +293,7 @@ TEST(Telemetry, TheSocketOfADeadControllerIsReplaced) {
 TEST(Telemetry, APathThatIsTooLongIsRefusedWithTheRemedy) {
   const auto refused = TelemetrySocket::open(std::string(200, 'x'), Hello{}, -1);
   ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().sentence.find("--socket"), std::string::npos);
+  EXPECT_NE(refused.error().message.find("--socket"), std::string::npos);
 }
 
 }  // namespace tact::firmware::telemetry::telemetry_test

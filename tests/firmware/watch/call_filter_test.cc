@@ -11,17 +11,17 @@
 #include <mutex>
 
 #include "firmware/loop/alloc_counter.h"
-#include "tests/support/watched_loop.h"
+#include "tests/support/monitored_loop.h"
 
 namespace tact::firmware::watch::call_filter_test {
 
-class FilteredLoop : public WatchedLoop {
+class FilteredLoop : public MonitoredLoop {
  protected:
   void make(std::span<const int> of_device) {
     auto made = CallFilter::make(of_device, {}, requests);
     if (loop::is_sanitized() || prctl(PR_GET_SECCOMP) < 0)
       GTEST_SKIP() << "a sanitizer, or a kernel without seccomp";
-    ASSERT_TRUE(made) << made.error().sentence;
+    ASSERT_TRUE(made) << made.error().message;
     filter = std::move(*made);
   }
   void start_filtered() {
@@ -142,7 +142,7 @@ TEST_F(FilteredLoop, NumbersThatAreNoCallMakeNoFilter) {
         CallFilter::make(of_device ? std::span<const int>(kNone) : std::span<const int>(),
                          of_device ? std::span<const int>() : kNone, requests);
     ASSERT_FALSE(made);
-    EXPECT_EQ(made.error().sentence,
+    EXPECT_EQ(made.error().message,
               "the loop's system calls are not filtered: libseccomp cannot make it");
   }
 }

@@ -53,7 +53,7 @@ TEST(RttimeLimit, IsToldWithItsNumberAndRaisedAsFarAsItGoesWhereItStays) {
     limit_to(kShort_us / 2, kShort_us);
     drop_the_right_to_raise_limits();
     const auto shortfall = lift_rttime_limit();
-    leave(shortfall && shortfall->sentence.find("after 300000 us") != std::string::npos &&
+    leave(shortfall && shortfall->message.find("after 300000 us") != std::string::npos &&
           limit_now_us() == kShort_us);
   };
   EXPECT_EXIT(reported(), testing::ExitedWithCode(0), "");

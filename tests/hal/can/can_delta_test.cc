@@ -168,7 +168,7 @@ TEST(CanDelta, RodsThatCannotMeetLoseTheHoming) {
   const CanDelta delta(settings.delta, settings.can);
   const auto error = delta.check_home(turns_for({0.0, 0.0, 0.0}, settings));
   ASSERT_TRUE(error);
-  EXPECT_NE(error->sentence.find("no platform can lie"), std::string::npos);
+  EXPECT_NE(error->message.find("no platform can lie"), std::string::npos);
 }
 
 TEST(CanDelta, VelocityStartsAnewAfterAGap) {

@@ -99,24 +99,24 @@ TEST(CanError, WhatIsNoErrorFrameIsNotRead) {
 }
 
 TEST(CanError, EveryBitHasItsOwnWords) {
-  const auto check = [](std::span<const CanErrorWords> words, std::uint32_t all) {
+  const auto check = [](std::span<const CanErrorText> words, std::uint32_t all) {
     std::uint32_t bits = 0;
     std::set<std::string> names;
-    for (const CanErrorWords& one : words) {
+    for (const CanErrorText& one : words) {
       EXPECT_EQ(bits & one.bit, 0u) << one.name;
       bits |= one.bit;
       names.insert(one.name);
-      EXPECT_GT(std::strlen(one.sentence), 20u) << one.name;
-      EXPECT_EQ(one.sentence[std::strlen(one.sentence) - 1] == '.' ||
-                    one.sentence[std::strlen(one.sentence) - 1] == '?',
+      EXPECT_GT(std::strlen(one.message), 20u) << one.name;
+      EXPECT_EQ(one.message[std::strlen(one.message) - 1] == '.' ||
+                    one.message[std::strlen(one.message) - 1] == '?',
                 true)
-          << one.sentence;
+          << one.message;
     }
     EXPECT_EQ(bits, all);
     EXPECT_EQ(names.size(), words.size());
   };
-  check(can_error_class_words(), 0x3FF);
-  check(can_controller_words(), 0x7F);
+  check(can_error_class_texts(), 0x3FF);
+  check(can_controller_texts(), 0x7F);
   for (const auto one : {CanErrorAction::kLog, CanErrorAction::kCount, CanErrorAction::kWarn,
                          CanErrorAction::kDisableDrives}) {
     EXPECT_NE(std::string(can_error_action_name(one)), "");

@@ -70,7 +70,7 @@ Bytes can_message(std::uint32_t bitrate, std::uint32_t state, std::uint32_t rest
 
 std::string refusal(const CanLink& link, int bits = 690, double rate_Hz = 1000.0) {
   const auto error = check_can_link(link, "can0", bits, rate_Hz);
-  return error ? error->sentence : "";
+  return error ? error->message : "";
 }
 
 TEST(CanLink, ReadsWhatTheKernelTellsOfAController) {
@@ -164,7 +164,7 @@ TEST(CanLink, ReadsWhetherAnInterfaceCarriesCanFdAndHowFast) {
 TEST(CanLink, ALinkForCanFdIsHeldToMoreThanOneForClassicFrames) {
   const auto refusal_fd = [](const CanLink& link, double rate_Hz = 1000.0) {
     const auto error = check_can_fd_link(link, "can0", {.slow = 273, .fast = 1908}, rate_Hz);
-    return error ? error->sentence : std::string();
+    return error ? error->message : std::string();
   };
   const CanLink good{.index = 7,
                      .is_can = true,
@@ -212,14 +212,14 @@ TEST(CanLink, AnInterfaceThatIsNotThereIsNamedWithTheRemedy) {
   for (const char* name : {"can99", "", "aNameThatIsFarTooLongForAnInterface"}) {
     const auto socket = open_checked_can(name, 690, 1000.0, {});
     ASSERT_FALSE(socket);
-    EXPECT_NE(socket.error().sentence.find("there is no network interface \"" + std::string(name)),
+    EXPECT_NE(socket.error().message.find("there is no network interface \"" + std::string(name)),
               std::string::npos);
   }
 }
 
 TEST(CanLink, TheKernelsOwnAnswerIsUnderstood) {
   const auto link = read_can_link("lo");  // every machine has it, and it is no CAN
-  if (!link) GTEST_SKIP() << link.error().sentence;
+  if (!link) GTEST_SKIP() << link.error().message;
   EXPECT_GT(link->index, 0);
   EXPECT_FALSE(link->is_can);
   EXPECT_NE(refusal(*link).find("is no CAN interface"), std::string::npos);

@@ -9,7 +9,7 @@
 namespace tact::hal::can::can_lock_test {
 
 using tests::Forked;
-using tests::sentence_of;
+using tests::message_of;
 
 /// Of an interface that every machine has, with nodes that no other run of these tests takes.
 model::CanSettings drives(int first) {
@@ -23,8 +23,8 @@ model::CanSettings drives(int first) {
 TEST(CanLock, ADriveOfAnotherProgramIsRefused) {
   const model::CanSettings theirs = drives(1);
   const Forked other([&] { lock_drives(theirs, false); });
-  EXPECT_EQ(sentence_of(lock_drives(drives(4), false)), "") << "drives of their own";
-  const std::string said = sentence_of(lock_drives(drives(3), false));
+  EXPECT_EQ(message_of(lock_drives(drives(4), false)), "") << "drives of their own";
+  const std::string said = message_of(lock_drives(drives(3), false));
   EXPECT_NE(said.find("lo, node " + std::to_string(10 * getpid() + 3)), std::string::npos) << said;
   EXPECT_NE(said.find("process " + std::to_string(other.process())), std::string::npos) << said;
 }
@@ -32,14 +32,14 @@ TEST(CanLock, ADriveOfAnotherProgramIsRefused) {
 TEST(CanLock, OnlyOneGivesSyncOnABus) {
   const model::CanSettings theirs = drives(1);
   const Forked other([&] { lock_drives(theirs, true); });
-  EXPECT_NE(sentence_of(lock_drives(drives(4), true)).find("the SYNC of lo"), std::string::npos);
-  EXPECT_EQ(sentence_of(lock_drives(drives(4), false)), "");
+  EXPECT_NE(message_of(lock_drives(drives(4), true)).find("the SYNC of lo"), std::string::npos);
+  EXPECT_EQ(message_of(lock_drives(drives(4), false)), "");
 }
 
 TEST(CanLock, AnInterfaceThatIsNotThereIsNotItsMatter) {
   model::CanSettings settings = drives(1);
   settings.interface = "can-none";
-  EXPECT_EQ(sentence_of(lock_drives(settings, true)), "");
+  EXPECT_EQ(message_of(lock_drives(settings, true)), "");
 }
 
 }  // namespace tact::hal::can::can_lock_test

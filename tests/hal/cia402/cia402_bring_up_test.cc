@@ -16,8 +16,8 @@ struct Bench : tests::CanBench<tests::PlayedCia402s> {
   Bench() : CanBench(jig_settings(published_pose())) {}
   std::string open(double rate_Hz = 1000.0) { return CanBench::open(&start_cia402_delta, rate_Hz); }
   void expect_refused(const std::string& words, double rate_Hz = 1000.0) {
-    const std::string sentence = open(rate_Hz);
-    EXPECT_NE(sentence.find(words), std::string::npos) << sentence;
+    const std::string message = open(rate_Hz);
+    EXPECT_NE(message.find(words), std::string::npos) << message;
     EXPECT_EQ(device, nullptr);
     for (const auto& axis : drives.axis) EXPECT_NE(axis.status, 0x27) << "no power at opening";
   }

@@ -43,8 +43,8 @@ struct Cia402Bench : tests::CanBench<Cia402Drives> {
   std::string open() { return CanBench::open(&cia402::start_cia402_delta); }
   /// Open and ready for a force.
   testing::AssertionResult run() {
-    const std::string sentence = open();
-    if (!sentence.empty()) return testing::AssertionFailure() << sentence;
+    const std::string message = open();
+    if (!message.empty()) return testing::AssertionFailure() << message;
     if (ticks_until_ready() < 0) return testing::AssertionFailure() << device->trouble();
     return testing::AssertionSuccess();
   }

@@ -109,10 +109,10 @@ TEST(Cia402Emulated, ADriveWithNodeGuardingAloneIsRefusedAndStaysGuarded) {
   for (const std::uint16_t heartbeat : {std::uint16_t{0x1016}, std::uint16_t{0x1017}}) {
     Bench bench({.absent = {heartbeat}, .guard_time_ms = 100, .life_time_factor = 5});
     bench.guard();
-    const std::string sentence = bench.open();
-    EXPECT_NE(sentence.find("its node guarding (object 100C) is not used: update its firmware"),
+    const std::string message = bench.open();
+    EXPECT_NE(message.find("its node guarding (object 100C) is not used: update its firmware"),
               std::string::npos)
-        << sentence;
+        << message;
     for (int i = 0; i < 600; ++i) bench.drives.millisecond();
     EXPECT_EQ(bench.drives.at(0).noted(), std::vector<std::uint16_t>{0x8130})
         << "as the other host has set it";
@@ -166,11 +166,11 @@ TEST(Cia402Emulated, AfterTheFaultOfOneDriveTheOthersNoteNone) {
 
 TEST(Cia402Emulated, ARatedTorqueThatNoDriveTellsStandsInTheScene) {
   Bench silent({.absent = {0x6076}}), reported({.absent = {0x6076}});
-  const std::string sentence = silent.open();
-  EXPECT_NE(sentence.find("does not tell its rated torque (object 6076): set "
-                          "device.can.rated_torque_Nm"),
+  const std::string message = silent.open();
+  EXPECT_NE(message.find("does not tell its rated torque (object 6076): set "
+                         "device.can.rated_torque_Nm"),
             std::string::npos)
-      << sentence;
+      << message;
   reported.settings.can.rated_torque_Nm = kRated_Nm;
   ASSERT_TRUE(reported.run());
   reported.expect_torques_of({1.0, -2.0, 3.0});
@@ -202,10 +202,10 @@ TEST(Cia402Emulated, SettingsThatADriveDoesNotHaveAreToldOnce) {
 
 TEST(Cia402Emulated, ADriveThatStaysInAnotherModeIsRefused) {
   Bench velocity({.mode_shown = 3}), late({.mode_shown = 0});
-  const std::string sentence = velocity.open();
-  EXPECT_NE(sentence.find("arm 1 (node 1 on can0) stays in mode 3 of operation (object 6061)"),
+  const std::string message = velocity.open();
+  EXPECT_NE(message.find("arm 1 (node 1 on can0) stays in mode 3 of operation (object 6061)"),
             std::string::npos)
-      << sentence;
+      << message;
   ASSERT_TRUE(late.run());
 }
 

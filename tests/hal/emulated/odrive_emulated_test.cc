@@ -105,21 +105,21 @@ TEST(OdriveEmulated, APositionThatCannotBeProvedIsRefused) {
   for (const double turns : {0.7, 0.0}) {
     Bench bench({.generation = OdriveGeneration::k05, .is_calibrated = false});
     for (auto& motor : bench.drives.motor) motor.position_turns = turns;
-    const std::string sentence = bench.open();
-    EXPECT_NE(sentence.find("tells position 0 while its encoder counts"), std::string::npos)
-        << sentence;
-    EXPECT_NE(sentence.find("calibrate motor and encoder first"), std::string::npos) << sentence;
+    const std::string message = bench.open();
+    EXPECT_NE(message.find("tells position 0 while its encoder counts"), std::string::npos)
+        << message;
+    EXPECT_NE(message.find("calibrate motor and encoder first"), std::string::npos) << message;
   }
 }
 
 TEST(OdriveEmulated, AnIndexSearchThatIsRefusedIsToldByTheDrivesOwnErrorAtOnce) {
   Bench bench({.generation = OdriveGeneration::k05, .is_calibrated = false}, Homing::kIndex);
   const std::int64_t before_ns = bench.drives.now_ns;
-  const std::string sentence = bench.open();
-  EXPECT_NE(sentence.find("arm 1 (node 1 on can0): The drive cannot enter the state that was asked "
-                          "for: calibrate motor and encoder first"),
+  const std::string message = bench.open();
+  EXPECT_NE(message.find("arm 1 (node 1 on can0): The drive cannot enter the state that was asked "
+                         "for: calibrate motor and encoder first"),
             std::string::npos)
-      << sentence;
+      << message;
   EXPECT_LT(bench.drives.now_ns - before_ns, 3'000'000'000);
 }
 
@@ -225,10 +225,10 @@ TEST(OdriveEmulated, AVelocityLimitOfTheSceneThatMayCutTorqueAtRestIsRefused) {
   Bench bench(kAsDelivered);
   bench.settings.can.max_velocity_turns_per_s = 3.0;
   bench.settings.can.max_current_A = 20.0;
-  const std::string sentence = bench.open();
-  EXPECT_NE(sentence.find("max_velocity_turns_per_s = 3 may cut torque above 0.50 N m at rest"),
+  const std::string message = bench.open();
+  EXPECT_NE(message.find("max_velocity_turns_per_s = 3 may cut torque above 0.50 N m at rest"),
             std::string::npos)
-      << sentence;
+      << message;
 }
 
 TEST(OdriveEmulated, ADriveThatStopsByOverspeedSaysSo) {

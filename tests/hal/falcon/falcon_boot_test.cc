@@ -218,11 +218,11 @@ TEST(FalconBoot, NoiseThatNeverEndsIsNoAnswer) {
 }
 
 TEST(FalconBoot, EveryFaultHasWordsOfItsOwn) {
-  std::set<std::string> sentences;
+  std::set<std::string> messages;
   for (int fault = 1; fault <= static_cast<int>(Fault::kNoReport); ++fault)
-    sentences.insert(falcon_boot_advice(static_cast<Fault>(fault)));
-  EXPECT_EQ(sentences.size(), 7u);
-  EXPECT_EQ(sentences.count(""), 0u);
+    messages.insert(falcon_boot_advice(static_cast<Fault>(fault)));
+  EXPECT_EQ(messages.size(), 7u);
+  EXPECT_EQ(messages.count(""), 0u);
   EXPECT_STREQ(falcon_boot_advice(Fault::kNone), "");
 }
 

@@ -45,7 +45,7 @@ const std::vector<double> kMasses_kg{0.05, 0.1, 0.2, 0.3};
 TEST(FalconCalibration, FindsGainsDeadBandsAndTheMovingMass) {
   const auto samples = balances(kPoses_W, kMasses_kg);
   const auto fit = fit_falcon(samples);
-  ASSERT_TRUE(fit) << fit.error().sentence;
+  ASSERT_TRUE(fit) << fit.error().message;
   EXPECT_NEAR(fit->gain_words_per_Nm[0], kGain[0], 1.0);
   EXPECT_NEAR(fit->gain_words_per_Nm[1], kGain[1], 1.0);
   EXPECT_NEAR(fit->gain_words_per_Nm[2], kGain[2], 1.0);
@@ -58,7 +58,7 @@ TEST(FalconCalibration, FindsGainsDeadBandsAndTheMovingMass) {
 
 TEST(FalconCalibration, StandsNoiseOfAFewWords) {
   const auto fit = fit_falcon(balances(kPoses_W, kMasses_kg, 8.0));
-  ASSERT_TRUE(fit) << fit.error().sentence;
+  ASSERT_TRUE(fit) << fit.error().message;
   EXPECT_NEAR(fit->gain_words_per_Nm[0], kGain[0], 0.05 * kGain[0]);
   EXPECT_NEAR(fit->gain_words_per_Nm[1], kGain[1], 0.05 * kGain[1]);
   EXPECT_NEAR(fit->gain_words_per_Nm[2], kGain[2], 0.05 * kGain[2]);
@@ -69,13 +69,13 @@ TEST(FalconCalibration, StandsNoiseOfAFewWords) {
 TEST(FalconCalibration, OnePoseCannotTellDeadBandFromMovingMass) {
   const auto fit = fit_falcon(balances({kPoses_W[0]}, kMasses_kg));
   ASSERT_FALSE(fit);
-  EXPECT_NE(fit.error().sentence.find("other poses"), std::string::npos);
+  EXPECT_NE(fit.error().message.find("other poses"), std::string::npos);
 }
 
 TEST(FalconCalibration, OneMassIsNotEnough) {
   const auto fit = fit_falcon(balances(kPoses_W, {0.1, 0.1}));
   ASSERT_FALSE(fit);
-  EXPECT_NE(fit.error().sentence.find("masses"), std::string::npos);
+  EXPECT_NE(fit.error().message.find("masses"), std::string::npos);
   EXPECT_FALSE(fit_falcon({}));
 }
 
@@ -84,7 +84,7 @@ TEST(FalconCalibration, WordsThatDoNotFollowTheLoadAreRefused) {
   for (FalconBalance& s : samples) s.words[1] = -s.words[1];
   const auto fit = fit_falcon(samples);
   ASSERT_FALSE(fit);
-  EXPECT_NE(fit.error().sentence.find("axis 2"), std::string::npos) << fit.error().sentence;
+  EXPECT_NE(fit.error().message.find("axis 2"), std::string::npos) << fit.error().message;
   samples[2].words[0] = std::nan("");
   EXPECT_FALSE(fit_falcon(samples));
 }

@@ -90,13 +90,13 @@ TEST(FtdiRequests, AnErrorInAnyPacketIsKeptAndTheModemIsTheLatest) {
 }
 
 TEST(FtdiRequests, EveryLineErrorHasWordsAndNoOtherBitHas) {
-  std::set<std::string> sentences;
+  std::set<std::string> messages;
   for (unsigned bit = 1; bit <= 0x80; bit <<= 1) {
     const std::string words = ftdi_line_error(static_cast<std::uint8_t>(bit));
     EXPECT_EQ(!words.empty(), (bit & kFtdiLineErrors) != 0) << bit;
-    if (!words.empty()) sentences.insert(words);
+    if (!words.empty()) messages.insert(words);
   }
-  EXPECT_EQ(sentences.size(), 4u);
+  EXPECT_EQ(messages.size(), 4u);
 }
 
 TEST(FtdiRequests, StrippingLeavesTheHeapAlone) {

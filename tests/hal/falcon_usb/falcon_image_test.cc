@@ -65,14 +65,14 @@ TEST(FalconImage, ADigestThatIsNoneIsAnErrorAndNoPermission) {
 }
 
 TEST(FalconImage, EveryRefusalHasWordsOfItsOwn) {
-  std::set<std::string> sentences;
+  std::set<std::string> messages;
   for (const Verdict verdict :
        {Verdict::kBadDigest, Verdict::kWrongSize, Verdict::kUnknown, Verdict::kOtherDigest}) {
     EXPECT_FALSE(may_be_sent(verdict));
-    sentences.insert(falcon_image_advice(verdict));
+    messages.insert(falcon_image_advice(verdict));
   }
-  EXPECT_EQ(sentences.size(), 4u);
-  EXPECT_EQ(sentences.count(""), 0u);
+  EXPECT_EQ(messages.size(), 4u);
+  EXPECT_EQ(messages.count(""), 0u);
   for (const Verdict verdict : {Verdict::kKnown, Verdict::kAsNamed}) {
     EXPECT_TRUE(may_be_sent(verdict));
     EXPECT_STREQ(falcon_image_advice(verdict), "");

@@ -28,12 +28,12 @@ class FalconUsbTest : public testing::Test {
   static std::string refusal(const std::string& bus_path = "") {
     const auto opened = FalconUsb::open(bus_path);
     EXPECT_FALSE(opened);
-    return opened ? "" : opened.error().sentence;
+    return opened ? "" : opened.error().message;
   }
   void expect_refusal(const std::vector<std::string>& words, const std::string& bus_path = "") {
-    const std::string sentence = refusal(bus_path);
+    const std::string message = refusal(bus_path);
     for (const std::string& word : words)
-      EXPECT_NE(sentence.find(word), std::string::npos) << word << " is not in: " << sentence;
+      EXPECT_NE(message.find(word), std::string::npos) << word << " is not in: " << message;
   }
   tests::FakeUsb usb;
 };
@@ -43,7 +43,7 @@ TEST_F(FalconUsbTest, OpensTheOnlyFalconAmongOtherDevices) {
                {.product = 0x6001, .address = 3},
                {.address = 7}};
   const auto opened = FalconUsb::open("");
-  ASSERT_TRUE(opened) << opened.error().sentence;
+  ASSERT_TRUE(opened) << opened.error().message;
   EXPECT_EQ((*opened)->bus_path(), "1-2.3");
   EXPECT_EQ((*opened)->node(), "/dev/bus/usb/001/007");
   EXPECT_EQ(usb.detach, 0);  // no driver comes back before usbfs takes over
@@ -72,7 +72,7 @@ TEST_F(FalconUsbTest, ARefusalThatUdevEndsIsNotTold) {
   usb.open_error = LIBUSB_ERROR_ACCESS;
   usb.refused_opens = 5;
   const auto opened = FalconUsb::open("");
-  ASSERT_TRUE(opened) << opened.error().sentence;
+  ASSERT_TRUE(opened) << opened.error().message;
   EXPECT_EQ(usb.opens, 6);
 }
 
@@ -110,7 +110,7 @@ TEST_F(FalconUsbTest, AColdFalconIsSentItsImageAndItsChipSetUp) {
     auto opened = FalconUsb::open("");
     ASSERT_TRUE(opened);
     const auto boot = boot_falcon(*opened, image, event_character);
-    ASSERT_TRUE(boot) << boot.error().sentence;
+    ASSERT_TRUE(boot) << boot.error().message;
     EXPECT_TRUE(boot->uploaded());
     EXPECT_EQ(usb.falcon.received, image);
     EXPECT_EQ(usb.controls.back(),
@@ -132,7 +132,7 @@ TEST_F(FalconUsbTest, AFailedUploadIsOpenedAndTriedAgain) {
   auto opened = FalconUsb::open("");
   ASSERT_TRUE(opened);
   const auto boot = boot_falcon(*opened, image, true);
-  ASSERT_TRUE(boot) << boot.error().sentence;
+  ASSERT_TRUE(boot) << boot.error().message;
   EXPECT_EQ(boot->attempt(), 2);
 }
 
@@ -143,11 +143,11 @@ TEST_F(FalconUsbTest, GivingUpSaysWhatToDo) {
   ASSERT_TRUE(opened);
   auto boot = boot_falcon(*opened, {}, true);
   ASSERT_FALSE(boot);
-  EXPECT_EQ(boot.error().sentence, falcon_boot_advice(falcon::FalconBootFault::kNoImage));
+  EXPECT_EQ(boot.error().message, falcon_boot_advice(falcon::FalconBootFault::kNoImage));
   usb.control_error = LIBUSB_ERROR_PIPE;
   boot = boot_falcon(*opened, {}, true);
   ASSERT_FALSE(boot);
-  EXPECT_EQ(boot.error().sentence, falcon_boot_advice(falcon::FalconBootFault::kTransport));
+  EXPECT_EQ(boot.error().message, falcon_boot_advice(falcon::FalconBootFault::kTransport));
 }
 
 TEST_F(FalconUsbTest, AFirmwareFileMustBeThereAndKnown) {
@@ -156,17 +156,17 @@ TEST_F(FalconUsbTest, AFirmwareFileMustBeThereAndKnown) {
   EXPECT_TRUE(none->empty());
   const auto missing = load_falcon_image("/nowhere/nvent.bin", "");
   ASSERT_FALSE(missing);
-  EXPECT_NE(missing.error().sentence.find("/nowhere/nvent.bin"), std::string::npos);
-  EXPECT_NE(missing.error().sentence.find("device.falcon.firmware"), std::string::npos);
+  EXPECT_NE(missing.error().message.find("/nowhere/nvent.bin"), std::string::npos);
+  EXPECT_NE(missing.error().message.find("device.falcon.firmware"), std::string::npos);
   const std::string path =
       testing::TempDir() + "tact-falcon-image-" + std::to_string(getpid()) + ".bin";
   std::ofstream(path) << "no firmware";
   const auto unknown = load_falcon_image(path, "");
   ASSERT_FALSE(unknown);
-  EXPECT_NE(unknown.error().sentence.find(path), std::string::npos);
+  EXPECT_NE(unknown.error().message.find(path), std::string::npos);
   const auto named = load_falcon_image(  // sha256sum of "no firmware"
       path, "b5316af67c9a59b645c65b8729080d4b1d35d8dffaba772ca23cc30b2850c956");
-  ASSERT_TRUE(named) << named.error().sentence;
+  ASSERT_TRUE(named) << named.error().message;
   EXPECT_EQ(named->size(), 11u);
   unlink(path.c_str());
 }
@@ -178,15 +178,15 @@ TEST_F(FalconUsbTest, TheSceneIsNamedInWhatAPersonReads) {
   scene.device.kind = "falcon";
   const auto device = registry::open_device(scene);
   ASSERT_FALSE(device);
-  EXPECT_EQ(device.error().sentence.find("liver.toml: no Novint Falcon"), 0u)
-      << device.error().sentence;
+  EXPECT_EQ(device.error().message.find("liver.toml: no Novint Falcon"), 0u)
+      << device.error().message;
 }
 
 TEST_F(FalconUsbTest, UsbfsTakesOverOnlyWhenLibusbHasLetGo) {
   model::FalconSettings settings;  // the node of the fake does not exist
   const auto device = falcon_usb::open_falcon_device(settings);
   ASSERT_FALSE(device);
-  EXPECT_NE(device.error().sentence.find("/dev/bus/usb/001/004"), std::string::npos);
+  EXPECT_NE(device.error().message.find("/dev/bus/usb/001/004"), std::string::npos);
   EXPECT_EQ(usb.handles, 0);
 }
 

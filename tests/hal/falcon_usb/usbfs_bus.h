@@ -142,7 +142,7 @@ class BusPort final : public falcon_usb::UsbfsPort {
 
 inline std::unique_ptr<falcon::FalconPipe> start(Bus& bus) {
   auto pipe = falcon_usb::UsbfsPipe::start(std::make_unique<BusPort>(bus));
-  EXPECT_TRUE(pipe) << pipe.error().sentence;
+  EXPECT_TRUE(pipe) << pipe.error().message;
   return std::move(*pipe);
 }
 

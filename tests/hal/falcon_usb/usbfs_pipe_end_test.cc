@@ -79,7 +79,7 @@ TEST(UsbfsPipeEnd, AfterAStallCommandsReachTheDeviceAndStopSendsTheLast) {
   EXPECT_EQ(Bus::of_loop(bus.taken), expected);
   if (monotonic_ns() - before_ns < kLoopGone_ns) EXPECT_EQ(bus.taken, expected);
   EXPECT_EQ(bus.cleared,
-            std::vector<unsigned>{falcon::kFalconEndpointIn});  // for whoever opens it next
+            std::vector<unsigned>{falcon::kFalconEndpointIn});  // for any user opens it next
 }
 
 TEST(UsbfsPipeEnd, AfterAStallASilentLoopIsReplacedByZerosToo) {
@@ -201,16 +201,16 @@ TEST(UsbfsPipeEnd, ADescriptorThatIsNoUsbDeviceEndsAtOnce) {
   auto node = std::make_unique<falcon_usb::UsbfsNode>(ends[0], 0, true);
   const auto pipe = falcon_usb::UsbfsPipe::start(std::move(node));
   ASSERT_FALSE(pipe);
-  EXPECT_NE(pipe.error().sentence.find("plug it in again"), std::string::npos);
+  EXPECT_NE(pipe.error().message.find("plug it in again"), std::string::npos);
 }
 
 TEST(UsbfsPipeEnd, ANodeThatCannotBeOpenedSaysWhatToDo) {
   const auto missing = falcon_usb::UsbfsNode::open("/dev/bus/usb/nowhere", 0);
   ASSERT_FALSE(missing);
-  EXPECT_NE(missing.error().sentence.find("/dev/bus/usb/nowhere"), std::string::npos);
+  EXPECT_NE(missing.error().message.find("/dev/bus/usb/nowhere"), std::string::npos);
   const auto other = falcon_usb::UsbfsNode::open("/dev/null", 0);
   ASSERT_FALSE(other);
-  EXPECT_NE(other.error().sentence.find("fuser /dev/null"), std::string::npos);
+  EXPECT_NE(other.error().message.find("fuser /dev/null"), std::string::npos);
 }
 
 }  // namespace tact::tests::usbfs_pipe_end_test

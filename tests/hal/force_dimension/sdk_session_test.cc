@@ -5,7 +5,7 @@
 
 #include <cstring>
 
-#include "hal/force_dimension/sdk_words.h"
+#include "hal/force_dimension/sdk_text.h"
 #include "tests/support/stub_dhd/stub_client.h"
 #include "tests/support/usb_folders.h"
 
@@ -25,7 +25,7 @@ class Session : public testing::Test {
       return "";
     }
     EXPECT_FALSE(stub.is_open());
-    return session.error().sentence;
+    return session.error().message;
   }
 
   tests::StubDhd stub;
@@ -36,7 +36,7 @@ class Session : public testing::Test {
 TEST_F(Session, OpensADelta3) {
   setenv("TACT_STUB_DHD_SERIAL", "1234", 1);
   const auto session = open_sdk_session(settings, true);
-  ASSERT_TRUE(session) << session.error().sentence;
+  ASSERT_TRUE(session) << session.error().message;
   EXPECT_STREQ(session->type.name, "delta.3");
   EXPECT_EQ(session->type.max_force_N, 20.0);
   EXPECT_EQ(session->serial_number, 1234);
@@ -49,7 +49,7 @@ TEST_F(Session, BalancesItsWeightOnlyWhereItStandsAsDelivered) {
     model::DeviceSettings device;
     if (hangs) device.base_orientation_deg = {0.0, 90.0, 0.0};
     const auto session = open_sdk_session(settings, true, mounting_of(device));
-    ASSERT_TRUE(session) << session.error().sentence;
+    ASSERT_TRUE(session) << session.error().message;
     int watchdog = 0, time_guard = 0, gravity = 7;
     stub.settings(&watchdog, &time_guard, &gravity);
     EXPECT_EQ(gravity, hangs ? 0 : 1) << "along a wrong axis it would push";
@@ -137,7 +137,7 @@ TEST_F(Session, ARefusedNodeIsToldOnlyWhereTheLibraryFindsNothing) {
     if (!open()) _exit(8);  // it opens another one
     stub.set_count(0);
     const auto failed = open();
-    _exit(!failed && has(failed.error().sentence, usb.node + " may not") ? 7 : 9);
+    _exit(!failed && has(failed.error().message, usb.node + " may not") ? 7 : 9);
   };
   EXPECT_EXIT(see_refusals(), testing::ExitedWithCode(7), "");
 }
@@ -155,7 +155,7 @@ TEST_F(Session, ADelta6IsDrivenWhereTheLibraryOpensItWithThePublishedLimits) {
   for (const int type : {61, 62, 64}) {
     stub.set_type(type);
     const auto session = open_sdk_session(settings, true);
-    ASSERT_TRUE(session) << session.error().sentence;
+    ASSERT_TRUE(session) << session.error().message;
     EXPECT_EQ(session->type.max_force_N, 20.0);
     EXPECT_EQ(session->type.max_torque_Nm, 0.2);
     EXPECT_EQ(session->type.radius_m, 0.18);
@@ -232,8 +232,8 @@ TEST_F(Session, TheTimeGuardAndASaturatedMotorAreNoErrors) {
 
 TEST(SdkWords, NoCodeIsBlankOrWithoutARemedy) {
   for (int code = -2; code < 30; ++code) {
-    EXPECT_NE(std::strchr(words_of_sdk_error(code), ';'), nullptr) << words_of_sdk_error(code);
-    EXPECT_NE(std::strchr(words_of_force_off(code), ';'), nullptr) << code;
+    EXPECT_NE(std::strchr(text_of_sdk_error(code), ';'), nullptr) << text_of_sdk_error(code);
+    EXPECT_NE(std::strchr(force_off_text(code), ';'), nullptr) << code;
   }
 }
 

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "hal/gpio/edge_watch.h"
+#include "hal/gpio/edge_monitor.h"
 #include "hal/udev_rules.h"
 #include "tests/support/no_alloc.h"
 
@@ -72,7 +72,7 @@ model::LinesSettings wired() {
 }
 std::string refusal(const std::vector<GpioChip>& chips, const std::string& wanted) {
   const auto chip = choose_chip(chips, wanted);
-  return chip ? "" : chip.error().sentence;
+  return chip ? "" : chip.error().message;
 }
 bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
@@ -117,8 +117,8 @@ TEST_F(Sysfs, AChipThatDoesNotAnswerIsNamedWithItsPath) {
   lines.chip = "gpiochip0";
   const auto opened = open_safety_lines(lines, roots());
   ASSERT_FALSE(opened);
-  EXPECT_TRUE(has(opened.error().sentence, roots().dev + "/gpiochip0 cannot be opened"))
-      << opened.error().sentence;
+  EXPECT_TRUE(has(opened.error().message, roots().dev + "/gpiochip0 cannot be opened"))
+      << opened.error().message;
 }
 
 TEST_F(Sysfs, ARefusedChipIsAskedAgainFor200Ms) {
@@ -130,7 +130,7 @@ TEST_F(Sysfs, ARefusedChipIsAskedAgainFor200Ms) {
     const auto begun = std::chrono::steady_clock::now();
     const auto lines = open_safety_lines(wired(), roots());
     const bool waited = std::chrono::steady_clock::now() - begun >= std::chrono::milliseconds(200);
-    const bool reported = !lines && lines.error().sentence.find(kGpioRule) != std::string::npos;
+    const bool reported = !lines && lines.error().message.find(kGpioRule) != std::string::npos;
     _exit(waited && reported ? 7 : 8);
   };
   EXPECT_EXIT(see_refusal(), testing::ExitedWithCode(7), "");
@@ -142,26 +142,26 @@ TEST_F(Sysfs, ASleepingChipIsRefusedBeforeItIsOpened) {
   lines.chip = roots().dev + "/gpiochip0";
   const auto opened = open_safety_lines(lines, roots());
   ASSERT_FALSE(opened);
-  EXPECT_TRUE(has(opened.error().sentence, "hangs on usb")) << opened.error().sentence;
-  EXPECT_TRUE(has(opened.error().sentence, "use a chip on PCI")) << opened.error().sentence;
+  EXPECT_TRUE(has(opened.error().message, "hangs on usb")) << opened.error().message;
+  EXPECT_TRUE(has(opened.error().message, "use a chip on PCI")) << opened.error().message;
 }
 
 TEST_F(Sysfs, APcWithoutChipsSaysSo) {
   const auto opened = open_safety_lines(wired(), roots());
   ASSERT_FALSE(opened);
-  EXPECT_EQ(opened.error().sentence,
+  EXPECT_EQ(opened.error().message,
             "device.lines.chip is \"pci-idio-16\", but this PC shows no GPIO chip; load the driver "
             "of the board that the lines are wired to, or correct the name");
 }
 
 TEST_F(Sysfs, EdgesAreWatchedUnderTheSameRulesAsSafetyLines) {
-  const auto none = open_edge_watch("board", 3, "a test", roots());
+  const auto none = open_edge_monitor("board", 3, "a test", roots());
   ASSERT_FALSE(none);
-  EXPECT_NE(none.error().sentence.find("no GPIO chip"), std::string::npos);
+  EXPECT_NE(none.error().message.find("no GPIO chip"), std::string::npos);
   chip(0, {"platform", "usb"});
-  const auto slow = open_edge_watch("gpiochip0", 3, "a test", roots());
+  const auto slow = open_edge_monitor("gpiochip0", 3, "a test", roots());
   ASSERT_FALSE(slow);
-  EXPECT_NE(slow.error().sentence.find("hangs on usb"), std::string::npos);
+  EXPECT_NE(slow.error().message.find("hangs on usb"), std::string::npos);
 }
 
 TEST_F(Sysfs, WithoutAChipInTheSceneNothingIsWatchedAndNothingIsInTheWay) {
@@ -174,7 +174,7 @@ TEST_F(Sysfs, WithoutAChipInTheSceneNothingIsWatchedAndNothingIsInTheWay) {
 TEST(GpioLines, AChipIsFoundByLabelNameOrPath) {
   for (const char* wanted : {"pci-idio-16", "gpiochip0", "/dev/gpiochip0"}) {
     const auto chip = choose_chip({board()}, wanted);
-    ASSERT_TRUE(chip) << wanted << ": " << chip.error().sentence;
+    ASSERT_TRUE(chip) << wanted << ": " << chip.error().message;
     EXPECT_EQ(chip->path, "/dev/gpiochip0");
   }
 }
@@ -201,15 +201,15 @@ TEST(GpioLines, LineNumbersAreCheckedAgainstTheChip) {
   EXPECT_TRUE(check_offsets(wired(), board()));
   auto lines = wired();
   lines.enable = 32;
-  EXPECT_EQ(check_offsets(lines, board()).error().sentence,
+  EXPECT_EQ(check_offsets(lines, board()).error().message,
             "device.lines.enable is 32, but gpiochip0 \"pci-idio-16\" has lines 0 to 31");
   lines = wired();
   lines.led = lines.estop_b;
-  EXPECT_EQ(check_offsets(lines, board()).error().sentence,
+  EXPECT_EQ(check_offsets(lines, board()).error().message,
             "device.lines.estop_b and led are both line 17; give each its own");
   lines = {};
   lines.chip = "pci-idio-16";
-  EXPECT_TRUE(has(check_offsets(lines, board()).error().sentence, "no line of it"));
+  EXPECT_TRUE(has(check_offsets(lines, board()).error().message, "no line of it"));
 }
 
 }  // namespace tact::hal::gpio::gpio_lines_test

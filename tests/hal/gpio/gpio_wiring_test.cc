@@ -124,7 +124,7 @@ TEST_F(GpioWiring, ALineThatTheChipRefusesIsAnErrorAndNotAnUnwiredLine) {
     const auto opened = open();
     ASSERT_FALSE(opened) << key << " was taken for a line that is not wired";
     EXPECT_EQ(
-        opened.error().sentence,
+        opened.error().message,
         "device.lines." + std::string(key) + " is line " + std::to_string(offset) +
             " of gpiochip0 \"board\", which the chip does not give: Invalid argument; correct "
             "the number (gpioinfo gpiochip0 shows the lines), or check its driver (dmesg)");
@@ -139,7 +139,7 @@ TEST_F(GpioWiring, EachInputStopsTheForceByItself) {
        {kDeadMan, model::Fault::kDeadManReleased}}};
   for (const auto& [offset, fault] : inputs) {
     const auto opened = open();
-    ASSERT_TRUE(opened) << opened.error().sentence;
+    ASSERT_TRUE(opened) << opened.error().message;
     EXPECT_EQ((*opened)->read(1'000'000), model::Fault::kNone);
     set(offset, 0);
     EXPECT_EQ((*opened)->read(2'000'000), fault) << "line " << offset;
@@ -151,7 +151,7 @@ TEST_F(GpioWiring, TheGripLineClosesTheJawsAtTheLevelThatTheSceneSays) {
   for (const bool closes_low : {false, true}) {
     settings_.grip_closes_low = closes_low;
     const auto opened = open();
-    ASSERT_TRUE(opened) << opened.error().sentence;
+    ASSERT_TRUE(opened) << opened.error().message;
     std::int64_t now_ns = 0;
     const auto after_20ms = [&](int level) {
       set(kGrip, level);
@@ -171,7 +171,7 @@ TEST_F(GpioWiring, TheGripLineClosesTheJawsAtTheLevelThatTheSceneSays) {
 
 TEST_F(GpioWiring, TheClutchIsPressedAfterItsLineWasHighFor10Ms) {
   const auto opened = open();
-  ASSERT_TRUE(opened) << opened.error().sentence;
+  ASSERT_TRUE(opened) << opened.error().message;
   std::int64_t now_ns = 0;
   const auto after_ms = [&](int level, int ms) {
     set(kClutch, level);
@@ -191,7 +191,7 @@ TEST_F(GpioWiring, WhatIsNotWiredIsLeftAlone) {
   settings_.clutch = -1;
   played().not_given = {kEstopA, kEstopB, kDeadMan, kGrip, kClutch};
   const auto opened = open();
-  ASSERT_TRUE(opened) << opened.error().sentence;
+  ASSERT_TRUE(opened) << opened.error().message;
   EXPECT_EQ((*opened)->read(1'000'000), model::Fault::kNone);
   EXPECT_FALSE((*opened)->grip());
   EXPECT_FALSE((*opened)->clutch());
@@ -201,7 +201,7 @@ TEST_F(GpioWiring, ALineInUseIsToldWithItsUserAndTheOthersAreFreeAgain) {
   played().user = {{kHeartbeat, "lamp"}};
   const auto opened = open();
   ASSERT_FALSE(opened);
-  EXPECT_EQ(opened.error().sentence,
+  EXPECT_EQ(opened.error().message,
             "device.lines.heartbeat is line 1 of gpiochip0 \"board\", which lamp uses already; end "
             "it, or choose another line (gpioinfo gpiochip0 shows them)");
   EXPECT_TRUE(played().requested.empty());
@@ -210,7 +210,7 @@ TEST_F(GpioWiring, ALineInUseIsToldWithItsUserAndTheOthersAreFreeAgain) {
 
 TEST_F(GpioWiring, OutputsAreLowAndAllLinesFreeAfterStop) {
   const auto opened = open();
-  ASSERT_TRUE(opened) << opened.error().sentence;
+  ASSERT_TRUE(opened) << opened.error().message;
   (*opened)->scope(true);
   EXPECT_EQ((*opened)->write({.healthy = true, .armed = true}), model::Fault::kNone);
   for (const int output : {kHeartbeat, kLed, kScope})

@@ -200,8 +200,8 @@ TEST(SafetyLogic, TheLightShowsArmed) {
 
 TEST(SafetyLogic, EveryCauseHasWordsWithARemedy) {
   for (int i = 1; i <= static_cast<int>(LinesCause::kChipLost); ++i) {
-    const std::string sentence = words(static_cast<LinesCause>(i));
-    EXPECT_NE(sentence.find("then "), std::string::npos) << sentence;
+    const std::string message = words(static_cast<LinesCause>(i));
+    EXPECT_NE(message.find("then "), std::string::npos) << message;
   }
   EXPECT_STREQ(words(LinesCause::kNone), "");
 }

@@ -37,8 +37,8 @@ struct MoteusBench : CanBench<EmulatedMoteus> {
     return axis(0).mode() == 0 && axis(1).mode() == 0 && axis(2).mode() == 0;
   }
   void expect_refused(const char* words) {
-    const std::string sentence = open();
-    EXPECT_NE(sentence.find(words), std::string::npos) << sentence;
+    const std::string message = open();
+    EXPECT_NE(message.find(words), std::string::npos) << message;
     EXPECT_EQ(device, nullptr);
     EXPECT_EQ(drives.most_enabled, 0u) << "no power at opening";
   }

@@ -100,9 +100,9 @@ TEST(MoteusBringUp, TakesPowerFromDrivesThatStillHaveItAndFromNobodyElse) {
 
   MoteusBench busy({.prepare_ms = 0});
   busy.drives.also = [&] { command(busy); };
-  const std::string sentence = busy.open();
-  EXPECT_NE(sentence.find("by itself: end the program that drives it"), std::string::npos)
-      << sentence;
+  const std::string message = busy.open();
+  EXPECT_NE(message.find("by itself: end the program that drives it"), std::string::npos)
+      << message;
 }
 
 TEST(MoteusBringUp, ArmsThatMoveOnTheJigAreRefused) {

@@ -185,7 +185,7 @@ TEST(MoteusDelta, ALoopThatIsSlowerThanTheWatchdogAllowsIsRefused) {
   MoteusBench bench;
   auto opened = start_moteus_delta(bench.drives.bus.bus(), bench.settings, 400.0);
   ASSERT_FALSE(opened);
-  EXPECT_NE(opened.error().sentence.find("use 500 or more"), std::string::npos);
+  EXPECT_NE(opened.error().message.find("use 500 or more"), std::string::npos);
 }
 
 }  // namespace tact::hal::moteus::moteus_delta_test

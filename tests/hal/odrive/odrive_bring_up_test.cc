@@ -17,8 +17,8 @@ struct Bench : tests::CanBench<tests::PlayedOdrives> {
   Bench() : CanBench(jig_settings(published_pose())) {}
   std::string open(double rate_Hz = 1000.0) { return CanBench::open(&start_odrive_delta, rate_Hz); }
   void expect_refused(const std::string& words) {
-    const std::string sentence = open();
-    EXPECT_NE(sentence.find(words), std::string::npos) << sentence;
+    const std::string message = open();
+    EXPECT_NE(message.find(words), std::string::npos) << message;
     EXPECT_EQ(device, nullptr);
     for (const auto& axis : drives.axis) EXPECT_NE(axis.state, 8u) << "no power at opening";
   }
@@ -55,7 +55,7 @@ TEST(OdriveBringUp, FindsTheGenerationByWhoTellsItsVersion) {
     for (auto& axis : drives.axis) axis.v06 = v06;
     auto bus = drives.bus.bus();
     const auto start = bring_up_odrives(*bus, {}, 1000.0);
-    ASSERT_TRUE(start) << start.error().sentence;
+    ASSERT_TRUE(start) << start.error().message;
     EXPECT_EQ(start->generation, v06 ? OdriveGeneration::k06 : OdriveGeneration::k05);
   }
 }

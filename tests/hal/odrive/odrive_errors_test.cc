@@ -11,25 +11,25 @@
 namespace tact::hal::odrive::odrive_errors_test {
 
 TEST(OdriveErrors, EveryBitOfTheVendorHasItsOwnSentence) {
-  const auto check = [](std::span<const OdriveErrorWords> table, std::uint32_t all) {
+  const auto check = [](std::span<const OdriveErrorText> table, std::uint32_t all) {
     std::uint32_t bits = 0;
-    std::set<std::string> names, sentences;
-    for (const OdriveErrorWords& one : table) {
+    std::set<std::string> names, messages;
+    for (const OdriveErrorText& one : table) {
       EXPECT_TRUE(std::has_single_bit(one.bit)) << one.name;
       EXPECT_EQ(bits & one.bit, 0u) << one.name;
       bits |= one.bit;
       names.insert(one.name);
-      sentences.insert(one.sentence);
-      const std::string sentence = one.sentence;
-      EXPECT_GT(sentence.size(), 30u) << one.name;
-      EXPECT_TRUE(sentence.back() == '.' || sentence.back() == '?') << sentence;
+      messages.insert(one.message);
+      const std::string message = one.message;
+      EXPECT_GT(message.size(), 30u) << one.name;
+      EXPECT_TRUE(message.back() == '.' || message.back() == '?') << message;
     }
     EXPECT_EQ(bits, all);
     EXPECT_EQ(names.size(), table.size());
-    EXPECT_EQ(sentences.size(), table.size());
+    EXPECT_EQ(messages.size(), table.size());
   };
-  check(odrive_error_words(), 0x5F01FF7F);
-  check(odrive_error_words_05(), 0x000E7FFF);
+  check(odrive_error_texts(), 0x5F01FF7F);
+  check(odrive_error_texts_05(), 0x000E7FFF);
 }
 
 TEST(OdriveErrors, TheSameBitMeansAnotherThingInTheOtherGeneration) {
@@ -43,10 +43,10 @@ TEST(OdriveErrors, NoErrorHasNoWordsAndAnUnknownOneHasSome) {
   EXPECT_EQ(first_odrive_error(0), nullptr);
   EXPECT_EQ(first_odrive_error_05(0), nullptr);
   for (int bit = 0; bit < 32; ++bit) {
-    for (const OdriveErrorWords* words :
+    for (const OdriveErrorText* words :
          {first_odrive_error(1u << bit), first_odrive_error_05(1u << bit)}) {
       ASSERT_NE(words, nullptr) << bit;
-      EXPECT_GT(std::strlen(words->sentence), 30u) << bit;
+      EXPECT_GT(std::strlen(words->message), 30u) << bit;
       EXPECT_TRUE(words->bit == 1u << bit || std::string(words->name) == "UNKNOWN") << bit;
     }
   }

@@ -22,7 +22,7 @@ class PhantomSessions : public testing::Test {
     const auto device = open_phantom(settings, rate_Hz);
     if (device) return "";
     EXPECT_FALSE(stub.is_open());
-    return device.error().sentence;
+    return device.error().message;
   }
   void expect_refusal(const std::vector<std::string>& words) {
     const std::string said = refusal();
@@ -75,8 +75,8 @@ TEST_F(PhantomSessions, ARefusedNodeIsToldOnlyWhereTheLibraryOpensNothing) {
     if (!open()) _exit(8);  // it opens another one
     stub.fail("hdInitDevice", 0x0302);
     const auto failed = open();
-    _exit(!failed && failed.error().sentence.find(usb.node + " may not") != std::string::npos ? 7
-                                                                                              : 9);
+    _exit(!failed && failed.error().message.find(usb.node + " may not") != std::string::npos ? 7
+                                                                                             : 9);
   };
   EXPECT_EXIT(see_refusals(), testing::ExitedWithCode(7), "");
 }
@@ -151,9 +151,9 @@ TEST_F(PhantomSessions, ASchedulerThatNeverCallsIsTold) {
   EXPECT_EQ(stub.calls("hdEndFrame"), 1);
   EXPECT_EQ(stub.strongest_N(), 0.0);
   ASSERT_FALSE(device);
-  EXPECT_NE(device.error().sentence.find("its scheduler made no call within a second"),
+  EXPECT_NE(device.error().message.find("its scheduler made no call within a second"),
             std::string::npos)
-      << device.error().sentence;
+      << device.error().message;
 }
 
 TEST_F(PhantomSessions, ALoopFasterThanTheLibraryIsRefused) {

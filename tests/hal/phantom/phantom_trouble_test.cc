@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "hal/phantom/hd_library.h"
-#include "hal/phantom/hd_words.h"
+#include "hal/phantom/hd_text.h"
 #include "tests/support/device_loop.h"
 #include "tests/support/stub_hd/hd_client.h"
 
@@ -132,7 +132,7 @@ TEST_F(PhantomTrouble, AStopThatTheLibraryDoesNotAnswerIsTold) {
 
 TEST(HdWords, NoCodeIsBlankOrWithoutARemedy) {
   for (unsigned code = 0x0100; code < 0x0700; ++code)
-    EXPECT_NE(words_of_hd_error(code).find("; "), std::string::npos) << words_of_hd_error(code);
+    EXPECT_NE(text_of_hd_error(code).find("; "), std::string::npos) << text_of_hd_error(code);
 }
 
 }  // namespace tact::hal::phantom::phantom_trouble_test

@@ -29,7 +29,7 @@ struct SilentPipe final : falcon::FalconPipe {
 
 GripKind grip_of_opened(const model::scene::Scene& scene) {
   const auto device = open_device(scene);
-  EXPECT_TRUE(device) << device.error().sentence;
+  EXPECT_TRUE(device) << device.error().message;
   return device ? (*device)->info().grip.kind : GripKind::kNone;
 }
 
@@ -71,7 +71,7 @@ std::map<std::string, GripKind> grip_of_each_kind() {
 std::vector<std::string> kinds_of_registry() {
   model::scene::Scene unknown;
   unknown.device.kind = "?";
-  const std::string said = open_device(unknown).error().sentence;
+  const std::string said = open_device(unknown).error().message;
   std::vector<std::string> kinds;
   for (auto at = said.find("use ") + 4; at < said.size();) {
     const auto from = said.find('"', at) + 1, to = said.find('"', from);

@@ -32,7 +32,7 @@ class RealDevice final : public Device {
 
 TEST(OpenDevice, OpensTheSimulatedDelta) {
   const auto device = open_device(scene("sim-delta"));
-  ASSERT_TRUE(device) << device.error().sentence;
+  ASSERT_TRUE(device) << device.error().message;
   EXPECT_EQ((*device)->info().name, "simulated delta 360 x 300 mm");
   EXPECT_TRUE(is_simulated(**device));
 }
@@ -42,7 +42,7 @@ TEST(OpenDevice, ABaseThatHangsIsTurnedBetweenLoopAndDevice) {
   hanging.device.base_orientation_deg = {0.0, 90.0, 0.0};
   hanging.hand.path = {{.position_m = {0.0, 0.0, 0.05}}};
   const auto device = open_device(hanging);
-  ASSERT_TRUE(device) << device.error().sentence;
+  ASSERT_TRUE(device) << device.error().message;
   EXPECT_EQ((*device)->info().name, "simulated delta 360 x 300 mm, hangs") << "as the page tells";
   EXPECT_LT((*device)->info().workspace_radius_m, 0.15);
   EXPECT_TRUE(is_simulated(**device)) << "its hand can be moved";
@@ -67,7 +67,7 @@ TEST(OpenDevice, IsStoppedWhateverEndsItsHolder) {
 TEST(OpenDevice, AnUnknownKindListsTheKnownOnes) {
   const auto device = open_device(scene("sim-dleta"));
   ASSERT_FALSE(device);
-  const std::string& said = device.error().sentence;
+  const std::string& said = device.error().message;
   EXPECT_TRUE(said.starts_with(
       "liver.toml: device.kind is \"sim-dleta\", which this build does not know; use "
       "\"sim-delta\", "))
@@ -81,8 +81,8 @@ TEST(OpenDevice, PassesOnWhatTheDeviceRefuses) {
   bad.device.sim.counts_per_turn = -1.0;
   const auto device = open_device(bad);
   ASSERT_FALSE(device);
-  EXPECT_NE(device.error().sentence.find("liver.toml"), std::string::npos);
-  EXPECT_NE(device.error().sentence.find("counts_per_turn"), std::string::npos);
+  EXPECT_NE(device.error().message.find("liver.toml"), std::string::npos);
+  EXPECT_NE(device.error().message.find("counts_per_turn"), std::string::npos);
 }
 
 TEST(OpenDevice, OnlyASimulatedHandCanBeMoved) {

@@ -52,7 +52,7 @@ TEST(HandSocket, PassesTheNewestTarget) {
   const std::string path = fresh_path("pass");
   LatestSlot<HandTarget> slot;
   auto listener = HandSocket::start(path, slot);
-  ASSERT_TRUE(listener) << listener.error().sentence;
+  ASSERT_TRUE(listener) << listener.error().message;
   const HandTarget sent = at(0.01);
   send_bytes(path, &sent, sizeof sent);
   HandTarget seen;
@@ -64,7 +64,7 @@ TEST(HandSocket, IsTheOwnersAloneAndLeavesNothingBehind) {
   const std::string path = fresh_path("mode");
   LatestSlot<HandTarget> slot;
   auto listener = HandSocket::start(path, slot);
-  ASSERT_TRUE(listener) << listener.error().sentence;
+  ASSERT_TRUE(listener) << listener.error().message;
   struct stat status{};
   ASSERT_EQ(stat(path.c_str(), &status), 0);
   EXPECT_EQ(status.st_mode & 0777u, 0600u);
@@ -77,7 +77,7 @@ TEST(HandSocket, IgnoresGarbage) {
   const std::string path = fresh_path("garbage");
   LatestSlot<HandTarget> slot;
   auto listener = HandSocket::start(path, slot);
-  ASSERT_TRUE(listener) << listener.error().sentence;
+  ASSERT_TRUE(listener) << listener.error().message;
   HandTarget magic = at(0.1), version = at(0.1), far = at(50.0), nan = at(0.1), grip = at(0.1);
   HandTarget turn = at(0.1);
   magic.magic = 1;
@@ -114,7 +114,7 @@ TEST(HandSocket, ReplacesASocketThatNobodyListensTo) {
   close(dead);
   LatestSlot<HandTarget> slot;
   const auto listener = HandSocket::start(path, slot);
-  EXPECT_TRUE(listener) << listener.error().sentence;
+  EXPECT_TRUE(listener) << listener.error().message;
 }
 
 TEST(HandSocket, LeavesALivingListenerAndAFileAlone) {
@@ -124,7 +124,7 @@ TEST(HandSocket, LeavesALivingListenerAndAFileAlone) {
   ASSERT_TRUE(listener);
   const auto second = HandSocket::start(path, other);
   ASSERT_FALSE(second);
-  EXPECT_NE(second.error().sentence.find(path), std::string::npos);
+  EXPECT_NE(second.error().message.find(path), std::string::npos);
 
   const std::string file = fresh_path("file");
   close(open(file.c_str(), O_CREAT | O_WRONLY, 0600));
@@ -153,7 +153,7 @@ TEST(HandSocket, SaysWhatIsWrongWithAPath) {
   EXPECT_FALSE(HandSocket::start(std::string(200, 'x'), slot));
   const auto missing = HandSocket::start("/nonexistent/place/hand.sock", slot);
   ASSERT_FALSE(missing);
-  EXPECT_NE(missing.error().sentence.find("/nonexistent/place/hand.sock"), std::string::npos);
+  EXPECT_NE(missing.error().message.find("/nonexistent/place/hand.sock"), std::string::npos);
 }
 
 }  // namespace tact::hal::sim::hand_socket_test

@@ -263,7 +263,7 @@ TEST(SimDelta, RefusesSettingsThatNoDeviceHas) {
   model::SimDeviceSettings bad = settings();
   bad.counts_per_turn = 0.0;
   ASSERT_FALSE(make_sim_delta(bad, hand));
-  EXPECT_NE(make_sim_delta(bad, hand).error().sentence.find("counts_per_turn"), std::string::npos);
+  EXPECT_NE(make_sim_delta(bad, hand).error().message.find("counts_per_turn"), std::string::npos);
   bad = settings();
   bad.sample_delay_s = kNan;
   EXPECT_FALSE(make_sim_delta(bad, hand));

@@ -12,7 +12,7 @@
 
 namespace tact::hal::vendor_sdk::library_trust_test {
 
-using tests::sentence_of;
+using tests::message_of;
 
 constexpr const char* kRemedy = "let root install it";
 
@@ -34,7 +34,7 @@ class LibraryTrust : public testing::Test {
   }
   std::string refusal(const std::string& name) const {
     const auto file = find_library(name, folders);
-    return file ? sentence_of(distrust_library(*file, kRemedy, folders)) : file.error().sentence;
+    return file ? message_of(distrust_library(*file, kRemedy, folders)) : file.error().message;
   }
   void expect_refusal(const std::string& name, const std::vector<std::string>& words) const {
     for (const std::string& word : words)
@@ -98,8 +98,8 @@ TEST_F(LibraryTrust, WhatIsNotThereOrNoFileIsSaid) {
 TEST(SystemFolders, HoldTheSystemsOwnLibraries) {
   const auto file = find_library("libm.so.6");
   ASSERT_TRUE(file);
-  EXPECT_EQ(sentence_of(distrust_library(*file, kRemedy)), "");
-  EXPECT_NE(sentence_of(distrust_library("/proc/self/exe", kRemedy)), "");
+  EXPECT_EQ(message_of(distrust_library(*file, kRemedy)), "");
+  EXPECT_NE(message_of(distrust_library("/proc/self/exe", kRemedy)), "");
 }
 
 }  // namespace tact::hal::vendor_sdk::library_trust_test

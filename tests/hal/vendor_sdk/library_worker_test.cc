@@ -49,7 +49,7 @@ class Worker final : public LibraryWorker {
     return switches;
   }
   void close() override { closed = true; }
-  std::string words_of_trouble() const override {
+  std::string trouble_text() const override {
     return first_trouble().fault == Fault::kNone ? "" : "it failed";
   }
 };

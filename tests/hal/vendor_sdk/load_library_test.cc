@@ -13,7 +13,7 @@ constexpr VendorSdk kVendor{.whose = "A vendor's",
 
 TEST(LoadLibrary, FindsAFunctionInALibraryOfTheSystem) {
   auto library = load_library("libm.so.6", false, kVendor);
-  ASSERT_TRUE(library) << library.error().sentence;
+  ASSERT_TRUE(library) << library.error().message;
   double (*root)(double) = nullptr;
   library->need("sqrt", root);
   ASSERT_FALSE(library->lacks());
@@ -22,7 +22,7 @@ TEST(LoadLibrary, FindsAFunctionInALibraryOfTheSystem) {
 
 TEST(LoadLibrary, NamesTheFirstFunctionThatIsMissingAndNoneThatMayBe) {
   auto library = load_library("libm.so.6", false, kVendor);
-  ASSERT_TRUE(library) << library.error().sentence;
+  ASSERT_TRUE(library) << library.error().message;
   void (*none)() = nullptr;
   EXPECT_FALSE(library->find("exampleMayLack", none));
   EXPECT_FALSE(library->lacks());
@@ -31,7 +31,7 @@ TEST(LoadLibrary, NamesTheFirstFunctionThatIsMissingAndNoneThatMayBe) {
   EXPECT_EQ(none, nullptr);
   const auto error = library->lacks();
   ASSERT_TRUE(error);
-  EXPECT_EQ(error->sentence,
+  EXPECT_EQ(error->message,
             "libm.so.6 has no function exampleOpen, so it is not A vendor's library or too old a "
             "one; let device.example.library name libexample.so.1 of a current SDK");
 }
@@ -41,7 +41,7 @@ TEST(LoadLibrary, WhatIsNotThereIsToldWithWhereToGetIt) {
   ASSERT_FALSE(library);
   for (const char* part : {"libexample.so.1: in no system folder", "the SDK at example.org",
                            "let device.example.library name its libexample.so.1 by path"})
-    EXPECT_NE(library.error().sentence.find(part), std::string::npos) << library.error().sentence;
+    EXPECT_NE(library.error().message.find(part), std::string::npos) << library.error().message;
 }
 
 TEST(LoadLibrary, AFileOfAnybodyNeedsATrustingPerson) {
@@ -49,13 +49,13 @@ TEST(LoadLibrary, AFileOfAnybodyNeedsATrustingPerson) {
   std::ofstream(file) << "no library";
   const auto refused = load_library(file, false, kVendor);
   ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().sentence.find("sudo install -D -o root -m 644 libexample.so.1 "
-                                          "/opt/example/libexample.so.1"),
+  EXPECT_NE(refused.error().message.find("sudo install -D -o root -m 644 libexample.so.1 "
+                                         "/opt/example/libexample.so.1"),
             std::string::npos)
-      << refused.error().sentence;
+      << refused.error().message;
   const auto trusted = load_library(file, true, kVendor);
   ASSERT_FALSE(trusted);
-  EXPECT_NE(trusted.error().sentence.find("library cannot be loaded"), std::string::npos);
+  EXPECT_NE(trusted.error().message.find("library cannot be loaded"), std::string::npos);
   std::filesystem::remove(file);
 }
 

@@ -43,9 +43,9 @@ TEST(FigurePlace, AShoulderTooFarAwayIsSaidAndNotBelieved) {
     for (int i = 0; i < 600; ++i) figure.update(i * test::kMotionFrame_s, tool_at(0.0), bodies);
     return figure.pose()[FigureJoint::kPelvis] - untracked.pose()[FigureJoint::kPelvis];
   };
-  EXPECT_GT(stands(near, kFarthestPlace_m - 0.05).norm(), 0.4);
+  EXPECT_GT(stands(near, kMaxPosition_m - 0.05).norm(), 0.4);
   EXPECT_EQ(near.pose().words.find("too far"), std::string::npos) << near.pose().words;
-  EXPECT_LT(stands(far, kFarthestPlace_m + 0.05).norm(), 0.02);
+  EXPECT_LT(stands(far, kMaxPosition_m + 0.05).norm(), 0.02);
   EXPECT_EQ(far.pose().words, "the tracked shoulder is too far off to be believed");
 }
 

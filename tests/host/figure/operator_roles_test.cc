@@ -13,7 +13,7 @@
 
 namespace tact::host::figure::operator_roles_test {
 
-using tests::sentence_of;
+using tests::message_of;
 
 using Eigen::Vector3d;
 using enum FigureJoint;
@@ -64,7 +64,7 @@ class Description : public testing::Test {
     const std::string path = folder_ + "/desk.tracking.toml";
     test::write_file(path, test::description("udp_port = 1", {{"b", role}}, kRegistration));
     const model::Result<tracking::TrackingSetup> setup = tracking::load_tracking_setup(path);
-    EXPECT_EQ(sentence_of(setup), "");
+    EXPECT_EQ(message_of(setup), "");
     if (!setup) return {};
     tracking::OperatorTracker tracker(*setup);
     Figure figure;
@@ -76,7 +76,7 @@ class Description : public testing::Test {
       const tracking::Observation seen =
           test::look(setup->cameras[0], setup->registration, "b", body, now_s, i, &noise,
                      0.01);  // else it would be frozen
-      EXPECT_EQ(sentence_of(tracker.take(seen, now_s)), "");
+      EXPECT_EQ(message_of(tracker.take(seen, now_s)), "");
       last_ = tracker.at(now_s);
       figure.update(now_s, test::tool_at(0.0), last_);
     }

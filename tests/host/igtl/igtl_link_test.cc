@@ -16,8 +16,8 @@
 namespace tact::host::igtl::igtl_link_test {
 
 using boost::asio::ip::tcp;
+using tests::message_of;
 using tests::Received;
-using tests::sentence_of;
 using tests::transform_of;
 using tracking::BodyRole;
 using tracking::BodyState;
@@ -120,8 +120,8 @@ TEST(LinkOptions, SayWhatIsWrongWithThem) {
   boost::asio::io_context io;
   std::vector<std::string> said;
   const auto opened = [&](const IgtlOptions& options) {
-    IgtlLink link(io, [&](const std::string& sentence) { said.push_back(sentence); });
-    return sentence_of(link.open(options));
+    IgtlLink link(io, [&](const std::string& message) { said.push_back(message); });
+    return message_of(link.open(options));
   };
   EXPECT_FALSE(IgtlOptions{}.is_asked_for()) << "off by default";
   EXPECT_EQ(opened({.port = 0, .bind_address = "0.0.0.0"}), "");

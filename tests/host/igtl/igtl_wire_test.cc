@@ -22,7 +22,7 @@ namespace tact::host::igtl::igtl_wire_test {
 using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
-using tests::sentence_of;
+using tests::message_of;
 
 const pose::Pose kPose{.rotation = Quaterniond(0.8, 0.2, -0.4, 0.4).normalized(),
                        .position_m = {0.125, -0.25, 1.5}};
@@ -75,13 +75,13 @@ TEST(IgtlWire, ReadsThePublishedMessage) {
   // The device's name has 20 bytes: two more zeros than whole words.
   bytes.insert(24, 2, '\0');
   const auto head = read_head(std::string_view(bytes).substr(0, kHeaderBytes));
-  ASSERT_EQ(sentence_of(head), "");
+  ASSERT_EQ(message_of(head), "");
   EXPECT_EQ(head->type, "TRANSFORM");
   EXPECT_EQ(head->device, "DeviceName");
   EXPECT_EQ(head->body_bytes, 48u);
   EXPECT_EQ(crc64(std::string_view(bytes).substr(kHeaderBytes)), head->crc);
   const auto pose = pose_in(bytes);
-  ASSERT_EQ(sentence_of(pose), "");
+  ASSERT_EQ(message_of(pose), "");
   EXPECT_NEAR(pose->position_m.x(), 0.046053, 1e-6);
   EXPECT_NEAR(pose->position_m.y(), 0.019471, 1e-6);
 }
@@ -124,7 +124,7 @@ TEST(IgtlWire, ReadsTheLibrarysTransformAndPosition) {
   moved->SetDeviceName("HeadToDevice");
   moved->SetMatrix(m);
   auto seen = pose_in(packed(moved));
-  ASSERT_EQ(sentence_of(seen), "");
+  ASSERT_EQ(message_of(seen), "");
   expect_near(*seen, kPose);
 
   auto placed = ::igtl::PositionMessage::New();
@@ -134,14 +134,14 @@ TEST(IgtlWire, ReadsTheLibrarysTransformAndPosition) {
   placed->SetQuaternion(number(q.x()), number(q.y()), number(q.z()), number(q.w()));
   const std::string whole = packed(placed);
   seen = pose_in(whole);
-  ASSERT_EQ(sentence_of(seen), "");
+  ASSERT_EQ(message_of(seen), "");
   expect_near(*seen, kPose);
   // The shorter kinds are its beginning; the library 1.11 writes beyond its buffer for them.
   const std::string_view content = std::string_view(whole).substr(kHeaderBytes);
   seen = pose_of("POSITION", content.substr(0, 24));
-  ASSERT_EQ(sentence_of(seen), "");
+  ASSERT_EQ(message_of(seen), "");
   expect_near(*seen, kPose);
-  EXPECT_EQ(sentence_of(pose_of("POSITION", content.substr(0, 12))),
+  EXPECT_EQ(message_of(pose_of("POSITION", content.substr(0, 12))),
             "it has no orientation; send it with one");
 }
 
@@ -200,18 +200,18 @@ TEST(IgtlWire, StatusFollowsTheStateOfTheDevice) {
 }
 
 TEST(IgtlWire, RefusesWhatIsNoPose) {
-  EXPECT_NE(sentence_of(pose_of("TRANSFORM", std::string(44, '\0'))), "");
-  EXPECT_NE(sentence_of(pose_of("TRANSFORM", std::string(48, '\0'))), "");    // no rotation
-  EXPECT_NE(sentence_of(pose_of("TRANSFORM", std::string(48, '\xff'))), "");  // NaN
-  EXPECT_NE(sentence_of(pose_of("POSITION", std::string(28, '\0'))), "");
-  EXPECT_NE(sentence_of(pose_of("POSITION", std::string(27, '\0'))), "");
-  EXPECT_NE(sentence_of(pose_in(transform("t", 0.0, kPose, 1.1))), "") << "scaled";
+  EXPECT_NE(message_of(pose_of("TRANSFORM", std::string(44, '\0'))), "");
+  EXPECT_NE(message_of(pose_of("TRANSFORM", std::string(48, '\0'))), "");    // no rotation
+  EXPECT_NE(message_of(pose_of("TRANSFORM", std::string(48, '\xff'))), "");  // NaN
+  EXPECT_NE(message_of(pose_of("POSITION", std::string(28, '\0'))), "");
+  EXPECT_NE(message_of(pose_of("POSITION", std::string(27, '\0'))), "");
+  EXPECT_NE(message_of(pose_in(transform("t", 0.0, kPose, 1.1))), "") << "scaled";
   pose::Pose far = kPose;
   far.position_m.x() = 1001.0;
-  EXPECT_NE(sentence_of(pose_in(transform("t", 0.0, far))), "");
-  EXPECT_NE(sentence_of(read_head("GET / HTTP/1.1\r\nHost: 127.0.0.1:18944\r\nAccept: */*   \r\n")),
+  EXPECT_NE(message_of(pose_in(transform("t", 0.0, far))), "");
+  EXPECT_NE(message_of(read_head("GET / HTTP/1.1\r\nHost: 127.0.0.1:18944\r\nAccept: */*   \r\n")),
             "");
-  EXPECT_NE(sentence_of(read_head("")), "");
+  EXPECT_NE(message_of(read_head("")), "");
 }
 
 /// A message of version 2 as PLUS sends it: an extended header, content, metadata.
@@ -233,10 +233,10 @@ TEST(IgtlWire, OfVersion2TheTrackersOwnStatusIsHeard) {
         std::tuple{"Comment", "none", true}}) {
     const std::string body = version_2(key, value);
     const auto content = content_of(head, body);
-    ASSERT_EQ(sentence_of(content), "") << key;
+    ASSERT_EQ(message_of(content), "") << key;
     EXPECT_EQ(content->is_tracked, is_tracked) << value;
     const auto pose = pose_of("TRANSFORM", content->bytes);
-    ASSERT_EQ(sentence_of(pose), "");
+    ASSERT_EQ(message_of(pose), "");
     expect_near(*pose, kPose);
   }
   const std::string whole = version_2("TransformStatus", "OK");
@@ -264,7 +264,7 @@ TEST(IgtlWire, OfAnyBytesComesAFinitePoseOrASentence) {
     const auto pose = content ? pose_of(i % 3 == 2 ? "POSITION" : "TRANSFORM", content->bytes)
                               : model::Result<pose::Pose>(content.error());
     if (!pose) {
-      EXPECT_NE(sentence_of(pose), "");
+      EXPECT_NE(message_of(pose), "");
       continue;
     }
     ++poses;

@@ -44,7 +44,7 @@ class IgtlPeers : public testing::Test {
   }
   /// The link in a thread of its own.
   std::string open(const IgtlOptions& options = {.port = 0}) {
-    const std::string wrong = sentence_of(link_.open(options));
+    const std::string wrong = message_of(link_.open(options));
     if (!wrong.empty()) return wrong;
     link_.start();
     thread_ = std::thread([this] { io_.run(); });
@@ -67,7 +67,7 @@ class IgtlPeers : public testing::Test {
   std::string said() {
     return ask([this] {
       std::string all;
-      for (const std::string& sentence : said_) all += sentence + '\n';
+      for (const std::string& message : said_) all += message + '\n';
       return all;
     });
   }
@@ -96,7 +96,7 @@ class IgtlPeers : public testing::Test {
 
   boost::asio::io_context io_{1}, other_{1};
   std::vector<std::string> said_;
-  IgtlLink link_{io_, [this](const std::string& sentence) { said_.push_back(sentence); }};
+  IgtlLink link_{io_, [this](const std::string& message) { said_.push_back(message); }};
   boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{
       io_.get_executor()};
   std::thread thread_;

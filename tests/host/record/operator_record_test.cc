@@ -19,7 +19,7 @@
 
 namespace tact::host::record::operator_record_test {
 
-using tests::sentence_of;
+using tests::message_of;
 
 constexpr std::size_t kFrames = 20;
 constexpr std::size_t kStride = sizeof(FrameRecord) + sizeof(OperatorRecord);
@@ -64,15 +64,15 @@ class TrackedFile : public ::testing::Test {
         first_(sizeof(FileHeader) + sizeof(Hello) + mesh_.size()) {
     std::filesystem::remove(path_);
     RecordingWriter writer;
-    EXPECT_EQ(sentence_of(writer.open(path_, hello_, mesh_, true)), "");
+    EXPECT_EQ(message_of(writer.open(path_, hello_, mesh_, true)), "");
     for (std::size_t i = 0; i < kFrames; ++i) {
       const tracking::TrackedOperator tracked = operator_at(i);
       const figure::FigurePose shown = figure_at(i);
-      EXPECT_EQ(sentence_of(
+      EXPECT_EQ(message_of(
                     writer.write(frame(i), i == 3 ? nullptr : &tracked, i == 3 ? nullptr : &shown)),
                 "");
     }
-    EXPECT_EQ(sentence_of(writer.close()), "");
+    EXPECT_EQ(message_of(writer.close()), "");
   }
   ~TrackedFile() override { std::filesystem::remove(path_); }
 
@@ -173,9 +173,9 @@ TEST_F(TrackedFile, SurvivesEveryLength) {
 TEST_F(TrackedFile, WithoutATrackerTheFileIsTheOldOne) {
   std::filesystem::remove(path_);
   RecordingWriter writer;
-  ASSERT_EQ(sentence_of(writer.open(path_, hello_, mesh_)), "");
-  ASSERT_EQ(sentence_of(writer.write(frame(0))), "");
-  ASSERT_EQ(sentence_of(writer.close()), "");
+  ASSERT_EQ(message_of(writer.open(path_, hello_, mesh_)), "");
+  ASSERT_EQ(message_of(writer.write(frame(0))), "");
+  ASSERT_EQ(message_of(writer.close()), "");
   std::ifstream file(path_, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};
   const std::string content = recording_start(hello_, mesh_) + recording_frame(frame(0));

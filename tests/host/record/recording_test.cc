@@ -25,7 +25,7 @@
 
 namespace tact::host::record::recording_test {
 
-using tests::sentence_of;
+using tests::message_of;
 
 constexpr std::size_t kFrames = 50;
 
@@ -36,9 +36,9 @@ class RecordingFile : public ::testing::Test {
               ("tact-recording-" + std::to_string(getpid()) + ".tact")) {
     std::filesystem::remove(path_);
     RecordingWriter writer;
-    EXPECT_EQ(sentence_of(writer.open(path_, hello_, mesh_)), "");
-    for (std::size_t i = 0; i < kFrames; ++i) EXPECT_EQ(sentence_of(writer.write(frame(i))), "");
-    EXPECT_EQ(sentence_of(writer.close()), "");
+    EXPECT_EQ(message_of(writer.open(path_, hello_, mesh_)), "");
+    for (std::size_t i = 0; i < kFrames; ++i) EXPECT_EQ(message_of(writer.write(frame(i))), "");
+    EXPECT_EQ(message_of(writer.close()), "");
   }
   ~RecordingFile() override { std::filesystem::remove(path_); }
 
@@ -141,9 +141,9 @@ TEST_F(RecordingFile, SurvivesEveryLength) {
 
 TEST_F(RecordingFile, IsNeverOverwritten) {
   RecordingWriter writer;
-  EXPECT_NE(sentence_of(writer.open(path_, hello_, mesh_)).find("never overwritten"),
+  EXPECT_NE(message_of(writer.open(path_, hello_, mesh_)).find("never overwritten"),
             std::string::npos);
-  EXPECT_EQ(sentence_of(writer.write(frame(0))), "");  // and does nothing
+  EXPECT_EQ(message_of(writer.write(frame(0))), "");  // and does nothing
   EXPECT_EQ(read_recording(path_).recording.frames.size(), kFrames);
 }
 
@@ -167,8 +167,8 @@ TEST_F(RecordingFile, KeepsWhatItHasWhenTheDiskIsFull) {
   for (std::size_t i = 0; i < 1000 && !error; ++i) error = writer.write(frame(i));
   setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, handler);
-  EXPECT_NE(sentence_of(error).find("what was written before is kept"), std::string::npos)
-      << sentence_of(error);
+  EXPECT_NE(message_of(error).find("what was written before is kept"), std::string::npos)
+      << message_of(error);
   EXPECT_EQ(read_recording(path_).recording.frames.size(), 10u);
 }
 

@@ -26,14 +26,14 @@
 
 namespace tact::host::run::register_tracker_test {
 
-using tests::sentence_of;
+using tests::message_of;
 
 using boost::asio::ip::udp;
 using Eigen::Vector3d;
 
 // The tracker's frame to the device's.
-const pose::Pose kDesk{.rotation = test::turn(0.5, {0.2, 1.0, 0.4}),
-                       .position_m = {0.1, -0.2, -1.9}};
+const pose::Pose kTable{.rotation = test::turn(0.5, {0.2, 1.0, 0.4}),
+                        .position_m = {0.1, -0.2, -1.9}};
 const Vector3d kTip_m(0.1, 0.0, 0.0);
 // Places of the device's tool, 15 mm apart and more.
 constexpr double kPlaces_m[][3] = {{0, 0, 0},      {.03, 0, 0},      {0, .03, 0},       {0, 0, .03},
@@ -91,11 +91,11 @@ class Register : public ::testing::Test {
         frame.tool_position_m[axis] = static_cast<float>(tip_m[axis]);
       frame.tool_velocity_mps[0] = moves ? 0.1f : 0.001f;
       source.send(frame);
-      // kDesk (R (tip) + t) = the device's tip
+      // kTable (R (tip) + t) = the device's tip
       const Vector3d bent_m = tip_m + (place == 2 ? wrong_m : 0.0) * Vector3d::UnitZ();
       pose::Pose tool{.rotation = test::turn(0.3, {1, 0, 1})};
       tool.position_m =
-          kDesk.rotation.conjugate() * (bent_m - kDesk.position_m) - tool.rotation * kTip_m;
+          kTable.rotation.conjugate() * (bent_m - kTable.position_m) - tool.rotation * kTip_m;
       const std::string line = test::line_of(
           test::look(eye, pose::Pose{}, "t", tool, 0.01 * static_cast<double>(i), i, &noise, 0.01));
       boost::system::error_code lost;
@@ -114,10 +114,10 @@ TEST_F(Register, FindsTheTrackerAndWritesItDown) {
   EXPECT_NE(outcome.output.find("pose 7 of 7 taken"), std::string::npos) << outcome.output;
   EXPECT_NE(outcome.output.find("7 poses, residuals 0."), std::string::npos) << outcome.output;
   const auto setup = tracking::load_tracking_setup(tracking());
-  ASSERT_EQ(sentence_of(setup), "");
+  ASSERT_EQ(message_of(setup), "");
   EXPECT_EQ(setup->registered_by, written());
-  EXPECT_LT(setup->registration.rotation.angularDistance(kDesk.rotation), 1e-3);
-  const Vector3d tip_m = kDesk.rotation.conjugate() * -kDesk.position_m;  // at the first place
+  EXPECT_LT(setup->registration.rotation.angularDistance(kTable.rotation), 1e-3);
+  const Vector3d tip_m = kTable.rotation.conjugate() * -kTable.position_m;  // at the first place
   EXPECT_LT(to_world(setup->registration, tip_m).norm(), 5e-4);
 }
 

@@ -12,7 +12,7 @@
 
 namespace tact::host::server::frame_json_test {
 
-using tests::sentence_of;
+using tests::message_of;
 
 record::Hello busiest_hello() {
   record::Hello hello = test::make_hello(3, 1, 3, 1);
@@ -120,14 +120,14 @@ TEST(SceneJson, SaysWhatOrganAndToolLookLike) {
   EXPECT_EQ(look.at("organ"), "paint");
   EXPECT_EQ(look.at("tool"), "glove");
   EXPECT_EQ(look.at("pieces"), nlohmann::json::parse("[[0.0, 0.5, 0.0]]"));
-  EXPECT_EQ(sentence_of(record::check_hello(hello)), "");
+  EXPECT_EQ(message_of(record::check_hello(hello)), "");
   hello.piece_count = UINT32_MAX;
-  EXPECT_NE(sentence_of(record::check_hello(hello)), "");
+  EXPECT_NE(message_of(record::check_hello(hello)), "");
   EXPECT_EQ(nlohmann::json::parse(scene_json(hello)).at("look").at("pieces").size(),
             firmware::telemetry::kMaxPieces);
   hello.piece_count = 1;
   hello.piece_color_ratio[3][2] = -1.0f;
-  EXPECT_NE(sentence_of(record::check_hello(hello)), "");
+  EXPECT_NE(message_of(record::check_hello(hello)), "");
 }
 
 TEST(SceneJson, SurvivesANameWithoutEndAndWithBrokenUtf8) {
@@ -168,8 +168,8 @@ TEST(FrameJson, StaysInItsLengthWithAFullPatchAndEverySiteHeld) {
   record::Hello hello = busiest_hello();
   hello.ring_count = 0;
   hello.organ_vertices = hello.organ_triangles = 4'000'000;
-  ASSERT_EQ(sentence_of(record::check_hello(hello)), "");
-  ASSERT_EQ(sentence_of(record::check_frame(frame, hello)), "");
+  ASSERT_EQ(message_of(record::check_hello(hello)), "");
+  ASSERT_EQ(message_of(record::check_frame(frame, hello)), "");
   const std::string text = frame_json(frame, hello);
   EXPECT_LE(text.size(), kMaxFrameJsonBytes);
   EXPECT_GT(text.size(), kMaxFrameJsonBytes - 200) << "the bound is no larger than it must be";
@@ -183,7 +183,7 @@ TEST(CheckFrame, RefusesPatchesThatNameWhatIsNotThere) {
   good.patch.vertex[1] = 2;
   good.patch.cut_total = good.patch.cut_count = 2;
   good.patch.cut_triangle[1] = 1;
-  EXPECT_EQ(sentence_of(record::check_frame(good, hello)), "");
+  EXPECT_EQ(message_of(record::check_frame(good, hello)), "");
   const auto refuses = [&](auto spoil) {
     record::Frame frame = good;
     spoil(frame);

@@ -11,7 +11,7 @@
 
 namespace tact::host::server::page_files_test {
 
-using tests::sentence_of;
+using tests::message_of;
 
 namespace fs = std::filesystem;
 
@@ -33,7 +33,7 @@ class PageFolder : public ::testing::Test {
 
 TEST_F(PageFolder, IsServedByExactPathOnly) {
   PageFiles files;
-  ASSERT_EQ(sentence_of(files.load(page())), "");
+  ASSERT_EQ(message_of(files.load(page())), "");
   ASSERT_NE(files.find("/"), nullptr);
   EXPECT_EQ(files.find("/")->content, "<html>");
   EXPECT_EQ(files.find("/index.html")->mime, "text/html; charset=utf-8");
@@ -42,7 +42,7 @@ TEST_F(PageFolder, IsServedByExactPathOnly) {
 
 TEST_F(PageFolder, GivesNothingOutsideItself) {
   PageFiles files;
-  ASSERT_EQ(sentence_of(files.load(page() + "/")), "");
+  ASSERT_EQ(message_of(files.load(page() + "/")), "");
   for (const char* path : {"/../secret.txt", "/assets/../../secret.txt", "/%2e%2e/secret.txt",
                            "//etc/passwd", "/etc/passwd", "", "assets/a.js", "/assets", "/link.txt",
                            "/./index.html", "/..\\secret.txt"}) {
@@ -52,9 +52,9 @@ TEST_F(PageFolder, GivesNothingOutsideItself) {
 
 TEST_F(PageFolder, WithoutAPageIsAnErrorThatSaysHowToGetOne) {
   PageFiles files;
-  EXPECT_NE(sentence_of(files.load((folder_ / "page" / "assets").string())).find("--page"),
+  EXPECT_NE(message_of(files.load((folder_ / "page" / "assets").string())).find("--page"),
             std::string::npos);
-  EXPECT_NE(sentence_of(files.load((folder_ / "nowhere").string())).find("--page"),
+  EXPECT_NE(message_of(files.load((folder_ / "nowhere").string())).find("--page"),
             std::string::npos);
 }
 

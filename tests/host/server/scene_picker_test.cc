@@ -33,7 +33,7 @@ class Picker : public ::testing::Test {
 
   std::string load(const std::string& heart) {
     std::ofstream(folder_ + "/heart.json") << heart;
-    return tests::sentence_of(picker_.load(folder_));
+    return tests::message_of(picker_.load(folder_));
   }
   void show(const char* scene, bool is_simulated, Link link = Link::kLive) {
     Hello hello = make_hello(3, 1, 3, 1);
@@ -130,7 +130,7 @@ TEST_F(Picker, LoadsOnlyParametersOfSimulatedScenes) {
     EXPECT_NE(load(bad).find("--parameters --json"), std::string::npos) << what << " " << instead;
   }
   host::server::ScenePicker none(view_, nullptr);
-  EXPECT_NE(tests::sentence_of(none.load("/nowhere")).find("--parameters --json"),
+  EXPECT_NE(tests::message_of(none.load("/nowhere")).find("--parameters --json"),
             std::string::npos);
 }
 

@@ -254,16 +254,15 @@ TEST_F(Viewer, SaysThatAPortIsInUse) {
   boost::asio::io_context io;
   server::ViewerServer second(io, view, nullptr);
   const std::string wrong =
-      tests::sentence_of(second.open({.port = server_.port(), .page_folder = folder_}));
+      tests::message_of(second.open({.port = server_.port(), .page_folder = folder_}));
   EXPECT_NE(wrong.find("in use"), std::string::npos) << wrong;
-  EXPECT_NE(tests::sentence_of(
+  EXPECT_NE(tests::message_of(
                 second.open({.bind_address = "nonsense", .port = 0, .page_folder = folder_}))
                 .find("--bind"),
             std::string::npos);
-  EXPECT_NE(
-      tests::sentence_of(second.open({.port = 0, .page_folder = folder_, .public_url = "lab"}))
-          .find("--url"),
-      std::string::npos);
+  EXPECT_NE(tests::message_of(second.open({.port = 0, .page_folder = folder_, .public_url = "lab"}))
+                .find("--url"),
+            std::string::npos);
 }
 
 }  // namespace tact::test::viewer_server_test

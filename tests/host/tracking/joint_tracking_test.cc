@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 const Vector3d kPlace_m{0.2, -0.1, 0.4};
 const Pose kFront = test::eye_towards(kPlace_m, Vector3d(0.1, 0.2, 1.0).normalized(), 2.0);
 const Pose kSide = test::eye_towards(kPlace_m, Vector3d(-1.0, 0.1, 0.2).normalized(), 2.0, 0.4);
-const Pose kDesk{.rotation = test::turn(1.9, {1.0, 1.0, 0.3}), .position_m = {-0.8, 0.6, -0.9}};
+const Pose kTable{.rotation = test::turn(1.9, {1.0, 1.0, 0.3}), .position_m = {-0.8, 0.6, -0.9}};
 constexpr double kPeriod_s = 1.0 / 30.0;
 
 double off_m(const Pose& got, const Pose& truth) {
@@ -31,7 +31,7 @@ class TwoCameras : public ::testing::Test {
  protected:
   TrackingSetup setup() const {
     TrackingSetup out = test::setup_of({front, side}, {{"h", BodyRole::kHand}});
-    out.registration = kDesk;
+    out.registration = kTable;
     return out;
   }
   Observation see(const TrackingCamera& camera, double at_s) {
@@ -47,7 +47,7 @@ class TwoCameras : public ::testing::Test {
     both_m.push_back(raw_off_m());
   }
   TrackedBody hand() const { return tracker.at(time_s + gap_s)[BodyRole::kHand]; }
-  double raw_off_m() const { return off_m(hand().raw, pose::drive(kDesk, body)); }
+  double raw_off_m() const { return off_m(hand().raw, pose::drive(kTable, body)); }
   double median_mm() const { return 1e3 * quantile(both_m, 0.5); }
 
   TrackingCamera front = test::camera("front", kFront), side = test::camera("side", kSide);
@@ -87,10 +87,10 @@ TEST_F(TwoCameras, WhoseLooksAreOfTheSameMomentGiveOnePoseAndOneStepOfTheFilter)
     late.take(a, time_s);  // and of a camera whose looks arrive after newer ones of the other
     late.take(b, time_s);
     const TrackedBody seen = late.at(time_s)[BodyRole::kHand];
-    first_m.back() = off_m(seen.raw, pose::drive(kDesk, body));
+    first_m.back() = off_m(seen.raw, pose::drive(kTable, body));
     if (i > 100) {
-      EXPECT_LT(off_m(hand().pose, pose::drive(kDesk, body)), 0.0025) << i;
-      EXPECT_LT(off_m(seen.pose, pose::drive(kDesk, body)), 0.0025) << i;
+      EXPECT_LT(off_m(hand().pose, pose::drive(kTable, body)), 0.0025) << i;
+      EXPECT_LT(off_m(seen.pose, pose::drive(kTable, body)), 0.0025) << i;
     }
   }
   EXPECT_LT(quantile(both_m, 0.95), 0.003);
@@ -208,7 +208,7 @@ TEST_F(TwoCameras, ACameraFoundFromTheBaseEntersWhenItsPlaceIsKnown) {
   side.pose.reset();
   TrackingSetup with_base =
       test::setup_of({front, side}, {{"h", BodyRole::kHand}, {"floor", std::nullopt}});
-  with_base.registration = kDesk;
+  with_base.registration = kTable;
   tracker = OperatorTracker(with_base);
   noise_px = 0.0;
   step();

@@ -18,7 +18,7 @@
 
 namespace tact::host::maintenance_tracking_test {
 
-using tests::sentence_of;
+using tests::message_of;
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
@@ -39,7 +39,7 @@ class MaintenanceTracking : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     const auto setup = tracking::load_tracking_setup(kScenes + kDescription);
-    ASSERT_EQ(sentence_of(setup), "");
+    ASSERT_EQ(message_of(setup), "");
     setup_ = *setup;
     std::istringstream lines(read_text(kScenes + kObservations));
     std::istringstream truths(read_text(TACT_SOURCE_DIR "/tests/data/maintenance.truth.csv"));
@@ -49,11 +49,11 @@ class MaintenanceTracking : public testing::Test {
     while (std::getline(lines, line)) {
       Step step;
       const auto seen = tracking::parse_observation(line);
-      ASSERT_EQ(sentence_of(seen), "") << line;
+      ASSERT_EQ(message_of(seen), "") << line;
       step.seen = *seen;
       ASSERT_TRUE(std::getline(truths, truth));
       step.truth = true_pose(truth, step.seen);
-      ASSERT_EQ(sentence_of(tracker.take(step.seen, step.seen.time_s)), "") << line;
+      ASSERT_EQ(message_of(tracker.take(step.seen, step.seen.time_s)), "") << line;
       step.body = tracker.at(step.seen.time_s)[role_of(step.seen.body)];
       steps_.push_back(step);
     }
@@ -194,7 +194,7 @@ TEST_F(MaintenanceTracking, TheWaistIsLostBehindTheTableAndComesBack) {
   tracking::OperatorTracker tracker(setup_);
   std::map<tracking::BodyState, int> before, while_hidden, after;
   for (const Step& step : steps_) {
-    ASSERT_EQ(sentence_of(tracker.take(step.seen, step.seen.time_s)), "");
+    ASSERT_EQ(message_of(tracker.take(step.seen, step.seen.time_s)), "");
     const tracking::BodyState state =
         tracker.at(step.seen.time_s)[tracking::BodyRole::kWaist].state;
     if (is_within(step, 1.0, 9.0)) ++before[state];

@@ -12,7 +12,7 @@
 
 namespace tact::host::tracking::observation_player_test {
 
-using tests::sentence_of;
+using tests::message_of;
 
 namespace fs = std::filesystem;
 
@@ -30,7 +30,7 @@ class RecordingFile : public ::testing::Test {
 
 TEST_F(RecordingFile, LargerThan64MegabytesIsRefusedInOneLine) {
   fs::resize_file(path_, kMaxRecording_bytes + 1);  // takes no room on the disk
-  EXPECT_EQ(sentence_of(read_observation_file(path_)),
+  EXPECT_EQ(message_of(read_observation_file(path_)),
             path_.string() +
                 ": larger than 64000000 bytes; give a file of observations, one per line; cut a "
                 "larger one into parts");

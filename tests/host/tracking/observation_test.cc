@@ -8,7 +8,7 @@
 
 namespace tact::host::tracking::observation_test {
 
-using tests::sentence_of;
+using tests::message_of;
 
 const std::string kGood =
     R"({"time_s": 12.0333, "sequence": 361, "camera": "front", "body": "head", "points": [[0, 1.5, -2], [7, 3, 4e2]]})";
@@ -22,7 +22,7 @@ std::string with(const std::string& from, const std::string& to) {
 
 TEST(Observation, IsReadAsTheFormatSays) {
   const model::Result<Observation> read = parse_observation(kGood);
-  ASSERT_EQ(sentence_of(read), "");
+  ASSERT_EQ(message_of(read), "");
   const Observation& seen = *read;
   EXPECT_EQ(seen.time_s, 12.0333);
   EXPECT_EQ(seen.sequence, 361u);
@@ -37,7 +37,7 @@ TEST(Observation, IsReadAsTheFormatSays) {
 
 TEST(Observation, KeysThatAreNotKnownArePassedOver) {
   const auto seen = parse_observation(with("\"body\"", "\"gain\": [1, {}], \"body\""));
-  ASSERT_EQ(sentence_of(seen), "");
+  ASSERT_EQ(message_of(seen), "");
   EXPECT_EQ(seen->points.size(), 2u);
 }
 
@@ -67,7 +67,7 @@ TEST(Observation, OneSentenceSaysWhatIsWrong) {
       {with("-2]", "-2" + std::string(9000, ' ') + "]"), "bytes"},
   };
   for (const auto& [text, expected] : cases) {
-    const std::string wrong = sentence_of(parse_observation(text));
+    const std::string wrong = message_of(parse_observation(text));
     EXPECT_NE(wrong.find(expected), std::string::npos) << text << " -> " << wrong;
     EXPECT_EQ(wrong.find('\n'), std::string::npos);
   }

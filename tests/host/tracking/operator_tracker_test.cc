@@ -8,14 +8,14 @@
 
 namespace tact::host::tracking::operator_tracker_test {
 
-using tests::sentence_of;
+using tests::message_of;
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
 const Pose kEye{.rotation = test::turn(0.7, {0.2, 1.0, -0.3}), .position_m = {0.4, -0.2, -1.5}};
 const Pose kOther{.rotation = test::turn(-0.6, {0.1, 1.0, 0.2}), .position_m = {-0.9, 0.1, -1.2}};
-const Pose kDesk{.rotation = test::turn(1.9, {1.0, 1.0, 0.3}), .position_m = {-0.8, 0.6, -0.9}};
+const Pose kTable{.rotation = test::turn(1.9, {1.0, 1.0, 0.3}), .position_m = {-0.8, 0.6, -0.9}};
 
 /// In front of a camera.
 Pose before(const Pose& eye, double x_m = 0.0) {
@@ -29,15 +29,15 @@ double distance(const Pose& a, const Pose& b) {
 TEST(OperatorTracker, GivesTheBodyInTheDevicesFrame) {
   const TrackingCamera eye = test::camera("front", kEye);
   TrackingSetup setup = test::setup_of({eye}, {{"h", BodyRole::kHand}});
-  setup.registration = kDesk;
+  setup.registration = kTable;
   OperatorTracker tracker(setup);
   const Pose body = before(kEye);
-  ASSERT_EQ(sentence_of(tracker.take(test::look(eye, kEye, "h", body, 1.0, 1), 0.0)), "");
+  ASSERT_EQ(message_of(tracker.take(test::look(eye, kEye, "h", body, 1.0, 1), 0.0)), "");
   // By matrices: p_W = D (E (inverse E (B p)))  =  D B p
   const auto matrix = [](const Pose& pose) {
     return Eigen::Isometry3d(Eigen::Translation3d(pose.position_m) * pose.rotation);
   };
-  const Eigen::Isometry3d expected = matrix(kDesk) * matrix(body);
+  const Eigen::Isometry3d expected = matrix(kTable) * matrix(body);
   const TrackedOperator now = tracker.at(0.01);
   const TrackedBody& hand = now[BodyRole::kHand];
   EXPECT_EQ(hand.state, BodyState::kTracked);
@@ -104,7 +104,7 @@ TEST(OperatorTracker, WhatOnlyRepeatsItselfIsHeldThenLost) {
   for (const double older_s : {0.0, 0.4}) {
     OperatorTracker tracker(test::setup_of({eye}, {{"h", BodyRole::kHand}}));
     const auto at = [&](double now_s) { return tracker.at(now_s)[BodyRole::kHand]; };
-    ASSERT_EQ(sentence_of(tracker.take(test::look(eye, kEye, "h", before(kEye), 5.0, 300), 0.0)),
+    ASSERT_EQ(message_of(tracker.take(test::look(eye, kEye, "h", before(kEye), 5.0, 300), 0.0)),
               "");
     ASSERT_EQ(at(0.0).state, BodyState::kTracked);
     bool was_held = false;
@@ -130,11 +130,11 @@ TEST(OperatorTracker, SaysWhichNameItDoesNotKnow) {
   OperatorTracker tracker(test::setup_of({eye}, {{"h", BodyRole::kHand}}));
   Observation seen = test::look(eye, kEye, "h", before(kEye), 1.0, 1);
   seen.camera = "back";
-  EXPECT_NE(sentence_of(tracker.take(seen, 0.0)).find("camera back is not in made-up"),
+  EXPECT_NE(message_of(tracker.take(seen, 0.0)).find("camera back is not in made-up"),
             std::string::npos);
   seen.camera = "front";
   seen.body = "foot";
-  EXPECT_NE(sentence_of(tracker.take(seen, 0.0)).find("body foot is not in made-up"),
+  EXPECT_NE(message_of(tracker.take(seen, 0.0)).find("body foot is not in made-up"),
             std::string::npos);
   EXPECT_EQ(tracker.at(0.0)[BodyRole::kHand].state, BodyState::kLost);
 }

@@ -14,7 +14,7 @@
 
 namespace tact::host::tracking::operator_tracking_test {
 
-using tests::sentence_of;
+using tests::message_of;
 
 using boost::asio::ip::udp;
 
@@ -34,7 +34,7 @@ class Input : public ::testing::Test {
   std::string open(const std::string& input, const std::string& more = {}) {
     path_ = folder_ + "/desk.tracking.toml";
     test::write_file(path_, test::description(input, {{"h", "hand"}}, more));
-    return sentence_of(tracking_.open(path_));
+    return message_of(tracking_.open(path_));
   }
   /// A port that nobody has, by asking the kernel for one.
   static std::uint16_t free_port() {

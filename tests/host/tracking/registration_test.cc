@@ -15,11 +15,11 @@
 
 namespace tact::host::tracking::registration_test {
 
-using tests::sentence_of;
+using tests::message_of;
 
 using Eigen::Vector3d;
 
-const Pose kDesk{.rotation = test::turn(2.1, {0.3, -1.0, 0.4}), .position_m = {-0.7, 0.5, 1.3}};
+const Pose kTable{.rotation = test::turn(2.1, {0.3, -1.0, 0.4}), .position_m = {-0.7, 0.5, 1.3}};
 
 /// Poses all over a workspace of 10 cm, with Gaussian noise on what the tracker says.
 std::vector<PosePair> poses(std::size_t count, double noise_m, bool flat = false,
@@ -31,8 +31,8 @@ std::vector<PosePair> poses(std::size_t count, double noise_m, bool flat = false
   for (std::size_t i = 0; i < count; ++i) {
     const Vector3d p(side(random), side(random), flat ? 0.0 : side(random));
     const Vector3d off(normal(random), normal(random), normal(random));
-    // kDesk maps the tracker's frame to the device's: q = R^T (p - t)
-    const Vector3d q = kDesk.rotation.conjugate() * (p - kDesk.position_m) + noise_m * off;
+    // kTable maps the tracker's frame to the device's: q = R^T (p - t)
+    const Vector3d q = kTable.rotation.conjugate() * (p - kTable.position_m) + noise_m * off;
     out.push_back({.tracked_m = q, .device_m = p});
   }
   return out;
@@ -42,9 +42,9 @@ TEST(Registration, IsExactWithoutNoise) {
   for (const std::size_t count : {6u, 12u, 50u}) {
     for (const bool flat : {false, true}) {
       const model::Result<Registration> got = fit_registration(poses(count, 0.0, flat));
-      ASSERT_EQ(sentence_of(got), "");
-      EXPECT_LT(got->transform.rotation.angularDistance(kDesk.rotation), 1e-7);
-      EXPECT_LT((got->transform.position_m - kDesk.position_m).norm(), 1e-9);
+      ASSERT_EQ(message_of(got), "");
+      EXPECT_LT(got->transform.rotation.angularDistance(kTable.rotation), 1e-7);
+      EXPECT_LT((got->transform.position_m - kTable.position_m).norm(), 1e-9);
       EXPECT_LT(got->largest_m, 1e-9);
       EXPECT_EQ(got->residual_m.size(), count);
     }
@@ -59,7 +59,7 @@ TEST(Registration, LeavesAsMuchResidualAsTheNoiseHas) {
   const unsigned trials = 200;
   for (unsigned seed = 0; seed < trials; ++seed) {
     const model::Result<Registration> got = fit_registration(poses(count, sigma_m, false, seed));
-    ASSERT_EQ(sentence_of(got), "");
+    ASSERT_EQ(message_of(got), "");
     sum_m2 += count * got->rms_m * got->rms_m / (3.0 * count - 6.0);
     EXPECT_GE(got->largest_m, got->rms_m);
   }
@@ -70,7 +70,7 @@ TEST(Registration, APoseThatIsWrongHasTheLargestResidual) {
   std::vector<PosePair> all = poses(12, 0.0002);
   all[7].tracked_m += Vector3d(0.01, 0.0, 0.0);
   const model::Result<Registration> got = fit_registration(all);
-  ASSERT_EQ(sentence_of(got), "");
+  ASSERT_EQ(message_of(got), "");
   EXPECT_EQ(std::ranges::max_element(got->residual_m) - got->residual_m.begin(), 7);
   EXPECT_GT(got->largest_m, kDoubtful_m);
 }
@@ -81,7 +81,7 @@ TEST(Registration, TwoMillimetresAreDoubtful) {
     std::vector<PosePair> all = poses(12, 0.0);
     all[7].tracked_m += Vector3d(off_m, 0.0, 0.0);
     const model::Result<Registration> got = fit_registration(all);
-    EXPECT_EQ(sentence_of(got), "");
+    EXPECT_EQ(message_of(got), "");
     return got ? got->largest_m : 0.0;
   };
   const double share = largest_m(0.001) / 0.001;
@@ -96,32 +96,32 @@ TEST(Registration, NeverMirrors) {
   std::vector<PosePair> all = poses(8, 0.0);
   for (PosePair& pose : all) pose.tracked_m.x() *= -1.0;  // a left-handed tracker
   const model::Result<Registration> got = fit_registration(all);
-  ASSERT_EQ(sentence_of(got), "");
+  ASSERT_EQ(message_of(got), "");
   EXPECT_NEAR(got->transform.rotation.norm(), 1.0, 1e-12);
   EXPECT_GT(got->rms_m, 0.01);  // and it shows
 }
 
 TEST(Registration, RefusesWhatHasNoAnswer) {
-  EXPECT_NE(sentence_of(fit_registration(poses(5, 0.0))).find("5 poses are too few"),
+  EXPECT_NE(message_of(fit_registration(poses(5, 0.0))).find("5 poses are too few"),
             std::string::npos);
-  EXPECT_NE(sentence_of(fit_registration({})).find("too few"), std::string::npos);
+  EXPECT_NE(message_of(fit_registration({})).find("too few"), std::string::npos);
   std::vector<PosePair> line = poses(8, 0.0);
   for (std::size_t i = 0; i < line.size(); ++i) {
     const double s_m = 0.02 * static_cast<double>(i);
     line[i] = {.tracked_m = {s_m, 2.0 * s_m, 1.0}, .device_m = {s_m, 0.0, 2.0 * s_m}};
   }
-  EXPECT_NE(sentence_of(fit_registration(line)).find("line"), std::string::npos);
+  EXPECT_NE(message_of(fit_registration(line)).find("line"), std::string::npos);
   std::vector<PosePair> almost = line;  // 1 mm of a hand that trembles is no direction
   for (std::size_t i = 0; i < almost.size(); ++i) almost[i].tracked_m.z() += i % 2 ? 1e-3 : 0.0;
-  EXPECT_NE(sentence_of(fit_registration(almost)).find("line"), std::string::npos);
+  EXPECT_NE(message_of(fit_registration(almost)).find("line"), std::string::npos);
   std::vector<PosePair> one_side = poses(8, 0.0);  // the device moves, the tracker sees a line
   for (std::size_t i = 0; i < 8; ++i) one_side[i].tracked_m = line[i].tracked_m;
-  EXPECT_NE(sentence_of(fit_registration(one_side)).find("line"), std::string::npos);
+  EXPECT_NE(message_of(fit_registration(one_side)).find("line"), std::string::npos);
   std::vector<PosePair> spot(8);
-  EXPECT_NE(sentence_of(fit_registration(spot)).find("one place"), std::string::npos);
+  EXPECT_NE(message_of(fit_registration(spot)).find("one place"), std::string::npos);
   std::vector<PosePair> broken = poses(8, 0.0);
   broken[3].device_m.y() = std::nan("");
-  EXPECT_NE(sentence_of(fit_registration(broken)).find("not finite"), std::string::npos);
+  EXPECT_NE(message_of(fit_registration(broken)).find("not finite"), std::string::npos);
 }
 
 /// Telemetry at 60 frames/s, a tracker at 30 looks/s unless a test says otherwise.
@@ -140,10 +140,10 @@ class Collector : public ::testing::Test {
   int visit(double x_m, double seconds, double speed_mps = 0.0, bool seen = true) {
     return visit(Vector3d(x_m, 0.0, 0.0), seconds, speed_mps, seen);
   }
-  /// One camera, which looks along kDesk's y: 3 mm of noise in depth, a tenth of it across.
+  /// One camera, which looks along kTable's y: 3 mm of noise in depth, a tenth of it across.
   Vector3d see(const Vector3d& device_m) {
     const Vector3d off_m(3e-4 * normal(random), 3e-3 * normal(random), 3e-4 * normal(random));
-    return kDesk.rotation.conjugate() * (device_m - kDesk.position_m) + off_m;
+    return kTable.rotation.conjugate() * (device_m - kTable.position_m) + off_m;
   }
 
   PoseCollector collector;
@@ -176,7 +176,7 @@ TEST_F(Collector, TheNoiseOfOneCameraIsAveragedBelowTheWarning) {
       ASSERT_EQ(visit(p, 2.5), 1);
     }
     const model::Result<Registration> got = fit_registration(collector.poses());
-    ASSERT_EQ(sentence_of(got), "");
+    ASSERT_EQ(message_of(got), "");
     warned += got->largest_m > kDoubtful_m ? 1 : 0;
   }
   EXPECT_LE(warned, 1);
@@ -219,26 +219,26 @@ TEST(RegistrationFile, IsReadBackAndTheOldOneIsKept) {
   EXPECT_EQ(path, folder + "/desk.registration.toml");
   test::write_file(tracking, test::description("udp_port = 8322", {{"h", "hand"}}));
   model::Result<TrackingSetup> setup = load_tracking_setup(tracking);
-  ASSERT_EQ(sentence_of(setup), "");
+  ASSERT_EQ(message_of(setup), "");
   EXPECT_EQ(setup->registered_by, "");
 
   const model::Result<Registration> got = fit_registration(poses(9, 0.0));
-  ASSERT_EQ(sentence_of(got), "");
-  ASSERT_EQ(sentence_of(write_registration(path, *got)), "");
+  ASSERT_EQ(message_of(got), "");
+  ASSERT_EQ(message_of(write_registration(path, *got)), "");
   EXPECT_FALSE(std::filesystem::exists(path + ".bak"));
   setup = load_tracking_setup(tracking);
-  ASSERT_EQ(sentence_of(setup), "");
+  ASSERT_EQ(message_of(setup), "");
   EXPECT_EQ(setup->registered_by, path);
-  EXPECT_LT(setup->registration.rotation.angularDistance(kDesk.rotation), 1e-9);
-  EXPECT_LT((setup->registration.position_m - kDesk.position_m).norm(), 1e-8);
+  EXPECT_LT(setup->registration.rotation.angularDistance(kTable.rotation), 1e-9);
+  EXPECT_LT((setup->registration.position_m - kTable.position_m).norm(), 1e-8);
 
   Registration other = *got;
   other.transform.position_m = Vector3d::Zero();
-  ASSERT_EQ(sentence_of(write_registration(path, other)), "");
+  ASSERT_EQ(message_of(write_registration(path, other)), "");
   EXPECT_TRUE(std::filesystem::exists(path + ".bak"));
   EXPECT_FALSE(std::filesystem::exists(path + ".new"));
   setup = load_tracking_setup(tracking);
-  ASSERT_EQ(sentence_of(setup), "");
+  ASSERT_EQ(message_of(setup), "");
   EXPECT_EQ(setup->registration.position_m, Vector3d::Zero());
   EXPECT_TRUE(write_registration(folder + "/none/x.toml", *got));
   std::filesystem::remove_all(folder);

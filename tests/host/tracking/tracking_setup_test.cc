@@ -11,7 +11,7 @@
 
 namespace tact::host::tracking::tracking_setup_test {
 
-using tests::sentence_of;
+using tests::message_of;
 
 class SetupFile : public ::testing::Test {
  protected:
@@ -25,7 +25,7 @@ class SetupFile : public ::testing::Test {
     test::write_file(path_, text);
     const model::Result<TrackingSetup> read = load_tracking_setup(path_);
     setup_ = read ? *read : TrackingSetup{};
-    return sentence_of(read);
+    return message_of(read);
   }
   static std::string good(const std::string& more = {}) {
     return test::description("udp_port = 8322", {{"head", "head"}, {"t", "tool"}}, more);
@@ -137,7 +137,7 @@ TEST_F(SetupFile, OneLineSaysWhatIsWrongAndWhere) {
     EXPECT_TRUE(wrong.starts_with(path_ + ":")) << wrong;
     EXPECT_EQ(wrong.find('\n'), std::string::npos);
   }
-  EXPECT_NE(sentence_of(load_tracking_setup(folder_ + "/none.toml")).find("no such file"),
+  EXPECT_NE(message_of(load_tracking_setup(folder_ + "/none.toml")).find("no such file"),
             std::string::npos);
 }
 

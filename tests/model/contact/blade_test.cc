@@ -59,12 +59,14 @@ TEST(Blade, RefusesWhatIsNoNumber) {
 TEST(Blade, MissesNothingThatItCrosses) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> at(-2.0, 2.0);
-  const auto place = [&] { return Vec3{at(random), at(random), at(random)}; };
+  const auto surface_point = [&] { return Vec3{at(random), at(random), at(random)}; };
   int crossed = 0, missed = 0;
   for (int i = 0; i < 100000; ++i) {
-    const BladeSweep s{
-        .from_a_m = place(), .from_b_m = place(), .to_a_m = place(), .to_b_m = place()};
-    const Vec3 p_m = place(), q_m = place();
+    const BladeSweep s{.from_a_m = surface_point(),
+                       .from_b_m = surface_point(),
+                       .to_a_m = surface_point(),
+                       .to_b_m = surface_point()};
+    const Vec3 p_m = surface_point(), q_m = surface_point();
     const bool beyond = misses(box_around(s), p_m, q_m);
     if (beyond) ASSERT_FALSE(crosses(s, p_m, q_m)) << i;
     crossed += crosses(s, p_m, q_m);

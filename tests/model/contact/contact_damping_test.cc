@@ -107,17 +107,17 @@ TEST(ContactDamping, PressesHarderTheFaster) {
 }
 
 /// A force that is set by hand, and a resistance that takes all of it away.
-class SetForce final : public SiteLaw {
+class SetForce final : public ContactLaw {
  public:
   double force_N = 0.0;
 
-  SiteResponse respond(const Indentation&) RT_SAFE override {
+  ContactLawResponse respond(const Indentation&) RT_SAFE override {
     return {.law = {.force_N = force_N, .stiffness_N_per_m = 40.0}};
   }
   double resistance_N(const Indentation&, double answer_N) const RT_SAFE override {
     return -answer_N;
   }
-  double stiffest_N_per_m(const Place&, bool) const RT_SAFE override { return 40.0; }
+  double stiffest_N_per_m(const SurfacePoint&, bool) const RT_SAFE override { return 40.0; }
   void leave(std::size_t) RT_SAFE override {}
   void advance() RT_SAFE override {}
   std::size_t profile(const Indentation&, std::span<double>) const RT_SAFE override { return 0; }

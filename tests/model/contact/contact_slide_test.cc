@@ -93,14 +93,16 @@ TEST_F(Slide, AStiffnessOfTheSceneCountsBeforeTheTissuesOwn) {
 }
 
 /// Tissue with a grain: soft along it, stiff across, the grain turning from triangle to triangle.
-class Grained final : public SiteLaw {
+class Grained final : public ContactLaw {
  public:
   explicit Grained(double turn_rad) : turn_rad_(turn_rad) {}
 
-  SiteResponse respond(const Indentation& in) RT_SAFE override { return tissue_.field.respond(in); }
-  TangentCompliance tangent_compliance(const Place& place, bool,
+  ContactLawResponse respond(const Indentation& in) RT_SAFE override {
+    return tissue_.field.respond(in);
+  }
+  TangentCompliance tangent_compliance(const SurfacePoint& surface_point, bool,
                                        const Axes& axes) const RT_SAFE override {
-    const double angle_rad = turn_rad_ * place.triangle;
+    const double angle_rad = turn_rad_ * surface_point.triangle;
     const Vec2 grain = axes.of({std::cos(angle_rad), std::sin(angle_rad), 0.0});
     constexpr double kAlong = 0.08, kAcross = 0.02, kMore = kAlong - kAcross;  // m/N
     return {.rest_m_per_N = {.xx = kAcross + kMore * grain.x * grain.x,
@@ -119,7 +121,7 @@ class Grained final : public SiteLaw {
 
 class Grain : public Slide {
  protected:
-  Contact contact_with(SiteLaw& law, double friction_ratio) const {
+  Contact contact_with(ContactLaw& law, double friction_ratio) const {
     return Contact({.law = &law,
                     .parameters = {.friction_ratio = friction_ratio, .tear_force_N = 10.0},
                     .spheres = {&sphere, 1},

@@ -24,7 +24,7 @@ struct Group {
   std::vector<PressingSphere> sphere;
   Coupling c{};
 
-  Group(SiteLaw& law, const std::vector<Vec3>& at_m, const std::vector<double>& depth_m,
+  Group(ContactLaw& law, const std::vector<Vec3>& at_m, const std::vector<double>& depth_m,
         bool held = false) {
     for (std::size_t i = 0; i < at_m.size(); ++i)
       sphere.push_back(
@@ -35,7 +35,8 @@ struct Group {
     for (std::size_t i = 0; i < at_m.size(); ++i)
       for (std::size_t j = 0; j < at_m.size(); ++j)
         if (i != j)
-          c[i][j] = law.coupling(sphere[i].in, sphere[j].in, norm(at_m[i] - at_m[j])).skin_m_per_N;
+          c[i][j] =
+              law.coupling(sphere[i].in, sphere[j].in, norm(at_m[i] - at_m[j])).near_field_m_per_N;
   }
   double force_N(std::size_t i) const { return sphere[i].response.law.force_N; }
   double miss_m(std::size_t i) const {
@@ -120,7 +121,7 @@ TEST(Coupling, EachForceIsTheSlopeOfTheOneEnergy) {
 }
 
 TEST(Coupling, ALobeBendsAlongOneAxisBetweenNormalsThatStraddleIt) {
-  const SiteCoupling tissue{.skin_m_per_N = 0.006, .lobe_m_per_N = 0.05};
+  const ContactCoupling tissue{.near_field_m_per_N = 0.006, .structural_m_per_N = 0.05};
   const auto at = [&](double apart_rad) {
     return coupling_m_per_N(tissue, {0, 0, 1}, {std::sin(apart_rad), 0, std::cos(apart_rad)});
   };
@@ -141,9 +142,10 @@ TEST(Coupling, NoneLeavesEachSphereItsOwnDepthToTheBit) {
 TEST(Coupling, WhatCannotBeDefiniteIsMadeSmaller) {
   HalfSpace half;
   Group pair(half.field, {{0, 0, 0}, {8_mm, 0, 0}}, {8_mm, 8_mm});
-  const double k = half.field.stiffest_N_per_m(pair.sphere[0].in.place, false);
+  const double k = half.field.stiffest_N_per_m(pair.sphere[0].in.surface_point, false);
   EXPECT_EQ(definite_share(pair.c, {k, k}), 1.0);
-  pair.c[0][1] = pair.c[1][0] = 2.0 / k;  // a stiff site that sinks more with its neighbour's force
+  // a stiff contact point that sinks more with its neighbour's force
+  pair.c[0][1] = pair.c[1][0] = 2.0 / k;
   const double share = definite_share(pair.c, {k, k});
   EXPECT_NEAR(share, 0.5 * 0.95, 1e-3);
 }

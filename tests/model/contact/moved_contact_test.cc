@@ -156,9 +156,9 @@ TEST(MovedContact, BeginsWithoutTheDepthThatNoWayExplains) {
   const ContactScene scene = body.scene();
   MovedContact moved(scene);
   const Sphere sphere{.radius_m = kRadius_m, .centre_m = {1_mm, 2_mm, kRadius_m - 3_mm}};
-  Site site;
-  site.place.triangle = 20U * 20U;
-  moved.begin(sphere, site, 0.5_mm);
+  ContactPoint contact_point;
+  contact_point.surface_point.triangle = 20U * 20U;
+  moved.begin(sphere, contact_point, 0.5_mm);
   moved.move(sphere);
   moved.respond();
   EXPECT_NEAR(moved.find(0)->depth_offset_m, 2.5_mm, 1e-6);
@@ -226,16 +226,16 @@ TEST(Rotation, MomentIsTheSlopeOfTheLoadsWork) {
 TEST(SmoothSurface, IsContinuousOverEveryEdge) {
   Body body(tests::make_ball(40_mm, 2), {30, 40, 50, 1, 2, 3}, 900.0F);
   const SmoothSurface surface = body.surface();
-  const auto frame_of = [&](const Place& place) {
+  const auto frame_of = [&](const SurfacePoint& surface_point) {
     SurfaceFrame f;
-    f.place = place;
+    f.surface_point = surface_point;
     fill_geometry(surface, f);
     fill_compliance(surface, f);
     return f;
   };
   for (std::uint32_t t = 0; t < body.mesh.triangle.size(); ++t)
     for (std::size_t e = 0; e < 3; ++e) {
-      Place here{.triangle = t, .weight = {}},
+      SurfacePoint here{.triangle = t, .weight = {}},
           there{.triangle = body.mesh.neighbour[t][e], .weight = {}};
       const std::size_t end = (e + 1) % 3;
       here.weight[e] = 0.3, here.weight[end] = 0.7;
@@ -262,7 +262,7 @@ TEST(SmoothSurface, OfABallIsAsLargeAsItsMeshAndRounder) {
     for (const std::array<double, 3>& w :
          {std::array{0.6, 0.2, 0.2}, std::array{0.2, 0.6, 0.2}, std::array{0.2, 0.2, 0.6}}) {
       SurfaceFrame f;
-      f.place = {.triangle = t, .weight = w};
+      f.surface_point = {.triangle = t, .weight = w};
       fill_geometry(body.surface(), f);
       const auto& corner_m = body.mesh.view().record[t].corner_m;
       smooth_m += norm(f.point_m);

@@ -33,22 +33,25 @@ struct Walk {
     }
   }
   /// From the centre to the proxy.
-  Vec3 line_m() const { return (kTip_m - proxy.site().distance_m) * proxy.site().normal; }
+  Vec3 line_m() const {
+    return (kTip_m - proxy.contact_point().distance_m) * proxy.contact_point().normal;
+  }
 };
 
 TEST(Proxy, OutsideItIsTheNearestPoint) {
   Walk walk;
   walk.to({15_mm, 0.0, 20_mm});
-  EXPECT_NEAR(norm(walk.proxy.site().point_m - 20_mm * normalized(walk.centre_m)), 0.0, 1_mm);
+  EXPECT_NEAR(norm(walk.proxy.contact_point().point_m - 20_mm * normalized(walk.centre_m)), 0.0,
+              1_mm);
   EXPECT_FALSE(walk.proxy.lags());
 }
 
 TEST(Proxy, PushedThroughTheMiddleItStaysOnTheSideWhereItWentIn) {
   Walk walk;
   walk.to({0.3_mm, 0.2_mm, -15_mm});  // 5 mm from the other side: the nearest point is there
-  EXPECT_GT(walk.proxy.site().point_m.z, 10_mm);
-  EXPECT_GT(walk.proxy.site().normal.z, 0.5);
-  EXPECT_NEAR(walk.proxy.site().distance_m, -35_mm, 1_mm);
+  EXPECT_GT(walk.proxy.contact_point().point_m.z, 10_mm);
+  EXPECT_GT(walk.proxy.contact_point().normal.z, 0.5);
+  EXPECT_NEAR(walk.proxy.contact_point().distance_m, -35_mm, 1_mm);
 }
 
 TEST(Proxy, SlidesAtMostTwiceAsFarAsTheTool) {
@@ -57,7 +60,7 @@ TEST(Proxy, SlidesAtMostTwiceAsFarAsTheTool) {
   walk.most_turn_m = 0.0;
   walk.to({2_mm, 0.0, 2_mm});
   EXPECT_TRUE(walk.proxy.lags());
-  EXPECT_GT(walk.proxy.site().point_m.x, 3_mm);
+  EXPECT_GT(walk.proxy.contact_point().point_m.x, 3_mm);
   EXPECT_LE(walk.most_turn_m, (1.0 + kSlide_ratio) * 0.1_mm + 1e-9);
 }
 
@@ -66,7 +69,7 @@ TEST(Proxy, LeavesByTheSideWithoutAJump) {
   walk.to({0.0, 0.0, 2_mm});
   walk.to({40_mm, 0.0, 2_mm});
   EXPECT_FALSE(walk.proxy.lags());
-  EXPECT_NEAR(walk.proxy.site().distance_m, 20_mm, 1_mm);
+  EXPECT_NEAR(walk.proxy.contact_point().distance_m, 20_mm, 1_mm);
   EXPECT_LE(walk.most_turn_m, (1.0 + kSlide_ratio) * 0.1_mm + 1e-9);
 }
 
@@ -74,7 +77,7 @@ TEST(Proxy, OutOfThePlaceWhereItWentInItIsTheNearestPoint) {
   Walk walk;
   walk.to({0.0, 0.0, -15_mm});
   walk.to({0.0, 0.0, 25_mm});
-  EXPECT_NEAR(walk.proxy.site().distance_m, 5_mm, 0.5_mm);
+  EXPECT_NEAR(walk.proxy.contact_point().distance_m, 5_mm, 0.5_mm);
   EXPECT_FALSE(walk.proxy.lags());
 }
 

@@ -33,10 +33,12 @@ TEST(TriangleTree, FindsWhatBruteForceFinds) {
     const auto near = static_cast<std::uint32_t>(random() % ball.triangle.size());
     for (const std::uint32_t start : {kNoTriangle, near})
       EXPECT_NEAR(
-          std::abs(nearest_site(tree.view(), ball.view(), p, kAnywhere_m, start).distance_m),
+          std::abs(
+              nearest_contact_point(tree.view(), ball.view(), p, kAnywhere_m, start).distance_m),
           truth_m, 1e-12);
-    const Site within = nearest_site(tree.view(), ball.view(), p, 5_mm, kNoTriangle);
-    EXPECT_EQ(within.place.triangle != kNoTriangle, truth_m < 5_mm);
+    const ContactPoint within =
+        nearest_contact_point(tree.view(), ball.view(), p, 5_mm, kNoTriangle);
+    EXPECT_EQ(within.surface_point.triangle != kNoTriangle, truth_m < 5_mm);
     EXPECT_EQ(std::isinf(within.distance_m), truth_m >= 5_mm);
   }
 }
@@ -52,8 +54,9 @@ TEST(TriangleTree, ThinClosedFlapHasTheRightSideEverywhere) {
     const Vec3 p{across(random), across(random), height(random)};
     const bool is_inside =
         std::abs(p.x) < 30_mm && std::abs(p.y) < 30_mm && std::abs(p.z + 0.1_mm) < 0.1_mm;
-    const Site site = nearest_site(tree.view(), flap.view(), p, kAnywhere_m, kNoTriangle);
-    EXPECT_EQ(site.distance_m < 0.0, is_inside) << p.x << ' ' << p.y << ' ' << p.z;
+    const ContactPoint contact_point =
+        nearest_contact_point(tree.view(), flap.view(), p, kAnywhere_m, kNoTriangle);
+    EXPECT_EQ(contact_point.distance_m < 0.0, is_inside) << p.x << ' ' << p.y << ' ' << p.z;
     inside += is_inside ? 1 : 0;
   }
   EXPECT_GT(inside, 500);
@@ -63,7 +66,7 @@ TEST(TriangleTree, BesideTheBoundaryOfAnOpenSurfaceIsOutside) {
   const mesh::SurfaceMesh plate = tests::make_plate(40_mm, 4);
   const TriangleTree tree = make_triangle_tree(plate.view());
   const auto distance_m = [&](const Vec3& p) {
-    return nearest_site(tree.view(), plate.view(), p, kAnywhere_m, kNoTriangle).distance_m;
+    return nearest_contact_point(tree.view(), plate.view(), p, kAnywhere_m, kNoTriangle).distance_m;
   };
   EXPECT_NEAR(distance_m({5_mm, 3_mm, -7_mm}), -7_mm, 1e-12) << "behind the middle";
   EXPECT_NEAR(distance_m({23_mm, 0, -4_mm}), 5_mm, 1e-12) << "behind and beside";
@@ -73,8 +76,8 @@ TEST(TriangleTree, LeavesTheHeapAlone) {
   const mesh::SurfaceMesh ball = tests::make_ball(50_mm, 3);
   const TriangleTree tree = make_triangle_tree(ball.view());
   const tests::NoAlloc guard;
-  (void)nearest_site(tree.view(), ball.view(), {0, 0, 52_mm}, kAnywhere_m, kNoTriangle);
-  (void)nearest_site(tree.view(), ball.view(), {0, 0, 0}, kAnywhere_m, kNoTriangle);
+  (void)nearest_contact_point(tree.view(), ball.view(), {0, 0, 52_mm}, kAnywhere_m, kNoTriangle);
+  (void)nearest_contact_point(tree.view(), ball.view(), {0, 0, 0}, kAnywhere_m, kNoTriangle);
   EXPECT_EQ(guard.calls(), 0u);
 }
 

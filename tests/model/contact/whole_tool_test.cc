@@ -219,7 +219,7 @@ TEST(WholeTool, FrictionOfEachJawStaysInItsCone) {
 TEST(WholeTool, APinchedLobeIsDraggedTheSameWayOnBothSides) {
   Bench bench(jaws(2));
   const Indentation top{.sphere = 0, .normal = {0, 0, 1}}, below{.sphere = 1, .normal = {0, 0, -1}};
-  const double c = bench.tissue.field.coupling(top, below, 24_mm).skin_m_per_N;
+  const double c = bench.tissue.field.coupling(top, below, 24_mm).near_field_m_per_N;
   const Axes of_top = axes_of(top.normal),
              of_below = axes_of(below.normal, {{Vec3{0.6, 0.8, 0}, Vec3{}}});
   const OwnCompliance own{.m_per_N = {1.0 / 20.0, 0.0, 1.0 / 20.0}, .least_m_per_N = 1.0 / 20.0};

@@ -40,7 +40,7 @@ Organ block() {
     for (std::uint32_t& node : e) node = place[node];
   for (std::size_t v = 0; v < vertex_m.size(); ++v) vertex_m[v] = mesh.node_m[v];
   auto surface = mesh::make_surface_mesh(std::move(vertex_m), std::move(triangle));
-  EXPECT_TRUE(surface) << surface.error().sentence;
+  EXPECT_TRUE(surface) << surface.error().message;
   return {std::move(*surface), std::move(mesh)};
 }
 
@@ -64,7 +64,7 @@ std::size_t vertex_at(const Organ& organ, const Vec3& p_m) {
 TEST(Condensation, KnowsWhereTheOrganIsStiffAndWhereItGives) {
   const Organ organ = block();
   const auto map = condense(organ.body, organ.surface.view(), settings());
-  ASSERT_TRUE(map) << map.error().sentence;
+  ASSERT_TRUE(map) << map.error().message;
   EXPECT_EQ(map->vertices(), organ.surface.vertex_m.size());
   EXPECT_EQ(map->mesh_hash, scene::surface_hash(organ.surface.view()));
   const auto r_E = [&](const Vec3& p_m) {
@@ -141,7 +141,7 @@ TEST(Condensation, TellsProgressAndStopsWhenAsked) {
   const auto map = condense(organ.body, organ.surface.view(), s);
   ASSERT_FALSE(map);
   EXPECT_EQ(calls, 4u);
-  EXPECT_NE(map.error().sentence.find("stopped"), std::string::npos);
+  EXPECT_NE(map.error().message.find("stopped"), std::string::npos);
 }
 
 TEST(Condensation, RefusesWhatItCannotSolve) {

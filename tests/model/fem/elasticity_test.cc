@@ -48,7 +48,7 @@ Eigen::VectorXd field(const TetMesh& mesh, const Field& at) {
 TEST(Elasticity, MovingAndTurningTheWholeBodyTakesNoForce) {
   const TetMesh mesh = distorted_block();
   const auto k = assemble_stiffness(mesh, kTissue, free_nodes(mesh.node_m.size(), {}));
-  ASSERT_TRUE(k) << k.error().sentence;
+  ASSERT_TRUE(k) << k.error().message;
   const auto moved = field(mesh, [](const Vec3&) { return Vec3{1.0, -2.0, 3.0}; });
   const auto turned = field(mesh, [](const Vec3& p) { return cross({0.3, -0.2, 0.5}, p); });
   EXPECT_LT(forces(*k, moved).cwiseAbs().maxCoeff(), 1e-9 * 5000.0);
@@ -96,7 +96,7 @@ TEST(Elasticity, RefusesWhatHasNoMeaning) {
   std::swap(e[0], e[1]), std::swap(e[5], e[6]), std::swap(e[7], e[8]);
   const auto inside_out = assemble_stiffness(mesh, {1.0, 0.3}, free);
   ASSERT_FALSE(inside_out);
-  EXPECT_NE(inside_out.error().sentence.find("element 3"), std::string::npos);
+  EXPECT_NE(inside_out.error().message.find("element 3"), std::string::npos);
 }
 
 }  // namespace tact::model::fem::elasticity_test

@@ -100,7 +100,7 @@ TEST(HertzLoad, WhatAHalfSpaceDoesNotExplainHardlyDependsOnThePatch) {
   for (std::uint32_t i = 0; i < mesh.node_m.size(); ++i)
     if (mesh.node_m[i].z < -0.0499) bottom.push_back(i);
   auto solver = make_linear_solver(mesh, kTissue, bottom);
-  ASSERT_TRUE(solver) << solver.error().sentence;
+  ASSERT_TRUE(solver) << solver.error().message;
   const Regular small = regular_of(*solver, mesh, 0.014), large = regular_of(*solver, mesh, 0.020);
   EXPECT_NEAR(small.normal, large.normal, 0.04 * hertz_normal_m_per_N(kTissue, 0.014));
   EXPECT_NEAR(small.side, large.side, 0.04 * hertz_tangential_m_per_N(kTissue, 0.014));

@@ -27,7 +27,7 @@ TetMesh beam() {
 LinearSolver solver_of(const TetMesh& mesh, const Elasticity& material) {
   auto solver = make_linear_solver(mesh, material,
                                    nodes_where(mesh, [](const Vec3& p) { return p.x < 1e-9; }));
-  EXPECT_TRUE(solver) << solver.error().sentence;
+  EXPECT_TRUE(solver) << solver.error().message;
   return std::move(*solver);
 }
 
@@ -89,7 +89,7 @@ TEST(LinearSolver, RefusesABodyThatIsNotHeld) {
   const Elasticity material{1e4, 0.3};
   const auto loose = make_linear_solver(mesh, material, {});
   ASSERT_FALSE(loose);
-  EXPECT_NE(loose.error().sentence.find("elastic.fixed_min_m to elastic.fixed_max_m"),
+  EXPECT_NE(loose.error().message.find("elastic.fixed_min_m to elastic.fixed_max_m"),
             std::string::npos)
       << "the keys that hold it";
   const auto edge = nodes_where(mesh, [](const Vec3& p) { return p.x < 1e-9 && p.y < 1e-9; });

@@ -15,20 +15,20 @@
 namespace tact::model::indent::compliance_law_test {
 
 // 5 kPa under a 4 mm tip at a place that bends like a thin lobe; g_j falls outwards.
-struct Place {
+struct SurfacePoint {
   double youngs_modulus_Pa = 5000.0;
   double regular_m_per_N = 0.008;
   double radius_m = 4_mm, working_depth_m = 10_mm, ring_pitch_m = 2_mm;
   bool large_strain = false;
 };
 
-std::vector<double> rings_of(const Place& p) {
+std::vector<double> rings_of(const SurfacePoint& p) {
   std::vector<double> g;
   for (int j = 1; j <= 20; ++j) g.push_back(p.regular_m_per_N * (1.0 - 0.02 * j));
   return g;
 }
 
-Result<ComplianceCurve> try_make(const Place& p, double poisson_ratio = 0.45) {
+Result<ComplianceCurve> try_make(const SurfacePoint& p, double poisson_ratio = 0.45) {
   const std::vector<double> rings = rings_of(p);
   return make_compliance_curve(
       {.tip = {p.youngs_modulus_Pa, poisson_ratio, p.radius_m, p.large_strain},
@@ -38,9 +38,9 @@ Result<ComplianceCurve> try_make(const Place& p, double poisson_ratio = 0.45) {
        .ring_m_per_N = rings});
 }
 
-ComplianceCurve make(const Place& p, double poisson_ratio = 0.45) {
+ComplianceCurve make(const SurfacePoint& p, double poisson_ratio = 0.45) {
   auto curve = try_make(p, poisson_ratio);
-  EXPECT_TRUE(curve) << curve.error().sentence;
+  EXPECT_TRUE(curve) << curve.error().message;
   return *curve;
 }
 
@@ -61,7 +61,7 @@ TEST(ComplianceLaw, HasConsistentDimensions) {
   for (const bool large_strain : {false, true})
     tests::check_dimensions(
         [large_strain](double m, double kg, double s) -> std::unique_ptr<law::Law> {
-          const Place p;
+          const SurfacePoint p;
           return std::make_unique<ComplianceCurve>(
               make({.youngs_modulus_Pa = p.youngs_modulus_Pa * kg / (m * s * s),
                     .regular_m_per_N = p.regular_m_per_N * s * s / kg,
@@ -102,12 +102,12 @@ TEST(ComplianceLaw, AtLargeStrainFollowsEverySphereThatWasSolved) {
     const auto depth_mm = block.at("depth_mm").get<std::vector<double>>();
     const auto linear_mN = block.at("linear_mN").get<std::vector<double>>();
     const auto large_mN = block.at("neo_hookean_mN").get<std::vector<double>>();
-    Place p{.youngs_modulus_Pa = solved.at("youngs_modulus_Pa"),
-            .regular_m_per_N = 0.0,
-            .radius_m = radius_m,
-            .working_depth_m = 20_mm};
+    SurfacePoint p{.youngs_modulus_Pa = solved.at("youngs_modulus_Pa"),
+                   .regular_m_per_N = 0.0,
+                   .radius_m = radius_m,
+                   .working_depth_m = 20_mm};
     const ComplianceCurve half_space = make(p, nu);
-    double low_m = 0.0, high_m = 20_mm;  // the tip's own dent under the largest linear force
+    double low_m = 0.0, high_m = 20_mm;  // the tip's own indentation under the largest linear force
     for (int i = 0; i < 60; ++i) {
       const double middle_m = 0.5 * (low_m + high_m);
       (half_space.exact(middle_m).force_N < linear_mN.back() * 1e-3 ? low_m : high_m) = middle_m;
@@ -192,7 +192,7 @@ TEST(ComplianceLaw, RefusesParametersWithoutMeaning) {
   EXPECT_FALSE(try_make({}, 0.6));
   const auto held = try_make({.regular_m_per_N = -0.02});  // 1 / (2 E* R) = 0.0199 m/N
   ASSERT_FALSE(held);
-  EXPECT_NE(held.error().sentence.find("held side"), std::string::npos);
+  EXPECT_NE(held.error().message.find("held side"), std::string::npos);
 }
 
 }  // namespace tact::model::indent::compliance_law_test

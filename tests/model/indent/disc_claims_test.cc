@@ -30,7 +30,7 @@ constexpr Disc kPrintedDisc{.outer_diameter_m = 0.4_mm,
 DiscStack make(DiscForm form, const Disc& disc = kPrintedDisc,
                const LayerDelays& delays = kPrintedDelays) {
   auto stack = make_disc_stack(disc, form, delays);
-  EXPECT_TRUE(stack) << stack.error().sentence;
+  EXPECT_TRUE(stack) << stack.error().message;
   return *stack;
 }
 

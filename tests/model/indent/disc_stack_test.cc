@@ -21,7 +21,7 @@ constexpr LayerDelays kPrintedDelays{
 DiscStack make(DiscForm form, const Disc& disc = kSoft,
                const LayerDelays& delays = kPrintedDelays) {
   auto stack = make_disc_stack(disc, form, delays);
-  EXPECT_TRUE(stack) << stack.error().sentence;
+  EXPECT_TRUE(stack) << stack.error().message;
   return *stack;
 }
 
@@ -145,7 +145,7 @@ TEST(DiscStack, RefusesParametersWithoutMeaningAndSaysWhy) {
     LayerDelays delays = kPrintedDelays;
     change(delays);
     const auto stack = make_disc_stack(disc, form, delays);
-    return stack ? std::string() : stack.error().sentence;
+    return stack ? std::string() : stack.error().message;
   };
   const auto same = [](auto&) {};
   Disc snapping = kSoft;

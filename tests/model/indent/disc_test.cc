@@ -78,7 +78,7 @@ TEST(Disc, RefusesDimensionsWithoutMeaning) {
   EXPECT_TRUE(refused([](auto& p) { p.inner_diameter_m = 0.0; }));
   DiscDimensions flat = kPrinted;
   flat.free_height_m = flat.thickness_m;
-  EXPECT_NE(make_disc(flat).error().sentence.find("no cone"), std::string::npos);
+  EXPECT_NE(make_disc(flat).error().message.find("no cone"), std::string::npos);
   EXPECT_TRUE(refused([](auto& p) { p.thickness_m = -1.0; }));
   EXPECT_TRUE(refused([](auto& p) { p.youngs_modulus_Pa = std::nan(""); }));
   EXPECT_TRUE(refused([](auto& p) { p.poisson_ratio = 0.5; }));

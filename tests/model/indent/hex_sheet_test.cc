@@ -24,7 +24,7 @@ constexpr HexSheetParameters kSkin{.ring_pitch_m = 2_mm,
 
 HexSheet make(const HexSheetParameters& p) {
   auto sheet = make_hex_sheet(p);
-  EXPECT_TRUE(sheet) << sheet.error().sentence;
+  EXPECT_TRUE(sheet) << sheet.error().message;
   return *sheet;
 }
 
@@ -58,7 +58,7 @@ TEST(HexSheet, HasConsistentDimensions) {
 }
 
 TEST(HexSheet, MatchesTheTableOfItsDefaults) {
-  // HX-26: F(2, 5, 8 mm) = 0.533, 1.731, 3.20 N; dent 5.0, 2.46, 1.38, 0.78, 0.45 mm
+  // HX-26: F(2, 5, 8 mm) = 0.533, 1.731, 3.20 N; indentation 5.0, 2.46, 1.38, 0.78, 0.45 mm
   const HexSheet skin = make(kSkin);
   EXPECT_NEAR(skin.respond(2_mm).force_N, 0.533, 0.0005);
   EXPECT_NEAR(skin.respond(5_mm).force_N, 1.731, 0.0005);
@@ -106,7 +106,7 @@ TEST(HexSheet, AllSpringsTogetherCarryTheForce) {
     const HexSheet sheet = make(with([&](auto& p) { p.weight = weight; }));
     for (const double d : {0.1_mm, 3_mm, 10_mm, -6_mm}) {
       const HexSheetState at = sheet.at_depth(d);
-      double carried_N = 20.0 * d + at.rim_force_N;
+      double carried_N = 20.0 * d + at.boundary_force_N;
       for (std::size_t i = 1; i < kSkin.rings; ++i)
         carried_N +=
             (weight == HexWeight::kNode ? 6.0 * static_cast<double>(i) : 1.0) * 20.0 * at.ring_m[i];
@@ -176,7 +176,7 @@ TEST(HexSheet, RingsAreChosenFromTheForceTolerance) {
   });
   const auto rings = [&p](double tolerance_ratio) {
     const auto found = rings_for_tolerance(p, tolerance_ratio);
-    EXPECT_TRUE(found) << found.error().sentence;
+    EXPECT_TRUE(found) << found.error().message;
     return found ? *found : 0;
   };
   EXPECT_EQ(rings(0.07), 4u);
@@ -190,7 +190,7 @@ TEST(HexSheet, RingsAreChosenFromTheForceTolerance) {
   EXPECT_GT(rings(0.05), 10u);
   const auto too_fine = rings_for_tolerance(p, 1e-3);
   ASSERT_FALSE(too_fine);
-  EXPECT_NE(too_fine.error().sentence.find("31 rings still miss"), std::string::npos);
+  EXPECT_NE(too_fine.error().message.find("31 rings still miss"), std::string::npos);
   EXPECT_FALSE(rings_for_tolerance(p, 0.0));
 }
 

@@ -70,7 +70,7 @@ TEST(HuntCrossley, OrganInSeriesTakesItsShareOfTheSpeed) {
   const HuntCrossley law = make();
   const double compliance_m_per_N = 0.03;
   const law::SeriesLaw series = *law::make_series_law(law, compliance_m_per_N, law);
-  // SL-4 at a dent of 3 mm
+  // SL-4 at an indentation of 3 mm
   const double share = 1.0 / (1.0 + compliance_m_per_N * 31.25),
                depth_m = 3_mm + compliance_m_per_N * 0.0625;
   EXPECT_NEAR(series.damping_Ns_per_m(depth_m), 0.125 * share * share, 1e-12);

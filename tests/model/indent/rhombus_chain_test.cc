@@ -21,7 +21,7 @@ constexpr RhombusChainParameters kLiver{.rod_length_m = 10_mm,
 
 RhombusChain make(const RhombusChainParameters& p) {
   auto chain = make_rhombus_chain(p);
-  EXPECT_TRUE(chain) << chain.error().sentence;
+  EXPECT_TRUE(chain) << chain.error().message;
   return *chain;
 }
 

@@ -22,7 +22,7 @@ constexpr RhombusChainParameters kLiver{.rod_length_m = 0.653_mm,
 
 RhombusPatch make(const RhombusChainParameters& chain, const RhombusPatchParameters& p = kTip) {
   auto patch = make_rhombus_patch(*make_rhombus_chain(chain), p);
-  EXPECT_TRUE(patch) << patch.error().sentence;
+  EXPECT_TRUE(patch) << patch.error().message;
   return *patch;
 }
 

@@ -17,20 +17,20 @@ namespace fs = std::filesystem;
 
 class FileWriterTest : public Scratch {};
 
-std::string sentence_of(const std::optional<Error>& error) {
-  return error ? error->sentence : std::string();
+std::string message_of(const std::optional<Error>& error) {
+  return error ? error->message : std::string();
 }
 
 TEST_F(FileWriterTest, AResultReplacesAnEarlierResult) {
-  EXPECT_EQ(sentence_of(write_file(path("a.json"), "{\"a\": 1}\n")), "");
-  EXPECT_EQ(sentence_of(write_file(path("a.json"), "{\n \"b\": 2}\n")), "");
+  EXPECT_EQ(message_of(write_file(path("a.json"), "{\"a\": 1}\n")), "");
+  EXPECT_EQ(message_of(write_file(path("a.json"), "{\n \"b\": 2}\n")), "");
   EXPECT_EQ(text("a.json"), "{\n \"b\": 2}\n");
   put("a.csv", "job,law,depth_m\n1,rhombus,2\n");
-  EXPECT_EQ(sentence_of(write_file(path("a.csv"), "job,depth_m\n")), "");
+  EXPECT_EQ(message_of(write_file(path("a.csv"), "job,depth_m\n")), "");
   put("b.csv", "# command: build/tact-lab chart\n");
-  EXPECT_EQ(sentence_of(write_file(path("b.csv"), "# command: ./tact-lab chart\n")), "");
+  EXPECT_EQ(message_of(write_file(path("b.csv"), "# command: ./tact-lab chart\n")), "");
   put("empty.toml", "");
-  EXPECT_EQ(sentence_of(write_file(path("empty.toml"), "{}\n")), "");
+  EXPECT_EQ(message_of(write_file(path("empty.toml"), "{}\n")), "");
   EXPECT_EQ(files(), 4u);
 }
 
@@ -44,12 +44,12 @@ TEST_F(FileWriterTest, NothingElseIsEverWrittenOver) {
     put(name, content);
     for (const char* bytes :
          {"{\n}\n", "job,law\n", "# command: tact-lab chart\n", "<!doctype html>", ""}) {
-      EXPECT_EQ(sentence_of(write_file(path(name), bytes)),
+      EXPECT_EQ(message_of(write_file(path(name), bytes)),
                 path(name) +
                     ": holds something else than what would be written, and is kept; name another "
                     "file, or remove this one");
-      EXPECT_EQ(sentence_of(check_target(path(name), bytes)),
-                sentence_of(write_file(path(name), bytes)));
+      EXPECT_EQ(message_of(check_target(path(name), bytes)),
+                message_of(write_file(path(name), bytes)));
     }
     EXPECT_EQ(text(name), content);
   }
@@ -57,34 +57,34 @@ TEST_F(FileWriterTest, NothingElseIsEverWrittenOver) {
 }
 
 TEST_F(FileWriterTest, AFileOfAnotherKindIsRefused) {
-  EXPECT_EQ(sentence_of(write_file(folder(), "{}")),
+  EXPECT_EQ(message_of(write_file(folder(), "{}")),
             folder() + ": this is a directory; name a file");
-  EXPECT_NE(sentence_of(write_file(path("none/a"), "{}")).find("No such file or directory"),
+  EXPECT_NE(message_of(write_file(path("none/a"), "{}")).find("No such file or directory"),
             std::string::npos);
   ASSERT_EQ(symlink(path("nowhere").c_str(), path("link").c_str()), 0);
-  EXPECT_NE(sentence_of(write_file(path("link"), "{}")), "");
-  EXPECT_NE(sentence_of(write_file("", "{}")), "");
+  EXPECT_NE(message_of(write_file(path("link"), "{}")), "");
+  EXPECT_NE(message_of(write_file("", "{}")), "");
 }
 
 TEST_F(FileWriterTest, APipeIsWrittenStraightAndNotWaitedForWithoutAReader) {
   ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
-  EXPECT_EQ(sentence_of(write_file(path("pipe"), "one")),
+  EXPECT_EQ(message_of(write_file(path("pipe"), "one")),
             path("pipe") + ": nobody reads this pipe; start its reader first");
   std::string got;
   std::thread reader([&] { got = text("pipe"); });
   std::optional<Error> error;
   do error = write_file(path("pipe"), std::string(200'000, 'x'));  // until the reader is there
-  while (error && error->sentence.find("nobody reads") != std::string::npos);
+  while (error && error->message.find("nobody reads") != std::string::npos);
   reader.join();
-  EXPECT_EQ(sentence_of(error), "");
+  EXPECT_EQ(message_of(error), "");
   EXPECT_EQ(got.size(), 200'000u);
   EXPECT_TRUE(fs::is_fifo(path("pipe")));
 }
 
 TEST_F(FileWriterTest, ADeviceWithoutRoomIsTold) {
-  EXPECT_NE(sentence_of(write_file("/dev/full", "{}")).find("No space left on device"),
+  EXPECT_NE(message_of(write_file("/dev/full", "{}")).find("No space left on device"),
             std::string::npos);
-  EXPECT_EQ(sentence_of(write_file("/dev/null", "{}")), "");
+  EXPECT_EQ(message_of(write_file("/dev/null", "{}")), "");
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
 }
 
@@ -98,7 +98,7 @@ TEST_F(FileWriterTest, AFullDiskKeepsTheOldFileAndLeavesNoPart) {
   const auto error = write_file(path("a.json"), "{" + std::string(100'000, ' ') + "}");
   setrlimit(RLIMIT_FSIZE, &before);
   signal(SIGXFSZ, old);
-  EXPECT_NE(sentence_of(error).find("File too large"), std::string::npos);
+  EXPECT_NE(message_of(error).find("File too large"), std::string::npos);
   EXPECT_EQ(text("a.json"), "{\"old\": 1}");
   EXPECT_EQ(files(), 1u);
 }
@@ -107,7 +107,7 @@ TEST_F(FileWriterTest, ALinkStaysAndItsFileIsReplacedWithItsRights) {
   put("a.json", "{}");
   ASSERT_EQ(chmod(path("a.json").c_str(), 0640), 0);
   ASSERT_EQ(symlink(path("a.json").c_str(), path("link.json").c_str()), 0);
-  EXPECT_EQ(sentence_of(write_file(path("link.json"), "{\"new\": 1}")), "");
+  EXPECT_EQ(message_of(write_file(path("link.json"), "{\"new\": 1}")), "");
   EXPECT_TRUE(fs::is_symlink(path("link.json")));
   EXPECT_EQ(text("a.json"), "{\"new\": 1}");
   EXPECT_EQ(fs::status(path("a.json")).permissions(), fs::perms(0640));
@@ -117,8 +117,8 @@ TEST_F(FileWriterTest, WhatIsNotFinishedIsNotThere) {
   {
     auto writer = FileWriter::replace(path("a.json"), "{");
     ASSERT_TRUE(writer);
-    EXPECT_EQ(sentence_of(writer->put("{")), "");
-    EXPECT_EQ(sentence_of(writer->flush()), "");
+    EXPECT_EQ(message_of(writer->put("{")), "");
+    EXPECT_EQ(message_of(writer->flush()), "");
     EXPECT_FALSE(fs::exists(path("a.json")));
   }
   EXPECT_EQ(files(), 0u);
@@ -127,35 +127,35 @@ TEST_F(FileWriterTest, WhatIsNotFinishedIsNotThere) {
 TEST_F(FileWriterTest, WhatIsAddedReplacesNothingThatAppearsMeanwhile) {
   auto writer = FileWriter::add(path("a.json"));
   ASSERT_TRUE(writer);
-  EXPECT_EQ(sentence_of(writer->put("{\"ours\": 1}")), "");
-  EXPECT_EQ(sentence_of(writer->flush()), "");
+  EXPECT_EQ(message_of(writer->put("{\"ours\": 1}")), "");
+  EXPECT_EQ(message_of(writer->flush()), "");
   EXPECT_FALSE(fs::exists(path("a.json")));
   put("a.json", "{\"theirs\": 1}");
   const std::string reported =
       path("a.json") + ": exists already and is never overwritten; choose another name";
-  EXPECT_EQ(sentence_of(writer->finish()), reported);
+  EXPECT_EQ(message_of(writer->finish()), reported);
   EXPECT_EQ(text("a.json"), "{\"theirs\": 1}");
   EXPECT_EQ(files(), 1u) << "no part stays";
   const auto there = FileWriter::add(path("a.json"));
   ASSERT_FALSE(there);
-  EXPECT_EQ(there.error().sentence, reported);
+  EXPECT_EQ(there.error().message, reported);
   auto alone = FileWriter::add(path("b.json"));
   ASSERT_TRUE(alone);
-  EXPECT_EQ(sentence_of(alone->put("{}")), "");
-  EXPECT_EQ(sentence_of(alone->finish()), "");
+  EXPECT_EQ(message_of(alone->put("{}")), "");
+  EXPECT_EQ(message_of(alone->finish()), "");
   EXPECT_EQ(text("b.json"), "{}");
 }
 
 TEST_F(FileWriterTest, WhatGrowsIsNewAndThereAtOnce) {
   auto writer = FileWriter::create(path("log"));
   ASSERT_TRUE(writer);
-  EXPECT_EQ(sentence_of(writer->put("one")), "");
-  EXPECT_EQ(sentence_of(writer->flush()), "");
+  EXPECT_EQ(message_of(writer->put("one")), "");
+  EXPECT_EQ(message_of(writer->flush()), "");
   EXPECT_EQ(text("log"), "one");
-  EXPECT_EQ(sentence_of(writer->finish()), "");
+  EXPECT_EQ(message_of(writer->finish()), "");
   const auto again = FileWriter::create(path("log"));
   ASSERT_FALSE(again);
-  EXPECT_NE(again.error().sentence.find("never overwritten"), std::string::npos);
+  EXPECT_NE(again.error().message.find("never overwritten"), std::string::npos);
   EXPECT_EQ(text("log"), "one");
 }
 

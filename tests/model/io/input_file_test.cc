@@ -16,7 +16,7 @@ class InputFileTest : public Scratch {
   std::string refusal(const std::string& path) {
     const auto read = read_file(path, "name another");
     EXPECT_FALSE(read) << path;
-    return read ? std::string() : read.error().sentence;
+    return read ? std::string() : read.error().message;
   }
 };
 
@@ -58,7 +58,7 @@ TEST_F(InputFileTest, LargerThanAllowedIsRefused) {
   EXPECT_TRUE(read_file(path("a"), "cut it", 1001));
   const auto read = read_file(path("a"), "cut it", 1000);
   ASSERT_FALSE(read);
-  EXPECT_EQ(read.error().sentence, path("a") + ": larger than 1000 bytes; cut it");
+  EXPECT_EQ(read.error().message, path("a") + ": larger than 1000 bytes; cut it");
   EXPECT_FALSE(read_file("/proc/self/status", "cut it", 10));  // which says no size
 }
 
@@ -66,7 +66,7 @@ TEST_F(InputFileTest, AReadThatFailsIsToldAndNoShorterText) {
   // A page of our memory that is not mapped: the file is regular, the read gives EIO.
   const auto read = read_file("/proc/self/mem");
   ASSERT_FALSE(read);
-  EXPECT_NE(read.error().sentence.find("cannot be read to its end"), std::string::npos);
+  EXPECT_NE(read.error().message.find("cannot be read to its end"), std::string::npos);
 }
 
 }  // namespace tact::model::io::input_file_test

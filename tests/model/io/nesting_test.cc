@@ -18,7 +18,7 @@ std::string times(std::string_view word, std::size_t count) {
 
 template <typename T>
 std::string refusal(const Result<T>& result) {
-  return result ? std::string() : result.error().sentence;
+  return result ? std::string() : result.error().message;
 }
 
 TEST(Nesting, OfAnyDepthIsRefusedAndEndsNoProcess) {

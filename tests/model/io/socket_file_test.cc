@@ -46,9 +46,9 @@ TEST(SocketAddress, OfAnEmptyOrTooLongPathIsAnErrorThatSaysHowLongItMayBe) {
   EXPECT_FALSE(socket_address(""));
   const auto refused = socket_address(longest + "a");
   ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().sentence.find(": a socket's path has 1 to 107 characters; give a "),
+  EXPECT_NE(refused.error().message.find(": a socket's path has 1 to 107 characters; give a "),
             std::string::npos)
-      << refused.error().sentence;
+      << refused.error().message;
 }
 
 TEST_F(SocketFileTest, GoesWithWhoMadeItUnlessAnotherStandsThere) {
@@ -81,7 +81,7 @@ TEST_F(SocketFileTest, AFolderThatOthersMayWriteToIsRefused) {
     ASSERT_EQ(chmod(folder_.c_str(), mode), 0);
     const auto refused = check_socket_folder(path());
     ASSERT_TRUE(refused) << mode;
-    EXPECT_NE(refused->sentence.find("--socket"), std::string::npos);
+    EXPECT_NE(refused->message.find("--socket"), std::string::npos);
   }
   EXPECT_TRUE(check_socket_folder("/dev/null/a.sock")) << "no folder";
 }
@@ -153,7 +153,7 @@ TEST_F(SocketFileTest, IsBoundForItsUserAloneWhateverTheUmask) {
   const mode_t before = umask(0);
   const auto fd = bind_socket(path(), SOCK_SEQPACKET | SOCK_CLOEXEC);
   umask(before);
-  ASSERT_TRUE(fd) << fd.error().sentence;
+  ASSERT_TRUE(fd) << fd.error().message;
   struct stat info{};
   ASSERT_EQ(stat(path().c_str(), &info), 0);
   EXPECT_EQ(info.st_mode & 0777u, 0600u);
@@ -163,14 +163,14 @@ TEST_F(SocketFileTest, IsBoundForItsUserAloneWhateverTheUmask) {
 TEST_F(SocketFileTest, IsBoundInThePlaceOfADeadOneAndOfNothingElse) {
   for (const int type : {SOCK_SEQPACKET | SOCK_CLOEXEC, SOCK_DGRAM | SOCK_CLOEXEC}) {
     const auto dead = bind_socket(path(), type);
-    ASSERT_TRUE(dead) << dead.error().sentence;
+    ASSERT_TRUE(dead) << dead.error().message;
     close(*dead);  // its file stays
     const auto living = bind_socket(path(), type);
-    ASSERT_TRUE(living) << living.error().sentence;
+    ASSERT_TRUE(living) << living.error().message;
     listen(*living, 1);
     const auto second = bind_socket(path(), type);
     ASSERT_FALSE(second);
-    EXPECT_NE(second.error().sentence.find("--socket"), std::string::npos);
+    EXPECT_NE(second.error().message.find("--socket"), std::string::npos);
     close(*living);
     fs::remove(path());
   }

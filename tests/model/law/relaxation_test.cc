@@ -245,7 +245,7 @@ TEST(Relaxation, AskedTwiceInATickRemembersTheLastAnswerOnly) {
 TEST(Relaxation, RefusesTermsWithoutMeaning) {
   const auto error_of = [](std::vector<PronyTerm> terms) {
     const auto made = make_relaxation(terms, kTick_s);
-    return made ? std::string() : made.error().sentence;
+    return made ? std::string() : made.error().message;
   };
   EXPECT_EQ(error_of({}), "");
   EXPECT_NE(error_of({{0.7, 1.0}, {0.7, 2.0}}).find("add up to 1.4"), std::string::npos);
@@ -260,7 +260,7 @@ TEST(Relaxation, SharesThatAddUpToOneButForRoundingLeaveNothing) {
   for (const auto& terms : {std::vector<PronyTerm>{{0.8, 1.0}, {0.2, 2.0}},
                             std::vector<PronyTerm>{{0.7, 1.0}, {0.2, 2.0}, {0.1, 3.0}}}) {
     const auto made = make_relaxation(terms, kTick_s);
-    ASSERT_TRUE(made) << made.error().sentence;
+    ASSERT_TRUE(made) << made.error().message;
     EXPECT_GE(made->share(0), 0.0);
     EXPECT_LT(made->share(0), 1e-12);
   }

@@ -30,11 +30,11 @@ indent::ComplianceCurve place(double compliance_m_per_N, double m = 1.0, double 
                                      .ring_pitch_m = 2_mm * m,
                                      .ring_m_per_N = rings,
                                      .table_knots = 257});
-  EXPECT_TRUE(curve) << curve.error().sentence;
+  EXPECT_TRUE(curve) << curve.error().message;
   return *curve;
 }
 
-/// The tip's own dent, pressed and pulled, in series with a give.
+/// The tip's own indentation, pressed and pulled, in series with a give.
 struct Pair {
   Pair(double compliance_m_per_N, double m = 1.0, double kg = 1.0, double s = 1.0)
       : tip(place(0.0, m, kg, s)),
@@ -107,7 +107,7 @@ TEST(SeriesLaw, RefusesAPlaceThatIsStifferThanItsLaw) {
   for (const double compliance_m_per_N : {-1.01 / most_N_per_m, std::nan(""), HUGE_VAL}) {
     const auto refused = make_series_law(tip, compliance_m_per_N, tip);
     ASSERT_FALSE(refused);
-    EXPECT_NE(refused.error().sentence.find("allowed: finite and above"), std::string::npos);
+    EXPECT_NE(refused.error().message.find("allowed: finite and above"), std::string::npos);
   }
 }
 

@@ -75,7 +75,7 @@ TEST(TabulatedLaw, TakesAChainWithoutTangentialSprings) {
                                                  .growth = 2.0,
                                                  .units = 10});
   const auto table = tabulate(*chain, 65);
-  ASSERT_TRUE(table) << table.error().sentence;
+  ASSERT_TRUE(table) << table.error().message;
   EXPECT_NEAR(table->respond(-5_mm).force_N, -15.0 * 5_mm, 1e-12);  // springs in series
 }
 

@@ -35,11 +35,11 @@ MeshDefect defect_of(const std::vector<Vec3>& vertices,
   return defect != nullptr ? *defect : MeshDefect{};
 }
 
-std::string sentence_of(const std::vector<Vec3>& vertices,
-                        const std::vector<contact::TriangleCorners>& triangles) {
+std::string message_of(const std::vector<Vec3>& vertices,
+                       const std::vector<contact::TriangleCorners>& triangles) {
   const auto mesh = make_surface_mesh(vertices, triangles);
   EXPECT_FALSE(mesh.has_value());
-  return mesh ? "" : mesh.error().sentence;
+  return mesh ? "" : mesh.error().message;
 }
 
 void expect_sound(const SurfaceMesh& mesh) {
@@ -100,10 +100,10 @@ TEST(Mesh, RecordsOfItsTrianglesMoveWithIt) {
   shift(cube, {0.1, -0.2, 0.3});
   expect_records_of(cube);
   for (const contact::TriangleRecord& record : cube.record)
-    EXPECT_EQ(record.on_rim, (std::array<bool, 3>{})) << "a closed surface has no rim";
+    EXPECT_EQ(record.on_boundary, (std::array<bool, 3>{})) << "a closed surface has no rim";
   const SurfaceMesh triangle = *make_surface_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
   expect_records_of(triangle);
-  EXPECT_EQ(triangle.record[0].on_rim, (std::array<bool, 3>{true, true, true}));
+  EXPECT_EQ(triangle.record[0].on_boundary, (std::array<bool, 3>{true, true, true}));
 }
 
 TEST(Mesh, NeighboursKnowEachOther) {
@@ -195,7 +195,7 @@ TEST(Mesh, RefusesAFaceThatNamesAMissingVertex) {
   auto triangles = kCubeTriangles;
   triangles[7][2] = 8;
   EXPECT_EQ(defect_of(kCubeVertices, triangles).flaw, MeshFlaw::kMissingVertex);
-  EXPECT_EQ(sentence_of(kCubeVertices, triangles),
+  EXPECT_EQ(message_of(kCubeVertices, triangles),
             "triangle 7 names a vertex that does not exist; export the mesh again");
 }
 
@@ -246,7 +246,7 @@ TEST(Mesh, RefusesTwoTrianglesInTheSameDirectionOnAnEdge) {
   std::swap(triangles[9][1], triangles[9][2]);
   const MeshDefect defect = defect_of(kCubeVertices, triangles);
   EXPECT_EQ(defect.flaw, MeshFlaw::kSameDirection);
-  EXPECT_EQ(sentence_of(kCubeVertices, triangles),
+  EXPECT_EQ(message_of(kCubeVertices, triangles),
             "triangle 9 faces the other way than its neighbour; tact-mesh FILE --out NEW.obj turns "
             "faces as their neighbours");
 }
@@ -268,8 +268,8 @@ TEST(Mesh, NamesTheEarliestOfSeveralBadEdges) {
 }
 
 TEST(Mesh, RefusesAMeshWithoutTriangles) {
-  EXPECT_EQ(sentence_of(kCubeVertices, {}), "the mesh has no triangles; give it at least one");
-  EXPECT_EQ(sentence_of({}, {}), "the mesh has no triangles; give it at least one");
+  EXPECT_EQ(message_of(kCubeVertices, {}), "the mesh has no triangles; give it at least one");
+  EXPECT_EQ(message_of({}, {}), "the mesh has no triangles; give it at least one");
   EXPECT_FALSE(make_surface_mesh({}, {{0, 1, 2}}).has_value());
 }
 

@@ -12,21 +12,21 @@ const std::string kVertices =
 
 ObjText parse_good(const std::string& text) {
   const auto parsed = parse_obj(text, "m.obj");
-  EXPECT_TRUE(parsed.has_value()) << (parsed ? "" : parsed.error().sentence);
+  EXPECT_TRUE(parsed.has_value()) << (parsed ? "" : parsed.error().message);
   return parsed ? parsed.value() : ObjText{};
 }
 
 void expect_error(const std::string& text, std::size_t line, const std::string& part) {
   const auto parsed = parse_obj(text, "m.obj");
   ASSERT_FALSE(parsed.has_value()) << text;
-  const std::string& sentence = parsed.error().sentence;
+  const std::string& message = parsed.error().message;
   const std::string start = "m.obj:" + std::to_string(line) + ": ";
-  EXPECT_EQ(sentence.substr(0, start.size()), start) << sentence;
-  EXPECT_NE(sentence.find(part), std::string::npos) << sentence;
-  EXPECT_NE(sentence.find("; "), std::string::npos) << sentence;
-  EXPECT_TRUE(std::all_of(sentence.begin(), sentence.end(), [](char c) {
+  EXPECT_EQ(message.substr(0, start.size()), start) << message;
+  EXPECT_NE(message.find(part), std::string::npos) << message;
+  EXPECT_NE(message.find("; "), std::string::npos) << message;
+  EXPECT_TRUE(std::all_of(message.begin(), message.end(), [](char c) {
     return c >= ' ' && c <= '~';
-  })) << sentence;
+  })) << message;
 }
 
 TEST(ObjParser, ReadsNumbersAsTheyAreWritten) {
@@ -95,7 +95,7 @@ TEST(ObjParser, RefusesMoreVerticesThanTheLimitAtTheirLine) {
   for (std::size_t i = 0; i <= kMaxObjVertices; ++i) text += "v 0 0 0\n";
   const auto parsed = parse_obj(text, "big.obj");
   ASSERT_FALSE(parsed.has_value());
-  EXPECT_EQ(parsed.error().sentence,
+  EXPECT_EQ(parsed.error().message,
             "big.obj:10000001: more than 10000000 vertices; simplify the mesh");
 }
 
@@ -106,8 +106,8 @@ TEST(ObjParser, RefusesMoreTrianglesThanTheLimit) {
   for (std::size_t i = 0; i < faces; ++i) text += face + "\n";
   const auto parsed = parse_obj(text, "big.obj");
   ASSERT_FALSE(parsed.has_value());
-  EXPECT_EQ(parsed.error().sentence, "big.obj:" + std::to_string(faces + 3) +
-                                         ": more than 20000000 triangles; simplify the mesh");
+  EXPECT_EQ(parsed.error().message, "big.obj:" + std::to_string(faces + 3) +
+                                        ": more than 20000000 triangles; simplify the mesh");
 }
 
 }  // namespace tact::model::mesh::obj_parser_test

@@ -26,7 +26,7 @@ class Obj : public testing::Test {
   }
   ObjMesh load_good(const std::string& text) const {
     const auto obj = load(text);
-    EXPECT_TRUE(obj.has_value()) << (obj ? "" : obj.error().sentence);
+    EXPECT_TRUE(obj.has_value()) << (obj ? "" : obj.error().message);
     return obj ? obj.value() : ObjMesh{};
   }
   void expect_cube(const std::string& text) const {
@@ -39,17 +39,17 @@ class Obj : public testing::Test {
   // One line, "file:line: what; remedy".
   static void expect_line(const Error& error, const std::string& path, std::size_t line) {
     const std::string start = path + ":" + std::to_string(line) + ": ";
-    EXPECT_EQ(error.sentence.substr(0, start.size()), start) << error.sentence;
-    EXPECT_NE(error.sentence.find("; "), std::string::npos) << error.sentence;
-    EXPECT_TRUE(std::all_of(error.sentence.begin(), error.sentence.end(),
+    EXPECT_EQ(error.message.substr(0, start.size()), start) << error.message;
+    EXPECT_NE(error.message.find("; "), std::string::npos) << error.message;
+    EXPECT_TRUE(std::all_of(error.message.begin(), error.message.end(),
                             [](char c) { return c >= ' ' && c <= '~'; }));
-    EXPECT_LT(error.sentence.size(), path.size() + 200);
+    EXPECT_LT(error.message.size(), path.size() + 200);
   }
   void expect_error(const std::string& text, std::size_t line, const std::string& part) const {
     const auto obj = load(text);
     ASSERT_FALSE(obj.has_value()) << text;
     expect_line(obj.error(), temp_.path() + "/m.obj", line);
-    EXPECT_NE(obj.error().sentence.find(part), std::string::npos) << obj.error().sentence;
+    EXPECT_NE(obj.error().message.find(part), std::string::npos) << obj.error().message;
   }
 
   TempDirectory temp_;
@@ -64,7 +64,7 @@ TEST_F(Obj, EveryLineOfTheManifestOfBadFilesHolds) {
     SCOPED_TRACE(file.name);
     const auto obj = load_obj(file.path, kMillimetre_m);
     if (file.expect == "ok") {
-      ASSERT_TRUE(obj.has_value()) << obj.error().sentence;
+      ASSERT_TRUE(obj.has_value()) << obj.error().message;
       EXPECT_EQ(obj->file_vertices, file.vertices);
       EXPECT_EQ(obj->mesh.triangle.size(), file.triangles);
       EXPECT_EQ(summarize(obj->mesh).boundary_edges, 0u);
@@ -193,7 +193,7 @@ TEST_F(Obj, AcceptsAQuadThatWeldingMakesATriangle) {
 TEST_F(Obj, NamesBothFacesOfABrokenEdge) {
   const auto obj = load_obj(tests::bad_directory() + "p11_nonmanifold_edge.obj", kMillimetre_m);
   ASSERT_FALSE(obj.has_value());
-  EXPECT_NE(obj.error().sentence.find("edge 1-2, see line 6"), std::string::npos);
+  EXPECT_NE(obj.error().message.find("edge 1-2, see line 6"), std::string::npos);
   std::string faces = kCubeFaces;
   std::swap(faces[2], faces[4]);  // f 4 1 3
   expect_error(kCubeVertices + faces, 10, "faces the other way");
@@ -212,26 +212,26 @@ TEST_F(Obj, SpeaksOfVerticesAsTheFileCountsThem) {
 }
 
 TEST_F(Obj, RefusesWhatIsNoFile) {
-  const auto sentence = [](const std::string& path) {
+  const auto message = [](const std::string& path) {
     const auto obj = load_obj(path, kMillimetre_m);
-    return obj ? "loaded" : obj.error().sentence;
+    return obj ? "loaded" : obj.error().message;
   };
-  EXPECT_EQ(sentence(temp_.path() + "/none.obj"),
+  EXPECT_EQ(message(temp_.path() + "/none.obj"),
             temp_.path() + "/none.obj: no such file; name an OBJ file of at most 2 GB");
-  EXPECT_EQ(sentence(temp_.path()),
+  EXPECT_EQ(message(temp_.path()),
             temp_.path() + ": this is a directory; name an OBJ file of at most 2 GB");
-  EXPECT_NE(sentence("/dev/zero").find("not a regular file"), std::string::npos);
-  EXPECT_NE(sentence(temp_.write("a.obj", "") + "/b.obj").find("Not a directory"),
+  EXPECT_NE(message("/dev/zero").find("not a regular file"), std::string::npos);
+  EXPECT_NE(message(temp_.write("a.obj", "") + "/b.obj").find("Not a directory"),
             std::string::npos);
-  EXPECT_NE(sentence(std::string(300, 'x')).find("File name too long"), std::string::npos);
+  EXPECT_NE(message(std::string(300, 'x')).find("File name too long"), std::string::npos);
   const std::string locked = temp_.write("locked.obj", kCubeVertices);
   std::filesystem::permissions(locked, std::filesystem::perms::none);
   constexpr uid_t kNobody = 65534;
   const bool root = geteuid() == 0;  // may read everything, so it becomes somebody else
   if (root) ASSERT_EQ(seteuid(kNobody), 0);
-  EXPECT_TRUE(sentence(locked).find("cannot be opened") != std::string::npos ||
-              sentence(locked).find("Permission denied") != std::string::npos)
-      << sentence(locked);
+  EXPECT_TRUE(message(locked).find("cannot be opened") != std::string::npos ||
+              message(locked).find("Permission denied") != std::string::npos)
+      << message(locked);
   if (root) ASSERT_EQ(seteuid(0), 0);
 }
 
@@ -240,7 +240,7 @@ TEST_F(Obj, RefusesAHugeFileBeforeReadingIt) {
   std::filesystem::resize_file(path, kMaxObjBytes + 1);  // sparse: takes no room
   const auto obj = load_obj(path, kMillimetre_m);
   ASSERT_FALSE(obj.has_value());
-  EXPECT_EQ(obj.error().sentence,
+  EXPECT_EQ(obj.error().message,
             path + ": larger than 2000000000 bytes; name an OBJ file of at most 2 GB");
 }
 
@@ -266,8 +266,8 @@ TEST_F(Obj, AFileCutAnywhereLoadsOrGivesOneLine) {
       ++loaded;
       EXPECT_GE(obj->mesh.triangle.size(), 1u);
     } else {
-      EXPECT_EQ(obj.error().sentence.find('\n'), std::string::npos);
-      EXPECT_EQ(obj.error().sentence.find(temp_.path() + "/m.obj:"), 0u);
+      EXPECT_EQ(obj.error().message.find('\n'), std::string::npos);
+      EXPECT_EQ(obj.error().message.find(temp_.path() + "/m.obj:"), 0u);
     }
   }
   EXPECT_GT(loaded, 10);
@@ -289,7 +289,7 @@ TEST_F(Obj, AFileWithOneByteChangedLoadsOrGivesOneLine) {
       std::string changed = text;
       changed[at] = c;
       const auto parsed = load(changed);
-      if (!parsed) EXPECT_EQ(parsed.error().sentence.find('\n'), std::string::npos);
+      if (!parsed) EXPECT_EQ(parsed.error().message.find('\n'), std::string::npos);
     }
   }
 }

@@ -13,8 +13,8 @@ const std::string kPlain = TACT_SOURCE_DIR "/tests/data/scenes/plain.toml";
 std::string complaint(const std::vector<std::string>& overrides) {
   const Result<scene::Scene> scene = scene::load_scene(kPlain, overrides);
   if (scene) return "";
-  EXPECT_EQ(scene.error().sentence.find('\n'), std::string::npos) << scene.error().sentence;
-  return scene.error().sentence;
+  EXPECT_EQ(scene.error().message.find('\n'), std::string::npos) << scene.error().message;
+  return scene.error().message;
 }
 
 TEST(Override, SetsNumbersTextFlagsAndArrays) {
@@ -22,7 +22,7 @@ TEST(Override, SetsNumbersTextFlagsAndArrays) {
       scene::load_scene(kPlain, {"rate_Hz=2000", "name=a word", "name=\"two words\"",
                                  "hand.repeat=true", "organ.position_m=[0.01, 0, -2e-2]",
                                  "table_knots=129", "device.kind=none/of-this.world"});
-  ASSERT_TRUE(scene) << scene.error().sentence;
+  ASSERT_TRUE(scene) << scene.error().message;
   EXPECT_EQ(scene->rate_Hz, 2000.0);
   EXPECT_EQ(scene->name, "two words") << "the last one counts";
   EXPECT_TRUE(scene->hand.repeat);
@@ -34,7 +34,7 @@ TEST(Override, SetsNumbersTextFlagsAndArrays) {
 TEST(Override, CountsByItsMeaningNotByItsSpelling) {
   const auto hash = [](const std::string& text) {
     const Result<SceneDocument> document = load_scene_document(kPlain, {text});
-    return document ? document->hash : document.error().sentence;
+    return document ? document->hash : document.error().message;
   };
   EXPECT_EQ(hash("law=auto"), hash("law=\"auto\""));
   EXPECT_EQ(hash("rate_Hz=2000"), hash("rate_Hz= 2000"));
@@ -46,7 +46,7 @@ TEST(Override, ReachesOneEntryOfAnArrayOfSections) {
   const Result<scene::Scene> plain = scene::load_scene(kPlain, {});
   const Result<scene::Scene> scene =
       scene::load_scene(kPlain, {"hand.stroke.1.duration_s=7", "tool.sphere.0.radius_m=0.003"});
-  ASSERT_TRUE(plain && scene) << scene.error().sentence;
+  ASSERT_TRUE(plain && scene) << scene.error().message;
   EXPECT_EQ(scene->tool.spheres[0].radius_m, 0.003);
   EXPECT_NEAR(scene->hand.path.back().time_s - plain->hand.path.back().time_s, 5.0, 1e-12);
 }
@@ -56,7 +56,7 @@ TEST(Override, ReplacesAWholeSectionOrArray) {
       kPlain,
       {"telemetry={frame_rate_Hz=30}", "hand.stroke=[]",
        "tool.sphere=[{offset_m=[0,0,0], radius_m=0.001}, {offset_m=[0,0,0], radius_m=0.002}]"});
-  ASSERT_TRUE(scene) << scene.error().sentence;
+  ASSERT_TRUE(scene) << scene.error().message;
   EXPECT_EQ(scene->frame_rate_Hz, 30.0);
   EXPECT_EQ(scene->hand.path.size(), 1u) << "only home";
   EXPECT_EQ(scene->tool.spheres.size(), 2u);
@@ -127,7 +127,7 @@ TEST(Override, ThatIsWrongIsToldAsItWasTyped) {
 TEST(Override, OfAnUnknownSectionIsToldTheKnownOnes) {
   EXPECT_TRUE(complaint({"a.b.c=1"})
                   .starts_with("--set a.b.c=1: a is no key here; allowed here: name, rate_Hz, "
-                               "table_knots, varies_by_place, "
+                               "table_knots, varies_over_surface, "
                                "law, rhombus, "));
 }
 
@@ -141,19 +141,19 @@ TEST(Override, OfTheWrongKindIsToldBeforeWhatIsWrongInTheFile) {
   const std::string bad = TACT_SOURCE_DIR "/tests/data/scenes/bad/too_small.toml";
   const Result<scene::Scene> scene = scene::load_scene(bad, {"limits.force_N=99"});
   ASSERT_FALSE(scene);
-  EXPECT_EQ(scene.error().sentence,
+  EXPECT_EQ(scene.error().message,
             "--set limits.force_N=99: limits.force_N = 99 is out of range; allowed: 0 .. 20 N");
 }
 
 TEST(SceneDocument, KnowsTheLineOfEveryNode) {
   const Result<SceneDocument> document = load_scene_document(kPlain, {"rhombus.units=8"});
-  ASSERT_TRUE(document) << document.error().sentence;
+  ASSERT_TRUE(document) << document.error().message;
   const toml::table& root = document->root;
-  EXPECT_EQ(document->place_of(*root.get("rate_Hz")).line, 3u);
-  EXPECT_EQ(document->place_of(*root.get("rate_Hz")).where, kPlain + ":3");
-  EXPECT_EQ(document->place_of(*root["rhombus"].node()).line, 5u);
-  EXPECT_EQ(document->place_of(*root["rhombus"]["growth"].node()).line, 10u);
-  EXPECT_EQ(document->place_of(*root["rhombus"]["units"].node()).where, "--set rhombus.units=8");
+  EXPECT_EQ(document->position_of(*root.get("rate_Hz")).line, 3u);
+  EXPECT_EQ(document->position_of(*root.get("rate_Hz")).where, kPlain + ":3");
+  EXPECT_EQ(document->position_of(*root["rhombus"].node()).line, 5u);
+  EXPECT_EQ(document->position_of(*root["rhombus"]["growth"].node()).line, 10u);
+  EXPECT_EQ(document->position_of(*root["rhombus"]["units"].node()).where, "--set rhombus.units=8");
 }
 
 }  // namespace tact::model::reader::scene_document_test

@@ -46,7 +46,7 @@ class AccuracyFile : public testing::Test {
 TEST_F(AccuracyFile, ComesBackAsItWasWritten) {
   write(accuracy_text({figure()}));
   const auto back = read_accuracy(scene);
-  ASSERT_TRUE(back) << back.error().sentence;
+  ASSERT_TRUE(back) << back.error().message;
   EXPECT_EQ(back->rms_ratio, 0.0126);
   EXPECT_EQ(back->own_worst_ratio, (std::vector<double>{-0.088, 0.139}));
   EXPECT_EQ(back->depth_m, (std::vector<double>{0.001, 0.01}));
@@ -121,11 +121,11 @@ TEST(Shipped, TheFigureOfTheLiverIsOfTheLiverThatIsShipped) {
   for (const char* law : {"rhombus", "compliance", "hex_sheet", "disc_stack"}) {
     const auto scene = load_scene(TACT_SOURCE_DIR "/model/scenes/liver.toml",
                                   {std::string("law=\"") + law + "\""});
-    ASSERT_EQ(tests::sentence_of(scene), "");
+    ASSERT_EQ(tests::message_of(scene), "");
     const auto tissue_law = make_tissue_law(*scene, scene->law);
-    ASSERT_EQ(tests::sentence_of(tissue_law), "");
+    ASSERT_EQ(tests::message_of(tissue_law), "");
     const auto figure = read_accuracy(*scene);
-    EXPECT_TRUE(figure) << (figure ? "" : figure.error().sentence);
+    EXPECT_TRUE(figure) << (figure ? "" : figure.error().message);
   }
 }
 

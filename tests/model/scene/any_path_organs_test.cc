@@ -15,7 +15,7 @@ class AnyPathOrgan : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(AnyPathOrgan, KeepsTheRulesOfContact) {
   auto scene = load_scene(TACT_SOURCE_DIR "/model/scenes/" + std::string(GetParam()) + ".toml", {});
-  ASSERT_EQ(tests::sentence_of(scene), "");
+  ASSERT_EQ(tests::message_of(scene), "");
   const tests::PathCounts counts = tests::run_random_paths(GetParam(), std::move(scene->organ_mesh),
                                                            tests::share_of(100'000, 4'000'000));
   RecordProperty("counts", counts.summary());
@@ -31,7 +31,7 @@ INSTANTIATE_TEST_SUITE_P(Shipped, AnyPathOrgan,
 // Paths of earlier long runs, each of which broke a rule.
 void expect_kept(const std::string& name, const std::vector<std::uint32_t>& seeds) {
   auto scene = load_scene(TACT_SOURCE_DIR "/model/scenes/" + name + ".toml", {});
-  ASSERT_EQ(tests::sentence_of(scene), "");
+  ASSERT_EQ(tests::message_of(scene), "");
   const tests::PathCounts counts = tests::run_paths_of(name, std::move(scene->organ_mesh), seeds);
   EXPECT_TRUE(counts.broken.empty()) << name << ": " << counts.summary() << "\n" << counts.first;
 }

@@ -36,7 +36,7 @@ class ComplianceFile : public testing::Test {
     path_ = testing::TempDir() + "map_" +
             testing::UnitTest::GetInstance()->current_test_info()->name() + ".compliance";
     const auto bytes = write_compliance_map(small_map(), path_);
-    ASSERT_TRUE(bytes) << bytes.error().sentence;
+    ASSERT_TRUE(bytes) << bytes.error().message;
     std::ifstream file(path_, std::ios::binary);
     content_.assign(std::istreambuf_iterator<char>(file), {});
     ASSERT_EQ(content_.size(), *bytes);
@@ -47,12 +47,12 @@ class ComplianceFile : public testing::Test {
   std::string verdict(const std::string& bytes) {
     std::ofstream(path_, std::ios::binary) << bytes;
     const auto map = read_compliance_map(path_);
-    return map ? "" : map.error().sentence;
+    return map ? "" : map.error().message;
   }
   bool says(const std::string& bytes, const std::string& words) {
-    const std::string sentence = verdict(bytes);
-    return sentence.find(words) != std::string::npos && sentence.find(path_) == 0 &&
-           sentence.find("tact-lab condense") != std::string::npos;
+    const std::string message = verdict(bytes);
+    return message.find(words) != std::string::npos && message.find(path_) == 0 &&
+           message.find("tact-lab condense") != std::string::npos;
   }
 
   std::string path_, content_;
@@ -60,7 +60,7 @@ class ComplianceFile : public testing::Test {
 
 TEST_F(ComplianceFile, GivesBackWhatWasWritten) {
   const auto back = read_compliance_map(path_);
-  ASSERT_TRUE(back) << back.error().sentence;
+  ASSERT_TRUE(back) << back.error().message;
   const tissue::ComplianceMap map = small_map();
   EXPECT_EQ(back->poisson_ratio, map.poisson_ratio);
   EXPECT_EQ(back->patch_radius_m, map.patch_radius_m);
@@ -109,7 +109,7 @@ TEST_F(ComplianceFile, RefusesWhatIsNoFiniteNumber) {
                    : map.ring_times_E_per_m[4]) = bad;
       const auto written = write_compliance_map(map, path_);
       ASSERT_FALSE(written);
-      EXPECT_NE(written.error().sentence.find("no finite number"), std::string::npos);
+      EXPECT_NE(written.error().message.find("no finite number"), std::string::npos);
     }
     // the last ring, in a file whose checksum is right
     std::string bytes = content_.substr(0, content_.size() - 8);
@@ -131,7 +131,7 @@ TEST_F(ComplianceFile, EndsWithItsChecksum) {
 TEST_F(ComplianceFile, TellsThatThereIsNone) {
   const auto map = read_compliance_map(path_ + ".missing");
   ASSERT_FALSE(map);
-  EXPECT_NE(map.error().sentence.find("no such file; make it again with tact-lab condense"),
+  EXPECT_NE(map.error().message.find("no such file; make it again with tact-lab condense"),
             std::string::npos);
 }
 

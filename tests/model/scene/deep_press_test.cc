@@ -27,7 +27,7 @@ constexpr double kRange_m = 12_mm;  // of the law
 struct Organ {
   explicit Organ(const char* name, bool rubs = false) {
     auto loaded = load_scene(TACT_SOURCE_DIR "/model/scenes/" + std::string(name) + ".toml", {});
-    EXPECT_EQ(tests::sentence_of(loaded), "");
+    EXPECT_EQ(tests::message_of(loaded), "");
     scene = std::move(*loaded);
     tree = contact::make_triangle_tree(scene.organ_mesh.view());
     if (!rubs) return;
@@ -85,7 +85,8 @@ struct Rendered {
 
 /// Is the whole sphere outside?
 bool is_outside(const contact::ContactScene& scene, const Vec3& centre_m, double radius_m) {
-  return contact::nearest_site(scene.tree, scene.surface, centre_m, 1.0, contact::kNoTriangle)
+  return contact::nearest_contact_point(scene.tree, scene.surface, centre_m, 1.0,
+                                        contact::kNoTriangle)
              .distance_m >= radius_m;
 }
 
@@ -207,7 +208,7 @@ TEST_P(DeepPress, RubbingTissueThatRelaxesGivesNothing) {
 TEST_P(DeepPress, AShippedToolGivesNothing) {
   Organ organ(GetParam());
   const auto tissue = make_tissue(organ.scene);
-  ASSERT_EQ(tests::sentence_of(tissue), "");
+  ASSERT_EQ(tests::message_of(tissue), "");
   const contact::ContactScene scene = (*tissue)->contact_scene();
   std::mt19937 random(9);
   for (int point = 1; point <= static_cast<int>(tests::share_of(10, 200)); ++point)

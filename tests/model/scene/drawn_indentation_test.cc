@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The dent as the page draws it against finite elements: both jaws in the shipped liver, and one
-// sphere at the places where laws are fitted.
+// The indentation as the page draws it against finite elements: both jaws in the shipped liver, and
+// one sphere at the places where laws are fitted.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -67,16 +67,16 @@ class DrawnIndentation : public ::testing::Test {
   void load(std::vector<std::string> settings) {
     settings.push_back("contact.friction_ratio=0");
     auto loaded = load_scene(TACT_SOURCE_DIR "/model/scenes/liver.toml", settings);
-    ASSERT_EQ(tests::sentence_of(loaded), "");
+    ASSERT_EQ(tests::message_of(loaded), "");
     scene_ = std::move(*loaded);
     auto tissue = make_tissue(scene_);
-    ASSERT_EQ(tests::sentence_of(tissue), "");
+    ASSERT_EQ(tests::message_of(tissue), "");
     tissue_ = std::move(*tissue);
   }
 
   Curve curve_of(const contact::Indentation& in) const {
     std::array<double, 32> ring_m{};
-    const auto& law = tissue_->law().site_law();
+    const auto& law = tissue_->law().contact_law();
     const std::size_t count = law.profile(in, ring_m);
     return {{ring_m.data(), count}, law.ring_pitch_m()};
   }
@@ -84,7 +84,7 @@ class DrawnIndentation : public ::testing::Test {
   /// What host/web/src/organ/deform.ts adds to a vertex for one site.
   Vec3 indentation_m(const contact::SphereContact& sphere_contact, std::uint32_t vertex) const {
     if (!(sphere_contact.indentation_m > 0.0)) return {};
-    const contact::Indentation in{.place = sphere_contact.place,
+    const contact::Indentation in{.surface_point = sphere_contact.surface_point,
                                   .normal = sphere_contact.normal,
                                   .indentation_m = sphere_contact.indentation_m};
     const Curve curve = curve_of(in);
@@ -97,7 +97,7 @@ class DrawnIndentation : public ::testing::Test {
         smoothstep(-0.4, 0.2, facing);
     const double lean_m =
         (1.0 - smoothstep(kTaperStart * curve.reach_m(), curve.reach_m(), rho_m)) *
-        dot(tissue_->law().site_law().tilt(in), from_m);
+        dot(tissue_->law().contact_law().tilt(in), from_m);
     return -fade * std::max(0.0, curve.at(rho_m) + lean_m) * sphere_contact.normal;
   }
 
@@ -150,7 +150,7 @@ class DrawnIndentation : public ::testing::Test {
 
 // At the hand's own site and at a rim that no stroke presses: vertex by vertex, and in the mean
 // around the tool. The organ sinks less towards its held side than towards a free lobe; without
-// SiteLaw::tilt single vertices miss by 16 %.
+// ContactLaw::tilt single vertices miss by 16 %.
 TEST_F(DrawnIndentation, OfBothJawsIsThatOfFiniteElementsAroundTheTool) {
   const json truth = reference("liver_tool_skin.json");
   for (const char* law : {"rhombus", "compliance"}) {
@@ -175,7 +175,7 @@ TEST_F(DrawnIndentation, OfOneSphereIsThatOfFiniteElementsAtEachSite) {
         const double depth_m = pressed["depth_m"];
         if (pressed["large_strain"] || depth_m < 0.0 || depth_m > 0.0101) continue;
         const std::uint32_t vertex = site["vertex"];
-        contact::Place at;
+        contact::SurfacePoint at;
         const auto& triangles = scene_.organ_mesh.triangle;
         for (std::uint32_t t = 0; t < triangles.size(); ++t)
           for (std::size_t k = 0; k < 3; ++k)
@@ -183,8 +183,9 @@ TEST_F(DrawnIndentation, OfOneSphereIsThatOfFiniteElementsAtEachSite) {
               at.triangle = t;
               at.weight = {k == 0 ? 1.0 : 0.0, k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0};
             }
-        const Curve curve = curve_of(
-            {.place = at, .normal = -vector_of(site["direction"]), .indentation_m = depth_m});
+        const Curve curve = curve_of({.surface_point = at,
+                                      .normal = -vector_of(site["direction"]),
+                                      .indentation_m = depth_m});
         double sum_m2 = 0.0;
         const json& known_m = pressed["profile_m"];
         for (std::size_t j = 0; j < known_m.size(); ++j) {

@@ -16,7 +16,7 @@ Result<Scene> load(std::string_view name, const Overrides& overrides) {
 
 std::vector<reader::SceneNumber> numbers_of(std::string_view name, const Overrides& overrides) {
   const auto scene = load(name, overrides);
-  EXPECT_TRUE(scene) << scene.error().sentence;
+  EXPECT_TRUE(scene) << scene.error().message;
   const auto numbers = law_numbers(*scene, overrides);
   EXPECT_TRUE(numbers);
   return *numbers;

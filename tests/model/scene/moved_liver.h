@@ -59,18 +59,18 @@ struct Press {
   }
 };
 
-inline std::vector<contact::Site> nearest(const Tool& tool) {
-  std::vector<contact::Site> out;
+inline std::vector<contact::ContactPoint> nearest(const Tool& tool) {
+  std::vector<contact::ContactPoint> out;
   for (const contact::ProbeSphere& s : liver().scene.tool.spheres)
-    out.push_back(contact::nearest_site(liver().tree(), liver().mesh(),
-                                        tool.position_m + rotate(tool.orientation, s.offset_m), 1.0,
-                                        contact::kNoTriangle));
+    out.push_back(contact::nearest_contact_point(
+        liver().tree(), liver().mesh(), tool.position_m + rotate(tool.orientation, s.offset_m), 1.0,
+        contact::kNoTriangle));
   return out;
 }
 
 inline double gap_m(const Tool& tool) {
   double least_m = 1.0;
-  const std::vector<contact::Site> sites = nearest(tool);
+  const std::vector<contact::ContactPoint> sites = nearest(tool);
   for (std::size_t i = 0; i < sites.size(); ++i)
     least_m = std::min(least_m, sites[i].distance_m - liver().scene.tool.spheres[i].radius_m);
   return least_m;

@@ -29,10 +29,10 @@ class Shipped {
  public:
   explicit Shipped(const std::string& name, const std::vector<std::string>& overrides = {}) {
     auto loaded = load_scene(TACT_SOURCE_DIR "/model/scenes/" + name + ".toml", overrides);
-    EXPECT_EQ(tests::sentence_of(loaded), "");
+    EXPECT_EQ(tests::message_of(loaded), "");
     scene_ = std::move(*loaded);
     auto made = make_tissue(scene_);
-    EXPECT_EQ(tests::sentence_of(made), "");
+    EXPECT_EQ(tests::message_of(made), "");
     tissue_ = std::move(*made);
     body_.emplace(scene_.organ_mesh.vertex_m, scene_.organ_mesh.triangle);
   }

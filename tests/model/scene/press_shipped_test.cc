@@ -110,12 +110,12 @@ TEST_P(PressShipped, ToolIsSoundButForWhatIsMeasured) {
   const Case& c = GetParam();
   const auto scene =
       load_scene(TACT_SOURCE_DIR "/model/scenes/" + std::string(c.scene) + ".toml", {});
-  ASSERT_EQ(tests::sentence_of(scene), "");
+  ASSERT_EQ(tests::message_of(scene), "");
   const std::size_t count = tests::extent_is("long") ? 0 : c.count;
-  const auto places = press_places(*scene, count, true, true);
+  const auto places = press_points(*scene, count, true, true);
   const auto sweep =
       sweep_presses(*scene, places, {.depth_m = c.depth_m, .limit_N_per_m = kLimit_N_per_m});
-  ASSERT_EQ(tests::sentence_of(sweep), "");
+  ASSERT_EQ(tests::message_of(sweep), "");
   const std::vector<Vec3> edges = edge_points(scene->organ_mesh);
   Counts away, near;
   for (const PressResult& r : sweep->results) {
@@ -143,8 +143,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, PressShipped, ::testing::ValuesIn(kCases),
 // A law may remember: each press must find the tissue as at first.
 TEST(PressShippedOrder, NoPressLeavesATraceInTheNext) {
   const auto scene = load_scene(TACT_SOURCE_DIR "/model/scenes/gum.toml", {});
-  ASSERT_EQ(tests::sentence_of(scene), "");
-  auto places = press_places(*scene, 5, true, false);
+  ASSERT_EQ(tests::message_of(scene), "");
+  auto places = press_points(*scene, 5, true, false);
   const auto there = sweep_presses(*scene, places, {.depth_m = 2_mm});
   std::ranges::reverse(places);
   const auto back = sweep_presses(*scene, places, {.depth_m = 2_mm});

@@ -29,10 +29,10 @@ TEST(PressSweep, PlateAnswersWithForceAndSlopeOfTheLaw) {
   const auto tissue = std::move(*make_tissue(scene));
   const law::Law& law = *tissue->law().curve();
   const double range_m = law.range().press_m;
-  const std::vector<PressPlace> places{{middle_of(scene.organ_mesh), PressWay::kSquare},
+  const std::vector<PressPoint> places{{middle_of(scene.organ_mesh), PressWay::kSquare},
                                        {middle_of(scene.organ_mesh), PressWay::kUpright}};
   const auto sweep = sweep_presses(scene, places, {.limit_N_per_m = kLimit_N_per_m});
-  ASSERT_EQ(tests::sentence_of(sweep), "");
+  ASSERT_EQ(tests::message_of(sweep), "");
   EXPECT_EQ(sweep->settings.depth_m, range_m) << "the working range, as no depth was asked for";
   EXPECT_TRUE(sweep->settings.checks_energy);
   double steepest_N_per_m = 0.0;
@@ -53,14 +53,14 @@ TEST(PressSweep, PlateAnswersWithForceAndSlopeOfTheLaw) {
 }
 
 /// A spring, and what may be wrong with it.
-class BrokenLaw : public contact::SiteLaw {
+class BrokenLaw : public contact::ContactLaw {
  public:
   double snap_at_m = 1.0, snap_N = 0.0;  // a force that comes all at once
   double draws_N_per_m = 0.0;            // beyond 2 mm it falls with this slope
   double stored_ratio = 1.0;             // of what it should store
   double spring_N_per_m = kSpring_N_per_m;
 
-  contact::SiteResponse respond(const contact::Indentation& in) RT_SAFE override {
+  contact::ContactLawResponse respond(const contact::Indentation& in) RT_SAFE override {
     const double d_m = std::max(in.indentation_m, 0.0), beyond_m = std::max(d_m - 2_mm, 0.0);
     double force_N = spring_N_per_m * d_m - draws_N_per_m * beyond_m;
     double energy_J = 0.5 * spring_N_per_m * d_m * d_m - 0.5 * draws_N_per_m * beyond_m * beyond_m;
@@ -169,12 +169,12 @@ TEST(PressPlaces, AreSpreadAndUprightOnesFaceTheHand) {
   Scene scene = tests::make_plate_scene();
   scene.organ_mesh = tests::make_ball(0.05, 3);
   const std::size_t vertices = scene.organ_mesh.vertex_m.size();
-  EXPECT_EQ(press_places(scene, 0, true, false).size(), vertices);
-  const auto ten = press_places(scene, 10, true, true);
+  EXPECT_EQ(press_points(scene, 0, true, false).size(), vertices);
+  const auto ten = press_points(scene, 10, true, true);
   ASSERT_EQ(ten.size(), 20U);
   EXPECT_EQ(ten[0].vertex, 0U);
   EXPECT_GE(ten[9].vertex, 9 * vertices / 10);
-  for (const PressPlace& place : press_places(scene, 0, false, true)) {
+  for (const PressPoint& place : press_points(scene, 0, false, true)) {
     EXPECT_EQ(place.way, PressWay::kUpright);
     EXPECT_GE(scene.organ_mesh.vertex_normal[place.vertex].z, 0.5);
   }
@@ -195,12 +195,12 @@ TEST(PressSweep, WorstPlaceComesFirst) {
 
 TEST(PressSweep, ErrorWhereItWasStoppedOrTheLawHasNoMeaning) {
   Scene scene = tests::make_plate_scene();
-  const std::vector<PressPlace> places{{0, PressWay::kSquare}};
+  const std::vector<PressPoint> places{{0, PressWay::kSquare}};
   const auto stopped =
       sweep_presses(scene, places, {}, [](std::size_t, std::size_t) { return false; });
-  EXPECT_EQ(tests::sentence_of(stopped), "the sweep was stopped");
+  EXPECT_EQ(tests::message_of(stopped), "the sweep was stopped");
   scene.rhombus.units = 0;
-  EXPECT_NE(tests::sentence_of(sweep_presses(scene, places, {})), "");
+  EXPECT_NE(tests::message_of(sweep_presses(scene, places, {})), "");
 }
 
 }  // namespace tact::model::scene::press_sweep_test

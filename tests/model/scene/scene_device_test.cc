@@ -26,11 +26,11 @@ Result<Scene> load(const std::string& text, const Overrides& overrides = {}) {
 /// Empty where the scene is taken.
 std::string why_refused(const std::string& text, const Overrides& overrides = {}) {
   const Result<Scene> scene = load(text, overrides);
-  return scene ? "" : scene.error().sentence;
+  return scene ? "" : scene.error().message;
 }
 
-bool is_reported(const std::string& sentence, const std::string& words) {
-  return sentence.find(words) != std::string::npos;
+bool is_reported(const std::string& message, const std::string& words) {
+  return message.find(words) != std::string::npos;
 }
 
 TEST(SceneDevice, RefusesALimitThatItsDrivesWouldNotKeep) {
@@ -96,8 +96,8 @@ TEST(SceneDevice, ASceneOfTheSimulationSetToDrivesNeedsTheirSections) {
   const std::string liver = TACT_SOURCE_DIR "/model/scenes/liver.toml";
   const Result<Scene> scene = load_scene(liver, {"device.kind=can-odrive"});
   ASSERT_FALSE(scene);
-  EXPECT_TRUE(is_reported(scene.error().sentence, "device.delta is missing"))
-      << scene.error().sentence;
+  EXPECT_TRUE(is_reported(scene.error().message, "device.delta is missing"))
+      << scene.error().message;
 }
 
 TEST(SceneDevice, OneValueAnArmIsThreeNumbersAndSaysWhichIsWrong) {

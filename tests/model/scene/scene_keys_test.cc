@@ -12,7 +12,7 @@
 #include <optional>
 #include <set>
 
-#include "model/reader/scene_words.h"
+#include "model/reader/scene_text.h"
 #include "model/scene/tissue.h"
 #include "tests/support/device_scene.h"
 #include "tests/support/example_delta.h"
@@ -50,7 +50,7 @@ std::set<std::string> keys_of_shipped_scenes() {
        {kLiver, kScenes + "heart.toml", kScenes + "skin.toml", kScenes + "gum.toml",
         kScenes + "maintenance.toml", kScenes + "liver_twist.toml", kDevices}) {
     const Result<reader::SceneDocument> document = reader::load_scene_document(path, {});
-    EXPECT_TRUE(document) << document.error().sentence;
+    EXPECT_TRUE(document) << document.error().message;
     if (document) collect(document->root, "", keys);
   }
   return keys;
@@ -76,7 +76,7 @@ TEST(SceneReference, TheSectionsOfRealDevicesHoldTheDefaultsAndFitAScene) {
   const std::string path = testing::TempDir() + "on_real_devices.toml";
   std::ofstream(path) << tests::scene_on_real_devices();
   const Result<Scene> scene = load_scene(path, {});
-  ASSERT_TRUE(scene) << scene.error().sentence;
+  ASSERT_TRUE(scene) << scene.error().message;
   const DeviceSettings fresh;
   EXPECT_EQ(scene->device.kind, "can-odrive");
   const DeltaSettings& said = scene->device.delta;
@@ -139,8 +139,8 @@ TEST(Scene, CutAtAnyByteNeverCrashesAndSaysOneLine) {
     std::ofstream(path, std::ios::binary) << text.substr(0, length);
     const Result<Scene> scene = load_scene(path, {});
     ASSERT_FALSE(scene) << "its meshes are not here, cut at " << length;
-    ASSERT_TRUE(scene.error().sentence.starts_with(path + ":")) << scene.error().sentence;
-    ASSERT_EQ(scene.error().sentence.find('\n'), std::string::npos) << scene.error().sentence;
+    ASSERT_TRUE(scene.error().message.starts_with(path + ":")) << scene.error().message;
+    ASSERT_EQ(scene.error().message.find('\n'), std::string::npos) << scene.error().message;
   }
 }
 
@@ -155,7 +155,7 @@ TEST(Scene, WithAnyByteSpoiltNeverCrashesAndSaysOneLine) {
     std::ofstream(path, std::ios::binary) << spoilt;
     const Result<Scene> scene = load_scene(path, {});
     ASSERT_FALSE(scene) << "its meshes are not here, spoilt at " << i;
-    ASSERT_EQ(scene.error().sentence.find('\n'), std::string::npos) << scene.error().sentence;
+    ASSERT_EQ(scene.error().message.find('\n'), std::string::npos) << scene.error().message;
   }
 }
 
@@ -176,7 +176,7 @@ double surface_z_m(const mesh::SurfaceMesh& mesh, double x_m, double y_m) {
 
 class Liver : public testing::Test {
  protected:
-  void SetUp() override { ASSERT_TRUE(scene_) << scene_.error().sentence; }
+  void SetUp() override { ASSERT_TRUE(scene_) << scene_.error().message; }
   const Result<Scene> scene_ = load_scene(kLiver, {});
 };
 
@@ -249,7 +249,7 @@ class UpAndDown {
 TEST_F(Liver, AHandleMovesTheToolsOriginAndNothingOfTheToolInTheRoom) {
   const Vec3 handle_m{0.0, 0.01, 0.093};
   const auto held = load_scene(kLiver, {"tool.handle_m=[0.0, 0.01, 0.093]"});
-  ASSERT_TRUE(held) << held.error().sentence;
+  ASSERT_TRUE(held) << held.error().message;
   ASSERT_EQ(held->hand.path.size(), scene_->hand.path.size());
   for (std::size_t i = 0; i < scene_->hand.path.size(); ++i)
     EXPECT_LT(norm(held->hand.path[i].position_m - scene_->hand.path[i].position_m - handle_m),

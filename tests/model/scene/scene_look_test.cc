@@ -14,21 +14,21 @@ const std::string kPlain = TACT_SOURCE_DIR "/tests/data/scenes/plain.toml";
 
 std::string complaint(const std::vector<std::string>& overrides) {
   const Result<Scene> scene = load_scene(kPlain, overrides);
-  return scene ? "" : scene.error().sentence;
+  return scene ? "" : scene.error().message;
 }
 
 TEST(SceneLook, LooksAsItSaysElseLikeTissueUnderSteel) {
   const Result<Scene> plain = load_scene(kPlain, {});
-  ASSERT_TRUE(plain) << plain.error().sentence;
+  ASSERT_TRUE(plain) << plain.error().message;
   EXPECT_EQ(plain->look.organ, "tissue");
   EXPECT_EQ(plain->look.tool, "steel");
   EXPECT_TRUE(plain->look.piece_color_ratio.empty());
   const Result<Scene> dressed = load_scene(kPlain, {"look.organ=\"skin\"", "look.tool=\"glove\""});
-  ASSERT_TRUE(dressed) << dressed.error().sentence;
+  ASSERT_TRUE(dressed) << dressed.error().message;
   EXPECT_EQ(dressed->look.organ, "skin");
   EXPECT_EQ(dressed->look.tool, "glove");
   const Result<Scene> cover = load_scene(TACT_SOURCE_DIR "/model/scenes/maintenance.toml", {});
-  ASSERT_TRUE(cover) << cover.error().sentence;
+  ASSERT_TRUE(cover) << cover.error().message;
   EXPECT_EQ(cover->look.organ, "paint");
   EXPECT_EQ(cover->look.piece_color_ratio,
             (std::vector<Vec3>{{0.92, 1.0, 1.06}, {1.55, 0.72, 0.4}}));
@@ -55,7 +55,7 @@ TEST(SceneLook, ShowsTheColoursOfItsMeshWhereItAsksForThem) {
   auto asked = mesh;
   asked.emplace_back("look.vertex_colors=true");
   const Result<Scene> coloured = load_scene(kPlain, asked);
-  ASSERT_TRUE(coloured) << coloured.error().sentence;
+  ASSERT_TRUE(coloured) << coloured.error().message;
   EXPECT_EQ(coloured->look.vertex_color,
             (std::vector<mesh::Rgb>{{255, 0, 0}, {0, 255, 0}, {0, 0, 255}}));
   const Result<Scene> plain = load_scene(kPlain, mesh);

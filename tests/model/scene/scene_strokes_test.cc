@@ -26,7 +26,7 @@ Written write(std::vector<Stroke> strokes, bool repeat = false,
   reader::SceneVisit visit(&document);
   for (std::size_t i = 0; i < strokes.size(); ++i) {
     const auto line = static_cast<std::uint32_t>(i + 1);
-    strokes[i].place = {"s:" + std::to_string(line), line};
+    strokes[i].position = {"s:" + std::to_string(line), line};
   }
   const HandScript script{kHome_m, kSite_m, {0, 0, -2}, handle_m, repeat, strokes, {}};
   auto path = way_points(script, std::span(&sphere, 1), kLimits, visit);
@@ -134,7 +134,7 @@ constexpr Vec3 kTip_m{0, 0, 0.004 - 0.093};  // from the handle
 
 TEST(Strokes, TurnAboutTheTipLeavesItInPlaceOnTheWholeWay) {
   const Written w = write({press(0.01, 1.0), turn({0, 3, 0}, 0.3)}, false, kJaw, kHandle_m);
-  ASSERT_FALSE(w.problem) << w.problem->sentence;
+  ASSERT_FALSE(w.problem) << w.problem->message;
   const Vec3 tip_m = point_W_m(w.path[1], kTip_m);
   EXPECT_LT(norm(tip_m - (kSite_m + Vec3{0, 0, 0.004 - 0.01})), 1e-15);
   for (double t = 1.0; t <= 2.0; t += 0.125)
@@ -154,7 +154,7 @@ TEST(Strokes, TurnsAreCountedFromRestAndAReleaseTurnsBack) {
   EXPECT_EQ(w.path[2].rotation_rad, (Vec3{0.1, 0, 0}));
   EXPECT_EQ(w.path[3].rotation_rad, (Vec3{0.1, 0, 0}));
   expect_at(w.path[4], 6.0, kHome_m, 0.0);
-  EXPECT_FALSE(w.problem) << w.problem->sentence;
+  EXPECT_FALSE(w.problem) << w.problem->message;
 }
 
 TEST(Strokes, PullAfterATurnGoesUpWhereTheTipIsWithItsReach) {
@@ -169,13 +169,13 @@ TEST(Strokes, PullAfterATurnGoesUpWhereTheTipIsWithItsReach) {
 TEST(Strokes, RefuseAHandleOutsideTheWorkspace) {
   const Written w = write({press(0.0, 1.0)}, false, kJaw, {0, 0.17, -0.05});
   ASSERT_TRUE(w.problem);
-  EXPECT_NE(w.problem->sentence.find("(0.0100, 0.1900, -0.0200) m, outside"), std::string::npos)
-      << w.problem->sentence;
+  EXPECT_NE(w.problem->message.find("(0.0100, 0.1900, -0.0200) m, outside"), std::string::npos)
+      << w.problem->message;
 }
 
 TEST(Strokes, TimesAlwaysAscend) {
   const Written w = write({press(0.01, 0.05), kGrip, pull(0.0), kRelease, kHold, kRelease}, true);
-  ASSERT_FALSE(w.problem) << w.problem->sentence;
+  ASSERT_FALSE(w.problem) << w.problem->message;
   for (std::size_t i = 1; i < w.path.size(); ++i)
     EXPECT_GT(w.path[i].time_s, w.path[i - 1].time_s) << i;
 }
@@ -185,14 +185,14 @@ TEST(Strokes, RefuseToPullWithAnOpenGrip) {
       "s:4: hand.stroke.3 pulls with an open grip; put a grip stroke before it";
   const Written w = write({press(0.0, 1.0), kGrip, kRelease, pull(0.01)});
   ASSERT_TRUE(w.problem);
-  EXPECT_EQ(w.problem->sentence, said);
+  EXPECT_EQ(w.problem->message, said);
 }
 
 TEST(Strokes, RefuseToLeaveTheWorkspace) {
   const Vec3 step_m{0.1, 0, 0};
   const Written w = write({press(0.0, 1.0), slide(step_m), slide(step_m)});
   ASSERT_TRUE(w.problem);
-  EXPECT_EQ(w.problem->sentence,
+  EXPECT_EQ(w.problem->message,
             "s:3: hand.stroke.2 ends at (0.2100, 0.0200, 0.0350) m, outside the workspace of "
             "[limits]; move it inside");
   EXPECT_FALSE(write({press(0.0, 1.0), slide(step_m)}).problem);
@@ -203,7 +203,7 @@ TEST(Strokes, RefuseToLeaveTheWorkspace) {
 TEST(Strokes, RefuseToRepeatFromAnywhereButHome) {
   const Written w = write({press(0.0, 1.0), kHold}, true);
   ASSERT_TRUE(w.problem);
-  EXPECT_EQ(w.problem->sentence,
+  EXPECT_EQ(w.problem->message,
             "s:2: hand.repeat would make the hand jump home from here; end with a release stroke");
   EXPECT_FALSE(write({press(0.0, 1.0), kRelease}, true).problem);
   EXPECT_FALSE(write({press(0.0, 1.0), kHold}, false).problem);
@@ -214,7 +214,7 @@ TEST(Strokes, RefuseAHomeOutsideTheWorkspace) {
   const Result<Scene> scene = load_scene(plain, {"hand.home_m=[0, 0, 0.19]"});
   ASSERT_FALSE(scene);
   EXPECT_EQ(
-      scene.error().sentence,
+      scene.error().message,
       "--set hand.home_m=[0, 0, 0.19]: hand.home_m is (0.0000, 0.0000, 0.1900) m, outside the "
       "workspace of [limits]; move it inside");
 }
@@ -224,7 +224,7 @@ TEST(Strokes, SayThatAPlaceIsOfTheHandleWhereThatIsNotTheOrigin) {
   const auto refusal = [&](const std::string& home, const std::string& handle) {
     const Result<Scene> scene =
         load_scene(plain, {"hand.home_m=" + home, "tool.handle_m=" + handle});
-    return scene ? std::string() : scene.error().sentence;
+    return scene ? std::string() : scene.error().message;
   };
   const std::string home = refusal("[0, 0, 0.09]", "[0, 0, 0.1]");
   EXPECT_NE(home.find("the handle at hand.home_m + tool.handle_m is (0.0000, 0.0000, 0.1900) m"),

@@ -31,12 +31,11 @@ std::string text_of(const std::string& path) {
 std::string complaint(const std::string& path, const Overrides& overrides = {}) {
   const Result<Scene> scene = load_scene(path, overrides);
   if (scene) return "";
-  const std::string& sentence = scene.error().sentence;
-  EXPECT_EQ(sentence.find('\n'), sentence.npos) << "one line: " << sentence;
-  EXPECT_NE(sentence.find("; "), sentence.npos)
-      << "says what is wrong; what is right: " << sentence;
+  const std::string& message = scene.error().message;
+  EXPECT_EQ(message.find('\n'), message.npos) << "one line: " << message;
+  EXPECT_NE(message.find("; "), message.npos) << "says what is wrong; what is right: " << message;
   const std::string folder = std::filesystem::path(path).parent_path().string() + "/";
-  return sentence.starts_with(folder) ? sentence.substr(folder.size()) : sentence;
+  return message.starts_with(folder) ? message.substr(folder.size()) : message;
 }
 
 /// The plain scene with one text exchanged, in a file of its own.
@@ -55,7 +54,7 @@ std::string name_of(const std::string& path) { return std::filesystem::path(path
 
 TEST(Scene, HasWhatItsFileSays) {
   const Result<Scene> scene = load_scene(kPlain, {});
-  ASSERT_TRUE(scene) << scene.error().sentence;
+  ASSERT_TRUE(scene) << scene.error().message;
   EXPECT_EQ(scene->path, kPlain);
   EXPECT_EQ(scene->name, "plain");
   EXPECT_EQ(scene->rate_Hz, 1000.0);
@@ -93,7 +92,7 @@ TEST(Scene, HasWhatItsFileSays) {
 
 TEST(Scene, FillsInDefaults) {
   const Result<Scene> scene = load_scene(kPlain, {});
-  ASSERT_TRUE(scene) << scene.error().sentence;
+  ASSERT_TRUE(scene) << scene.error().message;
   EXPECT_EQ(scene->table_knots, 65u);
   EXPECT_EQ(scene->contact.grip_close_ratio, 0.7);
   EXPECT_EQ(scene->contact.grip_open_ratio, 0.5);
@@ -101,7 +100,7 @@ TEST(Scene, FillsInDefaults) {
 
 TEST(Scene, BringsItsMeshesInMetresAndTheOrganWhereItLies) {
   const Result<Scene> scene = load_scene(kPlain, {"tool.mesh_unit_m=0.0001"});
-  ASSERT_TRUE(scene) << scene.error().sentence;
+  ASSERT_TRUE(scene) << scene.error().message;
   const mesh::MeshSummary organ = summarize(scene->organ_mesh), tool = summarize(scene->tool_mesh);
   EXPECT_EQ(organ.triangles, 12u);
   EXPECT_NEAR(organ.low_m.z, -0.04, 1e-15) << "a box of 40 mm, 20 mm below the origin of W";
@@ -116,11 +115,11 @@ TEST(Scene, FindsItsMeshesFromItsOwnFolder) {
   std::filesystem::current_path(kData);
   const Result<Scene> scene = load_scene("plain.toml", {});
   std::filesystem::current_path(here);
-  ASSERT_TRUE(scene) << scene.error().sentence;
+  ASSERT_TRUE(scene) << scene.error().message;
   EXPECT_EQ(scene->organ.mesh_path, kData + "box.obj");
 }
 
-// Each file says in its first line what must be said of it: "# line: start of the sentence".
+// Each file says in its first line what must be said of it: "# line: start of the message".
 TEST(Scene, RefusesEveryBadFileWithItsLineAndWhatIsAllowed) {
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(kData + "bad")) {
@@ -149,8 +148,8 @@ TEST(Scene, RefusesALawThatItDoesNotDescribe) {
             said.npos)
       << said;
   const std::string varies =
-      complaint(edited("law = \"rhombus\"", "law = \"rhombus\"\nvaries_by_place = true"));
-  EXPECT_NE(varies.find("varies_by_place = true needs a section [compliance]"), varies.npos)
+      complaint(edited("law = \"rhombus\"", "law = \"rhombus\"\nvaries_over_surface = true"));
+  EXPECT_NE(varies.find("varies_over_surface = true needs a section [compliance]"), varies.npos)
       << varies;
 }
 
@@ -200,7 +199,7 @@ TEST(Scene, RefusesAMeshThatIsNoneAtTheLineThatNamesIt) {
 TEST(Scene, HashChangesWithTheTextAndWithEachOverride) {
   const auto hash = [](const std::string& path, const Overrides& overrides) {
     const Result<Scene> scene = load_scene(path, overrides);
-    EXPECT_TRUE(scene) << scene.error().sentence;
+    EXPECT_TRUE(scene) << scene.error().message;
     return scene ? scene->hash : "";
   };
   const std::string plain = hash(kPlain, {});
@@ -214,7 +213,7 @@ TEST(Scene, HashChangesWithTheTextAndWithEachOverride) {
 TEST(Scene, HashChangesWithTheComplianceMapThatIsFelt) {
   const std::string path = std::string(TACT_BINARY_DIR) + "/scene_hash.compliance";
   const auto own = load_scene(kLiver, {});
-  ASSERT_TRUE(own) << own.error().sentence;
+  ASSERT_TRUE(own) << own.error().message;
   const auto hash = [&](float give, const std::string& law) {
     const tissue::ComplianceMap map{.poisson_ratio = 0.45,
                                     .patch_radius_m = 0.008,
@@ -226,30 +225,30 @@ TEST(Scene, HashChangesWithTheComplianceMapThatIsFelt) {
                                     .ring_times_E_per_m = {1.0F}};
     EXPECT_TRUE(write_compliance_map(map, path));
     const auto scene = load_scene(kLiver, {"compliance.map=" + path, law});
-    EXPECT_TRUE(scene) << scene.error().sentence;
+    EXPECT_TRUE(scene) << scene.error().message;
     return scene ? scene->hash : "";
   };
   for (const char* rendered :
-       {"law=compliance", "varies_by_place=true", "law=spring_patch", "law=auto"}) {
+       {"law=compliance", "varies_over_surface=true", "law=spring_patch", "law=auto"}) {
     EXPECT_EQ(hash(40.0F, rendered), hash(40.0F, rendered));
     EXPECT_NE(hash(40.0F, rendered), hash(40.1F, rendered)) << rendered;
   }
-  EXPECT_EQ(hash(40.0F, "varies_by_place=false"), hash(40.1F, "varies_by_place=false"));
+  EXPECT_EQ(hash(40.0F, "varies_over_surface=false"), hash(40.1F, "varies_over_surface=false"));
 }
 
 TEST(Scene, VariesByPlaceOnItsOwnOrganAloneAndSaysSo) {
   const auto own = load_scene(kLiver, {});
-  ASSERT_TRUE(own) << own.error().sentence;
-  EXPECT_TRUE(own->varies_by_place);
+  ASSERT_TRUE(own) << own.error().message;
+  EXPECT_TRUE(own->varies_over_surface);
   EXPECT_EQ(own->note, "");
   const auto other = load_scene(kLiver, {"organ.mesh=meshes/heart_10026.obj"});
-  ASSERT_TRUE(other) << other.error().sentence;
-  EXPECT_FALSE(other->varies_by_place);
+  ASSERT_TRUE(other) << other.error().message;
+  EXPECT_FALSE(other->varies_over_surface);
   EXPECT_NE(other->note.find("is of another organ than"), std::string::npos) << other->note;
   EXPECT_NE(other->note.find("tact-lab condense " + kLiver), std::string::npos) << "the remedy";
   const auto unread = load_scene(kLiver, {"compliance.map=none.compliance"});
-  ASSERT_TRUE(unread) << unread.error().sentence;
-  EXPECT_TRUE(unread->varies_by_place) << "a file that is not there is an error of the law";
+  ASSERT_TRUE(unread) << unread.error().message;
+  EXPECT_TRUE(unread->varies_over_surface) << "a file that is not there is an error of the law";
 }
 
 TEST(Scene, RefusesKeysThatDoNothing) {

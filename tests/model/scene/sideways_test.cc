@@ -7,18 +7,18 @@
 #include <nlohmann/json.hpp>
 
 #include "model/contact/contact.h"
-#include "model/contact/site_law.h"
+#include "model/contact/contact_law.h"
 #include "model/scene/scene.h"
 #include "model/scene/tissue.h"
 #include "tests/support/sentence.h"
 
 namespace tact::model::scene::sideways_test {
 
-contact::Place place_of(const mesh::SurfaceMesh& mesh, std::uint32_t vertex) {
+contact::SurfacePoint place_of(const mesh::SurfaceMesh& mesh, std::uint32_t vertex) {
   for (std::uint32_t t = 0; t < mesh.triangle.size(); ++t)
     for (std::size_t i = 0; i < 3; ++i)
       if (mesh.triangle[t][i] == vertex) {
-        contact::Place place{.triangle = t, .weight = {}};
+        contact::SurfacePoint place{.triangle = t, .weight = {}};
         place.weight[i] = 1.0;
         return place;
       }
@@ -31,9 +31,9 @@ TEST(Sideways, StiffnessMatchesFiniteElementsBothWaysWithin15Percent) {
   std::ifstream file(TACT_SOURCE_DIR "/tests/data/reference/liver_sideways.json");
   const auto reference = nlohmann::json::parse(file);
   const auto scene = load_scene(TACT_SOURCE_DIR "/model/scenes/liver.toml", {});
-  ASSERT_EQ(tests::sentence_of(scene), "");
+  ASSERT_EQ(tests::message_of(scene), "");
   const auto tissue = make_tissue(*scene);
-  ASSERT_EQ(tests::sentence_of(tissue), "");
+  ASSERT_EQ(tests::message_of(tissue), "");
   ASSERT_EQ(reference.at("cases").size(), 18U);
   double worst = 0.0;
   for (const auto& one : reference.at("cases")) {
@@ -44,7 +44,7 @@ TEST(Sideways, StiffnessMatchesFiniteElementsBothWaysWithin15Percent) {
     const contact::Tensor2 compliance_m_per_N =
         (*tissue)
             ->law()
-            .site_law()
+            .contact_law()
             .tangent_compliance(place_of(scene->organ_mesh, vertex), one.at("held"), axes)
             .at(one.at("contact_radius_m"));
     const double ratio = 1.0 / compliance_m_per_N.xx / one.at("stiffness_N_per_m").get<double>();
@@ -72,15 +72,15 @@ TEST(Sideways, EveryShippedSceneTakesItsStiffnessFromItsTissue) {
        {Want{"heart", 89.0}, {"skin", 67.0}, {"gum", 112.0}, {"maintenance", 267.0}}) {
     const auto scene =
         load_scene(TACT_SOURCE_DIR "/model/scenes/" + std::string(want.scene) + ".toml", {});
-    ASSERT_EQ(tests::sentence_of(scene), "");
+    ASSERT_EQ(tests::message_of(scene), "");
     EXPECT_EQ(scene->contact.sliding_stiffness_N_per_m, 0.0) << want.scene;
     const auto tissue = make_tissue(*scene);
-    ASSERT_EQ(tests::sentence_of(tissue), "");
+    ASSERT_EQ(tests::message_of(tissue), "");
     const std::uint32_t vertex = vertex_near(scene->organ_mesh, scene->hand_site_m);
     const double compliance_m_per_N =
         (*tissue)
             ->law()
-            .site_law()
+            .contact_law()
             .tangent_compliance(place_of(scene->organ_mesh, vertex), true,
                                 contact::axes_of(scene->organ_mesh.vertex_normal[vertex]))
             .at(scene->tool.spheres[0].radius_m)
@@ -93,9 +93,9 @@ TEST(Sideways, EveryShippedSceneTakesItsStiffnessFromItsTissue) {
 TEST(Sideways, ASpringPatchHasAStiffnessOfItsOwn) {
   const auto scene =
       load_scene(TACT_SOURCE_DIR "/model/scenes/liver.toml", {"law=\"spring_patch\""});
-  ASSERT_EQ(tests::sentence_of(scene), "");
+  ASSERT_EQ(tests::message_of(scene), "");
   const auto tissue = make_tissue(*scene);
-  ASSERT_EQ(tests::sentence_of(tissue), "");
+  ASSERT_EQ(tests::message_of(tissue), "");
   contact::Contact contact((*tissue)->contact_scene());
   const auto dragged_N = [&](double grip_ratio) {
     contact.reset();

@@ -19,13 +19,13 @@ const std::string kLinear = "compliance.large_strain=false";  // the organ stays
 
 Scene shipped(const std::string& name, const Overrides& overrides = {}) {
   auto scene = load_scene(TACT_SOURCE_DIR "/model/scenes/" + name + ".toml", overrides);
-  EXPECT_TRUE(scene) << scene.error().sentence;
+  EXPECT_TRUE(scene) << scene.error().message;
   return scene ? std::move(*scene) : Scene{};
 }
 
 std::unique_ptr<TissueLaw> made(const Scene& scene, LawKind kind) {
   auto law = make_tissue_law(scene, kind);
-  EXPECT_TRUE(law) << law.error().sentence;
+  EXPECT_TRUE(law) << law.error().message;
   return law ? std::move(*law) : nullptr;
 }
 
@@ -33,7 +33,7 @@ std::unique_ptr<TissueLaw> made(const Scene& scene) { return made(scene, scene.l
 
 std::string refusal(const Scene& scene, LawKind kind) {
   const auto law = make_tissue_law(scene, kind);
-  return law ? "" : law.error().sentence;
+  return law ? "" : law.error().message;
 }
 
 TEST(TissueLaw, SeesAStiffPullThatTearsWithinOneSample) {
@@ -63,12 +63,12 @@ TEST(TissueLaw, SpringsInARowAreDrawnAsTheDentOfAHalfSpace) {
   constexpr double kDepth_m = 0.003, kRadius_m = 0.0065;  // of the fingertip
   const auto law = made(shipped("heart"));
   std::array<double, 32> ring_m{};
-  const std::size_t rings = law->site_law().profile({.indentation_m = kDepth_m}, ring_m);
+  const std::size_t rings = law->contact_law().profile({.indentation_m = kDepth_m}, ring_m);
   double sum_m2 = 0.0;
   std::size_t count = 0;
   for (std::size_t j = 0; j + 1 < rings; ++j, ++count) {
-    const double s =
-        static_cast<double>(j) * law->site_law().ring_pitch_m() / std::sqrt(kRadius_m * kDepth_m);
+    const double s = static_cast<double>(j) * law->contact_law().ring_pitch_m() /
+                     std::sqrt(kRadius_m * kDepth_m);
     const double u_m = s > 1.0 ? kDepth_m / std::numbers::pi *
                                      ((2.0 - s * s) * std::asin(1.0 / s) + std::sqrt(s * s - 1.0))
                                : kDepth_m * (1.0 - 0.5 * s * s);
@@ -79,7 +79,7 @@ TEST(TissueLaw, SpringsInARowAreDrawnAsTheDentOfAHalfSpace) {
 }
 
 TEST(TissueLaw, TitlesNameTheirSizes) {
-  const Scene liver = shipped("liver", {"varies_by_place=false"});
+  const Scene liver = shipped("liver", {"varies_over_surface=false"});
   const std::string patch = "rhombus chain, energy form, 10 units, in parallel under the tip";
   EXPECT_EQ(made(liver, LawKind::kRhombus)->title(), patch);
   EXPECT_EQ(made(liver, LawKind::kDiscStack)->title(), "disc stack, linear, 20 layers");
@@ -99,9 +99,9 @@ TEST(TissueLaw, ZeroRingsAreAsFewAsTheToleranceAllows) {
 
 TEST(TissueLaw, WhatVariesIsInSeriesWithTheGiveOfEachVertex) {
   const Scene varied = shipped("liver", {kLinear}),
-              same = shipped("liver", {"varies_by_place=false"});
+              same = shipped("liver", {"varies_over_surface=false"});
   const auto family = read_scene_family(varied, false);
-  ASSERT_TRUE(family) << family.error().sentence;
+  ASSERT_TRUE(family) << family.error().message;
   const auto compliance_m_per_N = [&](float kappa) {
     return family->curve[static_cast<std::size_t>(kappa)].regular_m_per_N();
   };
@@ -116,8 +116,8 @@ TEST(TissueLaw, WhatVariesIsInSeriesWithTheGiveOfEachVertex) {
       // between two curves energies are blended: CF-2 says how near that is to the place's own
       if (std::abs(kappa - std::floor(kappa)) > 0.002F || kappa < 1.0F || kappa > 13.0F) continue;
       const contact::Indentation in{
-          .place = {t, {1, 0, 0}}, .indentation_m = depth_m, .held = true};
-      const double force_N = law->site_law().respond(in).law.force_N;
+          .surface_point = {t, {1, 0, 0}}, .indentation_m = depth_m, .held = true};
+      const double force_N = law->contact_law().respond(in).law.force_N;
       const double indentation_m = depth_m - compliance_m_per_N(kappa) * force_N;
       const double tip_N = tip->curve()->respond(indentation_m).force_N;
       ASSERT_NEAR(force_N, tip_N, 2e-3 * std::abs(tip_N)) << t << " at " << depth_m;
@@ -134,7 +134,7 @@ TEST(TissueLaw, WhatVariesIsInSeriesWithTheGiveOfEachVertex) {
 TEST(TissueLaw, IsAtMostHalfAsStiffAgainNearTheHeldSide) {
   const Overrides stiff{"rhombus.normal_stiffness_N_per_m=16", "pull.stiffness_N_per_m=300"};
   Overrides alone = stiff;
-  alone.emplace_back("varies_by_place=false");
+  alone.emplace_back("varies_over_surface=false");
   const double ratio = made(shipped("liver", stiff))->stiffness_N_per_m() /
                        made(shipped("liver", alone))->stiffness_N_per_m();
   EXPECT_GT(ratio, 1.2);
@@ -142,7 +142,7 @@ TEST(TissueLaw, IsAtMostHalfAsStiffAgainNearTheHeldSide) {
 }
 
 TEST(TissueLaw, OneChainUnderTheWholeTipOrMoreTheDeeperItSinks) {
-  const Overrides tip{"varies_by_place=false", "pull.limit_m=0.01"};
+  const Overrides tip{"varies_over_surface=false", "pull.limit_m=0.01"};
   const auto patch = made(shipped("liver", tip));
   Overrides one = tip;
   one.emplace_back("rhombus.area_m2=0");
@@ -156,10 +156,10 @@ TEST(TissueLaw, OneChainUnderTheWholeTipOrMoreTheDeeperItSinks) {
 
 TEST(TissueLaw, LargeStrainSoftensTheComplianceLaw) {
   EXPECT_TRUE(ComplianceSettings{}.large_strain) << "where the scene does not say";
-  const contact::Indentation in{.place = {97, {1, 0, 0}}, .indentation_m = 0.003};
+  const contact::Indentation in{.surface_point = {97, {1, 0, 0}}, .indentation_m = 0.003};
   const auto force_N = [&](const Overrides& overrides, LawKind kind) {
     const Scene liver = shipped("liver", overrides);
-    return made(liver, kind)->site_law().respond(in).law.force_N;
+    return made(liver, kind)->contact_law().respond(in).law.force_N;
   };
   const double large_N = force_N({}, LawKind::kCompliance);
   EXPECT_LT(large_N, 0.98 * force_N({kLinear}, LawKind::kCompliance));
@@ -168,7 +168,7 @@ TEST(TissueLaw, LargeStrainSoftensTheComplianceLaw) {
 
 // Of the tip alone, with the organ that moves beside it.
 TEST(TissueLaw, AnOrganThatBendsHasTheLawOfTheTip) {
-  const Scene bends = shipped("liver"), same = shipped("liver", {"varies_by_place=false"});
+  const Scene bends = shipped("liver"), same = shipped("liver", {"varies_over_surface=false"});
   const auto law = made(bends), tip = made(same);
   ASSERT_NE(law->organ(), nullptr);
   EXPECT_EQ(tip->organ(), nullptr);
@@ -188,9 +188,9 @@ TEST(TissueLaw, OnlyHuntAndCrossleyResistSpeedAndLessWhereTheOrganGives) {
   double least_s_per_m = 1.0, most_s_per_m = 0.0;
   for (std::uint32_t t = 0; t < liver.organ_mesh.triangle.size(); t += 7) {
     const contact::Indentation in{
-        .place = {t, {1, 0, 0}}, .indentation_m = 0.005, .speed_mps = 0.05};
-    const double force_N = law->site_law().respond(in).law.force_N;
-    const double lambda = law->site_law().resistance_N(in, force_N) / (0.05 * force_N);
+        .surface_point = {t, {1, 0, 0}}, .indentation_m = 0.005, .speed_mps = 0.05};
+    const double force_N = law->contact_law().respond(in).law.force_N;
+    const double lambda = law->contact_law().resistance_N(in, force_N) / (0.05 * force_N);
     least_s_per_m = std::min(least_s_per_m, lambda), most_s_per_m = std::max(most_s_per_m, lambda);
   }
   EXPECT_LT(most_s_per_m, 0.1001) << "of the tip alone";
@@ -207,7 +207,8 @@ TEST(TissueLaw, SlopeAlongTheSurfaceIsThatOfTheEnergy) {
     int compared = 0;
     for (std::uint32_t t = 5; t < mesh.triangle.size(); t += 311) {
       const auto at = [&](double a, double b) {
-        return law->site_law().respond({.place = {t, {1.0 - a - b, a, b}}, .indentation_m = 0.005});
+        return law->contact_law().respond(
+            {.surface_point = {t, {1.0 - a - b, a, b}}, .indentation_m = 0.005});
       };
       const contact::TriangleCorners& corner = mesh.triangle[t];
       const double e = 1e-3;
@@ -231,14 +232,14 @@ TEST(TissueLaw, SlopeAlongTheSurfaceIsThatOfTheEnergy) {
 }
 
 TEST(TissueLaw, RefusesTipsOfTwoSizesWhereTheMapKnowsOne) {
-  Scene liver = shipped("liver", {"varies_by_place=false"});
+  Scene liver = shipped("liver", {"varies_over_surface=false"});
   liver.tool.spheres[1].radius_m = 0.005;
   const std::string words = "radii of 0.004 and 0.005 m";
   EXPECT_NE(refusal(liver, LawKind::kCompliance).find(words), std::string::npos);
   EXPECT_NE(refusal(liver, LawKind::kRhombus).find(words), std::string::npos);
   liver.rhombus_area_m2 = 0.0;
   EXPECT_EQ(refusal(liver, LawKind::kRhombus), "") << "one chain knows no tip";
-  liver.varies_by_place = true;
+  liver.varies_over_surface = true;
   EXPECT_NE(refusal(liver, LawKind::kRhombus).find(words), std::string::npos);
 }
 

@@ -10,13 +10,13 @@ namespace tact::model::scene::tissue_map_test {
 
 Scene liver(const std::vector<std::string>& overrides = {}) {
   auto scene = load_scene(TACT_SOURCE_DIR "/model/scenes/liver.toml", overrides);
-  EXPECT_TRUE(scene) << scene.error().sentence;
+  EXPECT_TRUE(scene) << scene.error().message;
   return scene ? std::move(*scene) : Scene{};
 }
 
 std::string refusal(const Scene& scene) {
   const auto map = read_scene_map(scene);
-  return map ? "" : map.error().sentence;
+  return map ? "" : map.error().message;
 }
 
 /// A map beside the scene, and never the one that the scene names: it may be another scene's.

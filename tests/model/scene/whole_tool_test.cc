@@ -31,10 +31,10 @@ class WholeTool : public ::testing::Test {
   void use(const char* law) {
     auto loaded = load_scene(TACT_SOURCE_DIR "/model/scenes/liver.toml",
                              {law, "compliance.large_strain=false", "contact.friction_ratio=0"});
-    EXPECT_EQ(tests::sentence_of(loaded), "");
+    EXPECT_EQ(tests::message_of(loaded), "");
     scene_ = std::move(*loaded);
     auto tissue = make_tissue(scene_);
-    EXPECT_EQ(tests::sentence_of(tissue), "");
+    EXPECT_EQ(tests::message_of(tissue), "");
     tissue_ = std::move(*tissue);
   }
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <memory>
 
-#include "model/contact/site.h"
+#include "model/contact/contact_point.h"
 #include "model/springs/spring_patch.h"
 #include "tests/support/shapes.h"
 
@@ -32,16 +32,17 @@ class PressedPatch {
                         std::uint32_t cells = 20)
       : mesh_(make_plate(0.1, cells)) {
     auto made = make_spring_patch(mesh_.view(), parameters);
-    if (!made) ADD_FAILURE() << made.error().sentence;
+    if (!made) ADD_FAILURE() << made.error().message;
     if (made) patch_ = std::move(*made);
   }
 
   /// Asks at a place and counts the work since the last question, with the nodes as they are: W is
   /// quadratic within a triangle, so the trapezoid rule is exact there.
-  model::contact::SiteResponse move_to(double x_m, double y_m, double depth_m, bool held = false) {
-    const model::contact::Site site = follow(mesh_.view(), triangle_, {x_m, y_m, 0.01});
-    triangle_ = site.place.triangle;
-    const model::Vec3 at_m = site.point_m;
+  model::contact::ContactLawResponse move_to(double x_m, double y_m, double depth_m,
+                                             bool held = false) {
+    const model::contact::ContactPoint law = follow(mesh_.view(), triangle_, {x_m, y_m, 0.01});
+    triangle_ = law.surface_point.triangle;
+    const model::Vec3 at_m = law.point_m;
     const auto before = ask(last_m_, last_depth_m_, held);
     const auto now = ask(at_m, depth_m, held);
     work_J_ += 0.5 * (before.law.force_N + now.law.force_N) * (depth_m - last_depth_m_) +
@@ -59,11 +60,11 @@ class PressedPatch {
   double work_J() const { return work_J_; }
 
  private:
-  model::contact::SiteResponse ask(const model::Vec3& at_m, double depth_m, bool held) {
-    const model::contact::Site site =
+  model::contact::ContactLawResponse ask(const model::Vec3& at_m, double depth_m, bool held) {
+    const model::contact::ContactPoint law =
         follow(mesh_.view(), triangle_, at_m + model::Vec3{0, 0, 0.01});
     return patch_->respond({.sphere = 0,
-                            .place = site.place,
+                            .surface_point = law.surface_point,
                             .normal = {0, 0, 1},
                             .indentation_m = depth_m,
                             .held = held});

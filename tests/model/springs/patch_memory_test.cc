@@ -215,12 +215,13 @@ TEST(PatchMemory, ASceneThatFadesMakesAPatchThatFades) {
   scene.tool.spheres = {{{}, 0.004}};
   scene.relaxation = {{0.5, 0.01}};
   const auto made = make_tissue_law(scene, scene::LawKind::kSpringPatch);
-  ASSERT_TRUE(made) << made.error().sentence;
-  contact::SiteLaw& law = (*made)->site_law();
+  ASSERT_TRUE(made) << made.error().message;
+  contact::ContactLaw& law = (*made)->contact_law();
   std::vector<double> force_N;
   for (int i = 0; i < 300; ++i) {
     force_N.push_back(
-        law.respond({.place = {420, {0.3, 0.3, 0.4}}, .indentation_m = kShallow_m}).law.force_N);
+        law.respond({.surface_point = {420, {0.3, 0.3, 0.4}}, .indentation_m = kShallow_m})
+            .law.force_N);
     law.advance();
   }
   scene.relaxation.clear();
@@ -228,10 +229,10 @@ TEST(PatchMemory, ASceneThatFadesMakesAPatchThatFades) {
   double elastic_N = 0.0;
   for (int i = 0; i < 300; ++i) {
     elastic_N = (*elastic)
-                    ->site_law()
-                    .respond({.place = {420, {0.3, 0.3, 0.4}}, .indentation_m = kShallow_m})
+                    ->contact_law()
+                    .respond({.surface_point = {420, {0.3, 0.3, 0.4}}, .indentation_m = kShallow_m})
                     .law.force_N;
-    (*elastic)->site_law().advance();
+    (*elastic)->contact_law().advance();
   }
   EXPECT_NEAR(force_N.back() / elastic_N, 0.5, 0.01);
   scene.relaxation = {{1.5, 0.01}};
@@ -249,7 +250,7 @@ TEST(PatchMemory, LeavesTheHeapAlone) {
   SpringPatch& patch = pressed.patch();
   const tests::NoAlloc guard;
   for (std::uint32_t i = 0; i < 200; ++i) {
-    patch.respond({.place = {200 + 2 * i, {0.3, 0.3, 0.4}}, .indentation_m = 0.002});
+    patch.respond({.surface_point = {200 + 2 * i, {0.3, 0.3, 0.4}}, .indentation_m = 0.002});
     patch.cut({{-0.05, 0, -0.01}, {-0.05, 0, 0.01}, {0.05, 0, -0.01}, {0.05, 0, 0.01}});
     patch.advance();
   }

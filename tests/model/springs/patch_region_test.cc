@@ -153,11 +153,11 @@ TEST(PatchRegion, HandingOverNeverGivesTheToolEnergy) {
             pressed.advance();
           }
         }
-        const double debt_J = pressed.patch().region().energy_deficit_J();
+        const double energy_deficit_J = pressed.patch().region().energy_deficit_J();
         EXPECT_GT(pressed.work_J(), -1e-9) << nodes << " nodes, " << stretch << ", " << speed_m;
         EXPECT_GT(least_J, -1e-9);
-        // 40 nodes are three rings: the rim stands in the dent
-        EXPECT_LT(debt_J, (nodes == 40 ? 0.1 : 0.01) * most_J)
+        // 40 nodes are three rings: the rim stands in the indentation
+        EXPECT_LT(energy_deficit_J, (nodes == 40 ? 0.1 : 0.01) * most_J)
             << nodes << " nodes, " << stretch << ", " << speed_m;
       }
     }

@@ -27,7 +27,7 @@ TEST(SpringNetwork, MatchesPenAndPaper) {
   EXPECT_NEAR(f[1].x, -2.3, 1e-12);
   EXPECT_EQ(f[1].y, 0.0) << "moving across a spring takes no force";
   EXPECT_NEAR(energy_J, 0.01, 1e-15);  // 200 * 0.01^2 / 2
-  // A probe 4 mm deep on a dent of 1 mm with 300 N/m pushes with 0.9 N.
+  // A probe 4 mm deep on an indentation of 1 mm with 300 N/m pushes with 0.9 N.
   ProbeSpring probe{
       .node = {0, 1, 2}, .weight = {0.5, 0.25, 0.25}, .depth_m = 0.004, .stiffness_N_per_m = 300.0};
   probe.push.fill({0, 0, -1});

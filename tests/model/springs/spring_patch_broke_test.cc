@@ -21,7 +21,7 @@ void throw_first_node(SpringPatch& patch, const Vec3& to_m) {
   const_cast<PatchRegion&>(patch.region()).network({}).node.position_m[0] = to_m;
 }
 
-bool is_silent(const contact::SiteResponse& r) {
+bool is_silent(const contact::ContactLawResponse& r) {
   return r.law.status == law::LawStatus::kSingular && r.law.force_N == 0.0 &&
          r.law.stiffness_N_per_m == 0.0 && r.slope_N == Vec3{};
 }
@@ -34,7 +34,7 @@ TEST(SpringPatchBroke, GivesNoForceUntilEverySphereHasLeft) {
     PressedPatch pressed(p);
     SpringPatch& patch = pressed.patch();
     const contact::Indentation beside{
-        .sphere = 1, .place = {500, {0.3, 0.3, 0.4}}, .indentation_m = 0.001};
+        .sphere = 1, .surface_point = {500, {0.3, 0.3, 0.4}}, .indentation_m = 0.001};
     for (int i = 0; i < 100; ++i) {
       EXPECT_EQ(pressed.move_to(0.001, 0.002, 0.003).law.status, law::LawStatus::kOk);
       patch.respond(beside);
@@ -56,7 +56,7 @@ TEST(SpringPatchBroke, GivesNoForceUntilEverySphereHasLeft) {
     EXPECT_TRUE(is_silent(patch.respond(beside)));
     patch.leave(1);
     EXPECT_FALSE(patch.is_broken());
-    const contact::SiteResponse fresh = pressed.move_to(0.001, 0.002, 0.002);
+    const contact::ContactLawResponse fresh = pressed.move_to(0.001, 0.002, 0.002);
     EXPECT_EQ(fresh.law.status, law::LawStatus::kOk);
     EXPECT_NEAR(fresh.law.force_N, 0.6, 1e-12) << "300 N/m * 2 mm, nothing remembered";
     EXPECT_EQ(guard.calls(), 0u);

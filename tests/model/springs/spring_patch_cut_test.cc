@@ -143,7 +143,7 @@ TEST(SpringPatchCut, TellsEveryCutInAMovingWindow) {
   p.nodes = 1000;
   p.node_mass_kg = 0.02;
   PressedPatch pressed(p, 60);
-  pressed.patch().respond({.place = {3600, {0.3, 0.3, 0.4}}, .indentation_m = 0.001});
+  pressed.patch().respond({.surface_point = {3600, {0.3, 0.3, 0.4}}, .indentation_m = 0.001});
   pressed.advance();
   for (const double y : {-0.0054, -0.0021, 0.0012, 0.0045})
     pressed.patch().cut(stroke(-0.02, 0.02, y));
@@ -165,7 +165,7 @@ TEST(SpringPatchCut, AFullListCutsNoMore) {
   p.nodes = 1024;
   p.node_mass_kg = 0.05;
   PressedPatch pressed(p, 40);
-  pressed.patch().respond({.place = {1640, {0.3, 0.3, 0.4}}, .indentation_m = 0.001});
+  pressed.patch().respond({.surface_point = {1640, {0.3, 0.3, 0.4}}, .indentation_m = 0.001});
   pressed.advance();
   for (int i = 0; i < 80; ++i) pressed.patch().cut(stroke(-0.06, 0.06, -0.0498 + 0.00125 * i));
   EXPECT_LE(pressed.patch().region().cut_triangles().size(), kMaxCutTriangles);

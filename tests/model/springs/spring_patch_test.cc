@@ -34,7 +34,7 @@ double settled_N(PressedPatch& pressed, double depth_m, bool held = false) {
 TEST(SpringPatch, MatchesPenAndPaper) {
   // Stiff tissue alone: the first tick gives the coupling, 300 N/m * 2 mm.
   PressedPatch pressed(soft_patch());
-  const contact::SiteResponse first = pressed.move_to(0.0, 0.0, 0.002);
+  const contact::ContactLawResponse first = pressed.move_to(0.0, 0.0, 0.002);
   EXPECT_NEAR(first.law.force_N, 0.6, 1e-12);
   EXPECT_NEAR(first.law.energy_J, 0.0006, 1e-15);
   EXPECT_NEAR(first.law.stiffness_N_per_m, 300.0, 1e-12);
@@ -78,7 +78,7 @@ TEST(SpringPatch, ForceIsTheSlopeOfEnergyWithTheNodesAsTheyAre) {
   settled_N(pressed, 0.003);
   const double e = 1e-7;
   for (const double d : {0.002, 0.003, 0.005}) {
-    const contact::SiteResponse here = pressed.move_to(0.0013, 0.0007, d);
+    const contact::ContactLawResponse here = pressed.move_to(0.0013, 0.0007, d);
     const auto energy_J = [&](double x_m, double y_m, double depth_m) {
       return pressed.move_to(x_m, y_m, depth_m).law.energy_J;
     };
@@ -147,8 +147,8 @@ TEST(SpringPatch, NeverPullsUnlessHeld) {
 
 TEST(SpringPatch, SaturatesBeyondItsWorkingDepth) {
   PressedPatch pressed(soft_patch());
-  const contact::SiteResponse limit = pressed.move_to(0.0, 0.0, 0.01);
-  const contact::SiteResponse beyond = pressed.move_to(0.0, 0.0, 0.5);
+  const contact::ContactLawResponse limit = pressed.move_to(0.0, 0.0, 0.01);
+  const contact::ContactLawResponse beyond = pressed.move_to(0.0, 0.0, 0.5);
   EXPECT_EQ(beyond.law.status, law::LawStatus::kSaturated);
   EXPECT_EQ(beyond.law.force_N, limit.law.force_N);
   EXPECT_NEAR(beyond.law.energy_J, limit.law.energy_J + 0.49 * limit.law.force_N, 1e-12);
@@ -158,18 +158,21 @@ TEST(SpringPatch, RefusesWhatIsNoNumberAndGoesOn) {
   PressedPatch pressed(soft_patch());
   settled_N(pressed, 0.003);
   SpringPatch& patch = pressed.patch();
-  const contact::Place good{420, {0.2, 0.3, 0.5}};
+  const contact::SurfacePoint good{420, {0.2, 0.3, 0.5}};
   const auto refused = [&patch](const contact::Indentation& in) {
-    const contact::SiteResponse r = patch.respond(in);
+    const contact::ContactLawResponse r = patch.respond(in);
     patch.advance();
     return r.law.status == law::LawStatus::kInvalid && r.law.force_N == 0.0 && r.slope_N == Vec3{};
   };
-  EXPECT_TRUE(refused({.place = good, .indentation_m = kNaN}));
-  EXPECT_TRUE(refused({.place = good, .indentation_m = std::numeric_limits<double>::infinity()}));
-  EXPECT_TRUE(refused({.place = {}, .indentation_m = 0.001}));
-  EXPECT_TRUE(refused({.place = {420, {kNaN, 0.5, 0.5}}, .indentation_m = 0.001}));
-  EXPECT_TRUE(refused({.sphere = contact::kMaxSpheres, .place = good, .indentation_m = 0.001}));
-  const contact::SiteResponse r = patch.respond({.place = good, .indentation_m = 0.001});
+  EXPECT_TRUE(refused({.surface_point = good, .indentation_m = kNaN}));
+  EXPECT_TRUE(
+      refused({.surface_point = good, .indentation_m = std::numeric_limits<double>::infinity()}));
+  EXPECT_TRUE(refused({.surface_point = {}, .indentation_m = 0.001}));
+  EXPECT_TRUE(refused({.surface_point = {420, {kNaN, 0.5, 0.5}}, .indentation_m = 0.001}));
+  EXPECT_TRUE(
+      refused({.sphere = contact::kMaxSpheres, .surface_point = good, .indentation_m = 0.001}));
+  const contact::ContactLawResponse r =
+      patch.respond({.surface_point = good, .indentation_m = 0.001});
   EXPECT_EQ(r.law.status, law::LawStatus::kOk);
   EXPECT_TRUE(std::isfinite(r.law.force_N));
 }
@@ -182,11 +185,11 @@ TEST(SpringPatch, FourSpheresPressAtOnce) {
   std::array<double, 4> force_N{};
   for (int i = 0; i < 2000; ++i) {
     for (std::uint32_t s = 0; s < 4; ++s)
-      force_N[s] =
-          pressed.patch()
-              .respond(
-                  {.sphere = s, .place = {300 + 40 * s, {0.3, 0.3, 0.4}}, .indentation_m = 0.002})
-              .law.force_N;
+      force_N[s] = pressed.patch()
+                       .respond({.sphere = s,
+                                 .surface_point = {300 + 40 * s, {0.3, 0.3, 0.4}},
+                                 .indentation_m = 0.002})
+                       .law.force_N;
     pressed.advance();
   }
   const double alone_N = settled_N(*std::make_unique<PressedPatch>(p), 0.002);
@@ -214,8 +217,8 @@ TEST(SpringPatch, TouchesAsManyNodesOnALargeMeshAsOnASmallOne) {
     SpringPatchParameters p = soft_patch();
     p.node_mass_kg = 0.01;
     PressedPatch pressed(p, cells);
-    const contact::Place middle{cells * cells + cells, {0.3, 0.3, 0.4}};
-    pressed.patch().respond({.place = middle, .indentation_m = 0.001});
+    const contact::SurfacePoint middle{cells * cells + cells, {0.3, 0.3, 0.4}};
+    pressed.patch().respond({.surface_point = middle, .indentation_m = 0.001});
     pressed.advance();
     nodes.insert(pressed.patch().region().vertices().size());
     springs.insert(pressed.patch().region().spring_count());
@@ -232,8 +235,8 @@ TEST(SpringPatch, LeavesTheHeapAlone) {
   contact::PatchShape shape;
   const tests::NoAlloc guard;
   for (std::uint32_t i = 0; i < 300; ++i) {
-    const contact::Place place{200 + 2 * i, {0.3, 0.3, 0.4}};
-    patch.respond({.place = place, .indentation_m = 0.002});
+    const contact::SurfacePoint surface_point{200 + 2 * i, {0.3, 0.3, 0.4}};
+    patch.respond({.surface_point = surface_point, .indentation_m = 0.002});
     patch.cut({{-0.05, 0.0, -0.01}, {-0.05, 0.0, 0.01}, {0.05, 0.0, -0.01}, {0.05, 0.0, 0.01}});
     patch.advance();
     patch.shape(shape);
@@ -244,17 +247,17 @@ TEST(SpringPatch, LeavesTheHeapAlone) {
 
 TEST(SpringPatch, SaysWhatIsWrongWithItsParameters) {
   const tests::PressedPatch pressed(soft_patch());
-  const auto sentence = [&pressed](const std::function<void(SpringPatchParameters&)>& change) {
+  const auto message = [&pressed](const std::function<void(SpringPatchParameters&)>& change) {
     SpringPatchParameters p = soft_patch();
     change(p);
     const auto made = make_spring_patch(pressed.mesh().view(), p);
-    return made ? std::string() : made.error().sentence;
+    return made ? std::string() : made.error().message;
   };
   const auto names = [&](const char* word,
                          const std::function<void(SpringPatchParameters&)>& change) {
-    EXPECT_NE(sentence(change).find(word), std::string::npos) << word << ": " << sentence(change);
+    EXPECT_NE(message(change).find(word), std::string::npos) << word << ": " << message(change);
   };
-  EXPECT_EQ(sentence([](auto&) {}), "");
+  EXPECT_EQ(message([](auto&) {}), "");
   names("surface_stiffness", [](auto& p) { p.tissue.surface_stiffness_N_per_m = 0.0; });
   names("body_stiffness", [](auto& p) { p.tissue.body_stiffness_N_per_m = kNaN; });
   names("damping_time", [](auto& p) { p.tissue.damping_time_s = -1.0; });

@@ -92,14 +92,14 @@ TEST(SpringStepCheck, SaysWhatToChange) {
   const auto error = check_step(net.view(), {.method = kHalf, .step_s = 0.001}, kNoProbe);
   ASSERT_TRUE(error);
   for (const char* word : {"midpoint-averaging", "0.001 s", "rad/s", "times the mass", "substeps"})
-    EXPECT_NE(error->sentence.find(word), std::string::npos) << error->sentence;
+    EXPECT_NE(error->message.find(word), std::string::npos) << error->message;
   // and the advice holds
-  const auto at = error->sentence.find("substeps, ") + 10;
-  SpringNet heavy = make_net(4, {.mass_kg = 1e-4 * std::stod(error->sentence.substr(at)) * 1.01});
+  const auto at = error->message.find("substeps, ") + 10;
+  SpringNet heavy = make_net(4, {.mass_kg = 1e-4 * std::stod(error->message.substr(at)) * 1.01});
   EXPECT_FALSE(check_step(heavy.view(), {.method = kHalf, .step_s = 0.001}, kNoProbe));
   const auto never = check_step(net.view(), {{Integrator::kRk2}, 0.001}, kNoProbe);
   ASSERT_TRUE(never);
-  EXPECT_NE(never->sentence.find("add damping"), std::string::npos) << never->sentence;
+  EXPECT_NE(never->message.find("add damping"), std::string::npos) << never->message;
   EXPECT_TRUE(check_step(net.view(), {kHalf, std::nan("")}, kNoProbe));
   EXPECT_TRUE(check_step(net.view(), {{Integrator::kImplicitEuler}, 0.0}, kNoProbe));
 }

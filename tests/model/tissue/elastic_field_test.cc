@@ -73,9 +73,9 @@ TEST(ElasticField, BlendsNeighbouringLawsByTheCoordinateOfThePlace) {
                       .pull_coordinate = {},
                       .surface = plate.view(),
                       .relaxation = {}});
-  const contact::Indentation in{.place = {.triangle = 3, .weight = {0.2, 0.3, 0.5}},
+  const contact::Indentation in{.surface_point = {.triangle = 3, .weight = {0.2, 0.3, 0.5}},
                                 .indentation_m = 2e-3};
-  const contact::SiteResponse r = field.respond(in);
+  const contact::ContactLawResponse r = field.respond(in);
   EXPECT_NEAR(r.law.force_N, (0.75 * 100.0 + 0.25 * 200.0) * 2e-3, 1e-12);
   EXPECT_NEAR(r.law.stiffness_N_per_m, 125.0, 1e-9);
   EXPECT_NEAR(norm(r.slope_N), 0.0, 1e-12) << "nothing varies along the surface";
@@ -95,8 +95,8 @@ TEST(ElasticField, CoordinatesAtBothEndsGiveTheOutermostLaws) {
                         .pull_coordinate = {},
                         .surface = plate.view(),
                         .relaxation = {}});
-    const auto r =
-        field.respond({.place = {.triangle = 0, .weight = {1, 0, 0}}, .indentation_m = 1e-3});
+    const auto r = field.respond(
+        {.surface_point = {.triangle = 0, .weight = {1, 0, 0}}, .indentation_m = 1e-3});
     EXPECT_NEAR(r.law.force_N, end == 0.0f ? 0.05 : 0.2, 1e-9);
   }
 }
@@ -194,13 +194,13 @@ TEST(ElasticField, APlaceThatTheSurfaceDoesNotHaveGivesZeroForce) {
   const double nan = std::nan("");
   const auto triangles = static_cast<std::uint32_t>(bench.mesh.triangle.size());
   for (const contact::Indentation& in :
-       {contact::Indentation{.place = {}, .indentation_m = 1e-3},
-        contact::Indentation{.place = {triangles, {0.3, 0.3, 0.4}}, .indentation_m = 1e-3},
-        contact::Indentation{.place = {0, {nan, 0.5, 0.5}}, .indentation_m = 1e-3},
+       {contact::Indentation{.surface_point = {}, .indentation_m = 1e-3},
+        contact::Indentation{.surface_point = {triangles, {0.3, 0.3, 0.4}}, .indentation_m = 1e-3},
+        contact::Indentation{.surface_point = {0, {nan, 0.5, 0.5}}, .indentation_m = 1e-3},
         contact::Indentation{.sphere = contact::kMaxSpheres,
-                             .place = {0, {0.3, 0.3, 0.4}},
+                             .surface_point = {0, {0.3, 0.3, 0.4}},
                              .indentation_m = 1e-3}}) {
-    const contact::SiteResponse r = bench.field.respond(in);
+    const contact::ContactLawResponse r = bench.field.respond(in);
     EXPECT_EQ(r.law.status, law::LawStatus::kInvalid);
     EXPECT_EQ(r.law.force_N, 0.0);
     EXPECT_EQ(r.slope_N, Vec3{});
@@ -214,7 +214,7 @@ TEST(ElasticField, DoesNotTouchTheHeap) {
   const tests::NoAlloc guard;
   for (std::uint32_t t = 0; t < 50; ++t)
     (void)bench.field.respond(
-        {.place = {.triangle = t, .weight = {0.3, 0.3, 0.4}}, .indentation_m = 1e-3});
+        {.surface_point = {.triangle = t, .weight = {0.3, 0.3, 0.4}}, .indentation_m = 1e-3});
   EXPECT_EQ(guard.calls(), 0u);
 }
 

@@ -3,7 +3,7 @@
 
 One instruction is one nanosecond here, so a path is exact, but for an interrupt that falls into it. No
 timer of the kernel and none of tactd does: the loop's grid of deadlines keeps away from both
-(firmware/loop/grid.h), and the kernel's lockup detector is off here as it is on an isolated core. What is
+(firmware/loop/release_schedule.h), and the kernel's lockup detector is off here as it is on an isolated core. What is
 left are emulators and other programs, whose phase differs from seed to seed. What is ours is there with
 every seed. So a number has grown when the shortest of the timed runs has, and `run` adds seeds before
 it says so; the baseline is the middle of six seeds. What a wake-up takes at most is the kernel's path

@@ -35,8 +35,8 @@ struct Options {
   int priority = 90, phase_us = 0, period_us = 20;
 };
 
-int refuse(const std::string& sentence) {
-  std::fprintf(stderr, "%s: %s\n", kProgram, sentence.c_str());
+int refuse(const std::string& message) {
+  std::fprintf(stderr, "%s: %s\n", kProgram, message.c_str());
   return 2;
 }
 

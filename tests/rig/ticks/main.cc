@@ -147,7 +147,7 @@ class FaultStory {
 int report_story(const std::string& path, std::int64_t injected_ns) {
   auto log = firmware::telemetry::TickLogReader::open(path);
   if (!log) {
-    fmt::print(stderr, "tact-rig-ticks: {}\n", log.error().sentence);
+    fmt::print(stderr, "tact-rig-ticks: {}\n", log.error().message);
     return 2;
   }
   FaultStory story(injected_ns);
@@ -160,8 +160,7 @@ int report_story(const std::string& path, std::int64_t injected_ns) {
 int report_grid(const std::string& path) {
   auto log = firmware::telemetry::TickLogReader::open(path);
   if (LoggedTick tick; log && log->next(tick)) return fmt::print("{}\n", tick.due_ns), 0;
-  fmt::print(stderr, "tact-rig-ticks: {}\n",
-             log ? path + " has no tick yet" : log.error().sentence);
+  fmt::print(stderr, "tact-rig-ticks: {}\n", log ? path + " has no tick yet" : log.error().message);
   return 2;
 }
 

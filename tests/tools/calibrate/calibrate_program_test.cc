@@ -10,10 +10,9 @@ namespace tact::tests::calibrate_program_test {
 
 const std::string kLiver = TACT_SOURCE_DIR "/model/scenes/liver.toml";
 
-void expect_refusal(const Outcome& outcome, const std::string& sentence) {
+void expect_refusal(const Outcome& outcome, const std::string& message) {
   EXPECT_EQ(outcome.status, 2) << outcome.output;
-  EXPECT_NE(outcome.output.find("tact-calibrate: " + sentence), std::string::npos)
-      << outcome.output;
+  EXPECT_NE(outcome.output.find("tact-calibrate: " + message), std::string::npos) << outcome.output;
 }
 Outcome calibrate(const std::string& arguments) { return run_program("tact-calibrate", arguments); }
 /// On a terminal of its own, where a person types `answer`.
@@ -41,12 +40,12 @@ TEST(CalibrateProgram, RefusesWhatItCannotDo) {
 }
 
 TEST(CalibrateProgram, MovesNothingWithoutAPersonAtATerminal) {
-  const std::string sentence =
+  const std::string message =
       "asks before anything moves, so it needs a terminal: start it from one";
-  expect_refusal(calibrate("falcon " + kLiver + " </dev/null"), sentence);
+  expect_refusal(calibrate("falcon " + kLiver + " </dev/null"), message);
   expect_refusal(
       run_command("echo yes | " + tests::program_path("tact-calibrate") + " falcon " + kLiver),
-      sentence);
+      message);
 }
 
 TEST(CalibrateProgram, MovesNothingBeforeThePersonAgrees) {

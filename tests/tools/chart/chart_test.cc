@@ -56,7 +56,8 @@ model::scene::Scene make_scene() {
   return scene;
 }
 
-/// Truth: a spring of this stiffness in the middle of the plate, and a dent that ends at 4 mm.
+/// Truth: a spring of this stiffness in the middle of the plate, and an indentation that ends at 4
+/// mm.
 ground_truth::ReferenceData linear_truth(double stiffness_N_per_m) {
   ground_truth::ReferenceData data;
   data.body.mesh = "plate";
@@ -74,7 +75,7 @@ ground_truth::ReferenceData linear_truth(double stiffness_N_per_m) {
 report::Table chart_of(const model::scene::Scene& scene,
                        const ground_truth::ReferenceData& reference, const ChartOptions& options) {
   const auto rows = measure_chart(scene, reference, options);
-  EXPECT_TRUE(rows) << (rows ? "" : rows.error().sentence);
+  EXPECT_TRUE(rows) << (rows ? "" : rows.error().message);
   report::Table table = empty_chart();
   for (const ChartRow& row : *rows) table.add(table_row(row, {"scene", "truth", "r1", "here"}));
   return table;
@@ -234,7 +235,7 @@ TEST(Chart, RefusesAReferenceOfAnotherMeshOrTip) {
   for (const auto& wrong : {moved, blunt}) {
     const auto rows = measure_chart(scene, wrong, quick());
     ASSERT_FALSE(rows);
-    EXPECT_NE(rows.error().sentence.find("solve it again: tact-lab reference"), std::string::npos);
+    EXPECT_NE(rows.error().message.find("solve it again: tact-lab reference"), std::string::npos);
   }
 }
 

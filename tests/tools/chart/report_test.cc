@@ -15,7 +15,7 @@ using model::scene::LawKind;
 TEST(ChartReport, ShowsThePeersThatWereMeasuredBefore) {
   const std::string file = TACT_SOURCE_DIR "/tools/results/peers.json";
   const auto peers = read_chart(file);
-  ASSERT_TRUE(peers) << peers.error().sentence;
+  ASSERT_TRUE(peers) << peers.error().message;
   const std::string truth = peers->word(peers->rows()[0], "reference_hash");
   report::Table laws = empty_chart();
   ChartRow law;
@@ -24,7 +24,7 @@ TEST(ChartReport, ShowsThePeersThatWereMeasuredBefore) {
   laws.add(table_row(law, {"scene", truth, "r1", "here"}));
   EXPECT_EQ(source_of_peers(laws), "");
   const auto both = with_peers(laws, file, truth);
-  ASSERT_TRUE(both) << both.error().sentence;
+  ASSERT_TRUE(both) << both.error().message;
   EXPECT_EQ(both->rows().size(), 1 + peers->rows().size());
   EXPECT_EQ(front_rows(*both), std::vector<std::size_t>{0});
   EXPECT_TRUE(peers_ahead(*both).empty()) << "the numbers of the README";
@@ -34,8 +34,7 @@ TEST(ChartReport, ShowsThePeersThatWereMeasuredBefore) {
     EXPECT_NE(both->to_csv().find(std::string(",peer,") + family), std::string::npos) << family;
   const auto wrong = with_peers(laws, file, "another truth");
   ASSERT_FALSE(wrong);
-  EXPECT_EQ(wrong.error().sentence.find(file + ": the row fem 12 mm "), 0U)
-      << wrong.error().sentence;
+  EXPECT_EQ(wrong.error().message.find(file + ": the row fem 12 mm "), 0U) << wrong.error().message;
 }
 
 TEST(ChartReport, IsReadBackAsItWasWritten) {
@@ -50,7 +49,7 @@ TEST(ChartReport, IsReadBackAsItWasWritten) {
   table.add(table_row(row, provenance));
   ASSERT_TRUE(write_chart(table, "tact-lab chart x", provenance, folder));
   const auto read = read_chart(folder + "/chart.json");
-  ASSERT_TRUE(read) << read.error().sentence;
+  ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(read->to_csv(), table.to_csv());
   std::ifstream csv(folder + "/chart.csv");
   std::string head;

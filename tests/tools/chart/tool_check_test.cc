@@ -35,7 +35,7 @@ ToolReference linear_truth(const model::scene::Scene& scene, double stiffness_N_
   data.body.youngs_modulus_Pa = 5000.0;
   data.body.poisson_ratio = 0.45;
   data.sphere = scene.tool.spheres;
-  ground_truth::ToolPlace place;
+  ground_truth::ToolPoint place;
   place.direction = {0, 0, -1};
   for (const double depth_m : {0.001, 0.002})
     place.cases.push_back({.depth_m = depth_m,
@@ -81,7 +81,7 @@ TEST(CheckTool, FindsTheErrorOfOneSphereAsWorkedByHand) {
   ASSERT_TRUE(stack);
   const double k = stack->respond(0.001).force_N / 0.001;
   const auto row = check_tool(scene, LawKind::kDiscStack, linear_truth(scene, 1.25 * k), kShort);
-  ASSERT_TRUE(row) << row.error().sentence;
+  ASSERT_TRUE(row) << row.error().message;
   EXPECT_EQ(row->failure, "");
   ASSERT_EQ(row->samples.size(), 4U) << "two places, two depths";
   for (const ToolSample& s : row->samples) EXPECT_NEAR(s.own_ratio(), -0.2, 1e-6);
@@ -95,7 +95,7 @@ TEST(CheckTool, FeelsEverySphereOfTheTool) {
   const double k = stack->respond(0.001).force_N / 0.001;
   scene.tool.spheres = {{{0, -0.03, 0}, 0.004}, {{0, 0.03, 0}, 0.004}};  // far from each other
   const auto row = check_tool(scene, LawKind::kDiscStack, linear_truth(scene, k), kShort);
-  ASSERT_TRUE(row) << row.error().sentence;
+  ASSERT_TRUE(row) << row.error().message;
   for (const ToolSample& s : row->samples) {
     EXPECT_GT(s.own_ratio(), 0.5);
     EXPECT_LT(s.own_ratio(), 1.0 + 1e-6);
@@ -119,7 +119,7 @@ TEST(CheckTool, RefusesAReferenceOfAnotherTool) {
   scene.tool.spheres[0].radius_m = 0.005;
   const auto row = check_tool(scene, LawKind::kDiscStack, truth, kShort);
   ASSERT_FALSE(row);
-  EXPECT_NE(row.error().sentence.find("spheres"), std::string::npos);
+  EXPECT_NE(row.error().message.find("spheres"), std::string::npos);
 }
 
 TEST(Chart, JudgesEverySizeByTheWholeToolWhereItIsKnown) {
@@ -139,7 +139,7 @@ TEST(Chart, JudgesEverySizeByTheWholeToolWhereItIsKnown) {
   ChartOptions options{
       .request = {.laws = {}, .quick = true}, .timing = kShort, .tool_reference = &whole_tool};
   const auto rows = measure_chart(scene, one_sphere, options);
-  ASSERT_TRUE(rows) << rows.error().sentence;
+  ASSERT_TRUE(rows) << rows.error().message;
   std::size_t linear = 0;
   for (const ChartRow& row : *rows) {
     if (row.variant.sizes.disc_form != model::indent::DiscForm::kLinear) continue;
@@ -159,7 +159,7 @@ TEST(ToolReport, HasARowForEachLawPlaceAndDepthAndASummary) {
   const model::scene::Scene scene = make_scene();
   const ToolReference truth = linear_truth(scene, 20.0);
   const auto row = check_tool(scene, LawKind::kDiscStack, truth, kShort);
-  ASSERT_TRUE(row) << row.error().sentence;
+  ASSERT_TRUE(row) << row.error().message;
   const auto j = nlohmann::json::parse(tool_json({*row}, truth, "tact-lab chart x", {}));
   EXPECT_EQ(j.at("format"), "tact-tool-chart");
   EXPECT_EQ(j.at("rows").size(), 4U);

@@ -24,7 +24,7 @@ TEST(CondenseOrgan, FillsASurfaceAndFindsItSoftestFarFromWhereItIsHeld) {
   const CondenseInput input = ball();
   CondenseFacts facts;
   const auto map = condense_organ(input, facts);
-  ASSERT_TRUE(map) << map.error().sentence;
+  ASSERT_TRUE(map) << map.error().message;
   EXPECT_GT(facts.elements, 100u);
   EXPECT_NEAR(facts.mesh_size_m, 1.5 * median_edge_m(input.surface.view()), 1e-12);
   EXPECT_NEAR(map->patch_radius_m, 1.6 * facts.mesh_size_m, 1e-12);
@@ -43,7 +43,7 @@ TEST(CondenseOrgan, RefusesASurfaceWithoutAnInside) {
   CondenseFacts facts;
   const auto map = condense_organ(input, facts);
   ASSERT_FALSE(map);
-  EXPECT_NE(map.error().sentence.find("open edges"), std::string::npos);
+  EXPECT_NE(map.error().message.find("open edges"), std::string::npos);
 }
 
 TEST(CondenseOrgan, StopsWhenAsked) {
@@ -52,12 +52,12 @@ TEST(CondenseOrgan, StopsWhenAsked) {
   CondenseFacts facts;
   const auto before = condense_organ(input, facts);
   ASSERT_FALSE(before);
-  EXPECT_TRUE(program::was_interrupted(before.error())) << before.error().sentence;
+  EXPECT_TRUE(program::was_interrupted(before.error())) << before.error().message;
   // In the middle of the vertices too.
   input.settings.organ.progress = [](std::size_t done, std::size_t) { return done == 0; };
   const auto within = condense_organ(input, facts);
   ASSERT_FALSE(within);
-  EXPECT_TRUE(program::was_interrupted(within.error())) << within.error().sentence;
+  EXPECT_TRUE(program::was_interrupted(within.error())) << within.error().message;
 }
 
 TEST(CondenseOrgan, TakesTheOrganOfTheSceneInItsOwnFrame) {
@@ -65,7 +65,7 @@ TEST(CondenseOrgan, TakesTheOrganOfTheSceneInItsOwnFrame) {
   scene.path = "some.toml";
   const auto without = condense_input(scene);
   ASSERT_FALSE(without);
-  EXPECT_NE(without.error().sentence.find("[elastic]"), std::string::npos);
+  EXPECT_NE(without.error().message.find("[elastic]"), std::string::npos);
   scene.organ_mesh = tests::make_ball(0.03, 1);
   scene.organ.position_m = {0.0, 0.0, -0.03};
   for (model::Vec3& p : scene.organ_mesh.vertex_m) p += scene.organ.position_m;

@@ -10,22 +10,22 @@ namespace tact::tests::condense_program_test {
 
 const std::string kLiver = TACT_SOURCE_DIR "/model/scenes/liver.toml";
 
-void expect_refusal(const std::string& arguments, const std::string& sentence) {
+void expect_refusal(const std::string& arguments, const std::string& message) {
   const Outcome outcome = run_program("tact-lab condense", arguments);
   EXPECT_EQ(outcome.status, 2) << outcome.output;
-  EXPECT_EQ(outcome.output, "tact-lab condense: " + sentence + "\n");
+  EXPECT_EQ(outcome.output, "tact-lab condense: " + message + "\n");
 }
 
 TEST(CondenseProgram, RefusesLengthsThatAreNone) {
   for (const char* option : {"--mesh-size-m", "--patch-radius-m", "--ring-pitch-m"})
     for (const char* reported : {"-1 is not", "0 is not", "\"nan\" is no finite number",
                                  "\"inf\" is no finite number", "\"3mm\" is no finite number"}) {
-      const std::string sentence = reported;
-      std::string length = sentence.substr(0, sentence.find(' '));
+      const std::string message = reported;
+      std::string length = message.substr(0, message.find(' '));
       std::erase(length, '"');
       expect_refusal(
           kLiver + " --out x.map " + option + " " + length,
-          std::string(option) + ": " + sentence + " in [1e-06 - 1]; see tact-lab condense --help");
+          std::string(option) + ": " + message + " in [1e-06 - 1]; see tact-lab condense --help");
     }
 }
 

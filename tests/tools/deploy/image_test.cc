@@ -20,7 +20,7 @@ using tests::run_command;
 const std::string kSource = TACT_SOURCE_DIR;
 
 TEST(Image, RefusesWhatItCannotMake) {
-  for (const auto& [words, sentence] :
+  for (const auto& [words, message] :
        {std::pair<std::string, std::string>{"--release 11", "tools/releases has no Debian 11"},
         {"--device odrive", "no device odrive; one of: sim-delta can-odrive"},
         {"--out ''", "--out needs a value"},
@@ -28,7 +28,7 @@ TEST(Image, RefusesWhatItCannotMake) {
         {"--froce", "unknown option --froce"}}) {
     const Outcome outcome = run_command(kSource + "/tools/image " + words);
     EXPECT_EQ(outcome.status, 2) << words;
-    EXPECT_NE(outcome.output.find(sentence), std::string::npos) << outcome.output;
+    EXPECT_NE(outcome.output.find(message), std::string::npos) << outcome.output;
   }
 }
 

@@ -43,7 +43,7 @@ class FitOfAnOrgan : public testing::Test {
         .curves = 9,
         .large_strain = false};
     EXPECT_TRUE(model::scene::write_compliance_map(map, truth_.compliance.map_path));
-    data_.sites = {make_site(truth_, 60, 8_mm), make_site(truth_, 200, 8_mm)};
+    data_.sites = {make_contact_point(truth_, 60, 8_mm), make_contact_point(truth_, 200, 8_mm)};
     data_.sites[1].held_out = true;
   }
   ~FitOfAnOrgan() override { std::filesystem::remove(truth_.compliance.map_path); }
@@ -76,7 +76,7 @@ TEST_F(FitOfAnOrgan, AReferenceIsFittedAtItsOwnStrainWhateverTheSceneSays) {
 }
 
 TEST_F(FitOfAnOrgan, FindsALawInSeriesWithItsPlaces) {
-  truth_.varies_by_place = true;
+  truth_.varies_over_surface = true;
   truth_.pull = {.stiffness_N_per_m = 45.0, .limit_m = 8_mm};
   for (const auto& [name, kind] :
        {std::pair{"rhombus", LawKind::kRhombus}, std::pair{"hex_sheet", LawKind::kHexSheet}}) {
@@ -89,7 +89,7 @@ TEST_F(FitOfAnOrgan, FindsALawInSeriesWithItsPlaces) {
     law.starts.resize(1);
     law.most_evaluations = 300;
     const auto fitted = fit_law(law, start, data_, {});
-    ASSERT_TRUE(fitted) << fitted.error().sentence;
+    ASSERT_TRUE(fitted) << fitted.error().message;
     EXPECT_LT(fitted->checked.fitted.rms_ratio(), 2e-3) << name;
     EXPECT_LT(fitted->checked.held_out.rms_ratio(), 2e-3) << name;
     EXPECT_NEAR(fitted->checked.sites[0].best_scale, 1.0, 2e-3) << name;
@@ -102,11 +102,11 @@ TEST_F(FitOfAnOrgan, NeedsThePlacesOfTheSites) {
   const auto without_place =
       fit_law(law_named(truth_, data_, "compliance"), truth_, data_, FitOptions{});
   ASSERT_FALSE(without_place);
-  EXPECT_NE(without_place.error().sentence.find("column site"), std::string::npos);
-  truth_.varies_by_place = true;
+  EXPECT_NE(without_place.error().message.find("column site"), std::string::npos);
+  truth_.varies_over_surface = true;
   const auto chain = fit_law(law_named(truth_, data_, "rhombus"), truth_, data_, FitOptions{});
   ASSERT_FALSE(chain);
-  EXPECT_NE(chain.error().sentence.find("varies_by_place=false"), std::string::npos);
+  EXPECT_NE(chain.error().message.find("varies_over_surface=false"), std::string::npos);
 }
 
 }  // namespace tact::tools::fit::fit_answer_test

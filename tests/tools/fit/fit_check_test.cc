@@ -80,7 +80,7 @@ TEST(FitCheck, ARhombusChainCannotFollowARoundTip) {
   FitLaw law = fit_laws_of(scene, data)[0];
   law.most_evaluations = 300;
   const auto fitted = fit_law(law, scene, data, {});
-  ASSERT_TRUE(fitted) << fitted.error().sentence;
+  ASSERT_TRUE(fitted) << fitted.error().message;
   const Evaluation& j = fitted->checked;
   EXPECT_FALSE(j.follows);
   EXPECT_GT(j.fitted.rms_ratio(), report::kJustNoticeable_ratio);

@@ -18,7 +18,7 @@ class FitCsv : public testing::Test {
   }
   std::string error_of(const std::string& text, const BenchColumns& columns = {}) {
     const auto data = read_bench_csv(file(text), columns, {});
-    return data ? "read" : data.error().sentence.substr(path_.size());
+    return data ? "read" : data.error().message.substr(path_.size());
   }
 
   std::string path_ =
@@ -36,7 +36,7 @@ TEST_F(FitCsv, ReadsSitesRingsAndComments) {
                                         "0.002, 0.12 ,7,0.002,0.0009,y\r\n"
                                         "-0.002,-0.1,9,-0.002,-0.0008,z\n"),
                                    {}, {"9"});
-  ASSERT_TRUE(data) << data.error().sentence;
+  ASSERT_TRUE(data) << data.error().message;
   ASSERT_EQ(data->sites.size(), 2U);
   EXPECT_EQ(data->sites[0].name, "7");
   EXPECT_FALSE(data->sites[0].held_out);
@@ -51,7 +51,7 @@ TEST_F(FitCsv, TakesOtherNamesAndUnits) {
   const auto data = read_bench_csv(
       file("compression_mm,load_mean_N\n0.000,-0.07\n0.300,0.05\n15.0,21.5\n"),
       {.depth = "compression_mm", .force = "load_mean_N", .depth_unit_m = 0.001}, {});
-  ASSERT_TRUE(data) << data.error().sentence;
+  ASSERT_TRUE(data) << data.error().message;
   EXPECT_DOUBLE_EQ(data->deepest_m(), 0.015);
   EXPECT_DOUBLE_EQ(data->peak_N(), 21.5);
 }
@@ -59,7 +59,7 @@ TEST_F(FitCsv, TakesOtherNamesAndUnits) {
 TEST_F(FitCsv, LeavesOutWhatIsDeeperThanAsked) {
   const auto data = read_bench_csv(file("depth_m,force_N\n3,0.1\n6,0.2\n9,0.3\n9.1,0.9\n"),
                                    {.depth_unit_m = 0.001, .deepest_m = 0.009}, {});
-  ASSERT_TRUE(data) << data.error().sentence;
+  ASSERT_TRUE(data) << data.error().message;
   EXPECT_EQ(data->sites[0].samples.size(), 3U);
   EXPECT_EQ(data->peak_N(), 0.3);
 }
@@ -92,12 +92,12 @@ TEST_F(FitCsv, RefusesTooLittle) {
 
 TEST_F(FitCsv, ReadsForceOverTime) {
   const auto held = read_relaxation_csv(file("time_s,force_N\n0,1\n0.5,0.8\n1,0.7\n"), {});
-  ASSERT_TRUE(held) << held.error().sentence;
+  ASSERT_TRUE(held) << held.error().message;
   EXPECT_EQ(held->size(), 3U);
   EXPECT_EQ((*held)[1].force_N, 0.8);
   const auto back = read_relaxation_csv(file("time_s,force_N\n0,1\n0,0.8\n"), {});
   ASSERT_FALSE(back);
-  EXPECT_NE(back.error().sentence.find(":3: time_s does not rise"), std::string::npos);
+  EXPECT_NE(back.error().message.find(":3: time_s does not rise"), std::string::npos);
 }
 
 }  // namespace tact::tools::fit::fit_csv_test

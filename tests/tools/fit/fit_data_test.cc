@@ -37,7 +37,7 @@ TEST(FitData, KeepsTheLinearCasesAndTheSitesThatTheSceneHoldsOut) {
   model::scene::Scene scene = tests::make_plate_scene();
   scene.reference_sites = {{.vertex = 30}, {.vertex = 200, .held_out = true}};
   const auto data = fit_data_of(make_reference(scene), scene, {}, false);
-  ASSERT_TRUE(data) << data.error().sentence;
+  ASSERT_TRUE(data) << data.error().message;
   ASSERT_EQ(data->sites.size(), 2U);
   EXPECT_FALSE(data->sites[0].held_out);
   EXPECT_TRUE(data->sites[1].held_out);
@@ -60,12 +60,12 @@ TEST(FitData, RefusesAnotherOrganAndNothingToFit) {
   reference.sites[1].vertex = 1000000;
   const auto stranger = fit_data_of(reference, scene, {}, false);
   ASSERT_FALSE(stranger);
-  EXPECT_NE(stranger.error().sentence.find("vertex 1000000"), std::string::npos);
+  EXPECT_NE(stranger.error().message.find("vertex 1000000"), std::string::npos);
   EXPECT_FALSE(fit_data_of(make_reference(scene), scene, {"31"}, false));  // no such site
   scene.reference_sites = {{.vertex = 30, .held_out = true}};
   const auto rest = fit_data_of(make_reference(scene), scene, {"200"}, false);
   ASSERT_FALSE(rest);
-  EXPECT_NE(rest.error().sentence.find("leave one to fit"), std::string::npos);
+  EXPECT_NE(rest.error().message.find("leave one to fit"), std::string::npos);
   scene.reference_sites.push_back({.vertex = 200, .held_out = true});
   EXPECT_FALSE(fit_data_of(make_reference(scene), scene, {}, false));
 }
@@ -73,14 +73,15 @@ TEST(FitData, RefusesAnotherOrganAndNothingToFit) {
 TEST(FitData, AVertexIsAPlaceWithAllItsWeight) {
   const model::mesh::SurfaceMesh plate = tests::make_plate(0.1, 4);
   for (std::size_t v = 0; v < plate.vertex_m.size(); ++v) {
-    const auto at = place_at_vertex(plate, v);
+    const auto at = surface_point_at_vertex(plate, v);
     ASSERT_TRUE(at);
     model::Vec3 point{};
     for (std::size_t i = 0; i < 3; ++i)
-      point += at->place.weight[i] * plate.vertex_m[plate.triangle[at->place.triangle][i]];
+      point += at->surface_point.weight[i] *
+               plate.vertex_m[plate.triangle[at->surface_point.triangle][i]];
     EXPECT_EQ(point, plate.vertex_m[v]);
   }
-  EXPECT_FALSE(place_at_vertex(plate, plate.vertex_m.size()));
+  EXPECT_FALSE(surface_point_at_vertex(plate, plate.vertex_m.size()));
 }
 
 }  // namespace tact::tools::fit::fit_data_test

@@ -54,8 +54,9 @@ inline FitLaw law_named(const Scene& scene, const FitData& data, const std::stri
 }
 
 /// Depths of one site, from pull to press, to be answered.
-inline FitSite make_site(const Scene& scene, std::size_t vertex, double pull_m) {
-  FitSite site{.name = std::to_string(vertex), .at = place_at_vertex(scene.organ_mesh, vertex)};
+inline FitSite make_contact_point(const Scene& scene, std::size_t vertex, double pull_m) {
+  FitSite site{.name = std::to_string(vertex),
+               .at = surface_point_at_vertex(scene.organ_mesh, vertex)};
   for (const double share : {-1.0, -0.6, -0.2})
     if (pull_m > 0.0) site.samples.push_back({.depth_m = share * pull_m});
   for (int i = 1; i <= 12; ++i) site.samples.push_back({.depth_m = i * 10_mm / 12});
@@ -69,7 +70,7 @@ inline void answer(const Scene& scene, LawKind kind, FitData& data, bool with_sh
     for (FitSample& s : site.samples)
       s.ring_m.assign(with_shapes ? data.ring_radius_m.size() : 0, 0.0);
   const auto answers = answers_of(scene, kind, data);
-  ASSERT_TRUE(answers) << answers.error().sentence;
+  ASSERT_TRUE(answers) << answers.error().message;
   std::size_t i = 0;
   for (FitSite& site : data.sites)
     for (FitSample& s : site.samples) {
@@ -88,7 +89,7 @@ inline double value_of(const FittedLaw& fitted, const std::string& key) {
 inline FittedLaw fit(const std::string& name, const Scene& start, const FitData& data,
                      const FitOptions& options = {}) {
   const auto fitted = fit_law(law_named(start, data, name), start, data, options);
-  EXPECT_TRUE(fitted) << fitted.error().sentence;
+  EXPECT_TRUE(fitted) << fitted.error().message;
   return fitted ? *fitted : FittedLaw{};
 }
 

@@ -26,7 +26,7 @@ FitData press_and_pull() {
 
 Scene liver() {
   auto scene = model::scene::load_scene(kLiver, {});
-  EXPECT_TRUE(scene) << scene.error().sentence;
+  EXPECT_TRUE(scene) << scene.error().message;
   return *scene;
 }
 
@@ -41,7 +41,7 @@ TEST(FitLaw, BoundsAreRangesThatTheSceneAccepts) {
       if (p.section == "pull" || !seen.insert(key).second) continue;  // may not be in the scene
       for (const double value : {p.low, p.high}) {
         const auto read = model::scene::load_scene(kLiver, {fmt::format("{}={:.9f}", key, value)});
-        EXPECT_TRUE(read) << read.error().sentence;
+        EXPECT_TRUE(read) << read.error().message;
       }
     }
   }
@@ -65,7 +65,7 @@ TEST(FitLaw, EveryParameterStandsWhereItsKeySays) {
       const double value = std::sqrt(p.low * p.high);
       auto read =
           model::scene::load_scene(kLiver, {fmt::format("{}.{}={:.17g}", p.section, p.key, value)});
-      ASSERT_TRUE(read) << read.error().sentence;
+      ASSERT_TRUE(read) << read.error().message;
       EXPECT_DOUBLE_EQ(p.in(*read), value) << p.section << "." << p.key;
     }
   }

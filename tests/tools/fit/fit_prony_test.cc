@@ -25,7 +25,7 @@ std::vector<HeldForce> made(const std::vector<PronyTerm>& terms, double at_once_
 
 void expect_found(const std::vector<PronyTerm>& terms, std::size_t asked) {
   const auto fit = fit_prony(made(terms, 0.8), {.terms = asked, .good_residual = 1e-3});
-  ASSERT_TRUE(fit) << fit.error().sentence;
+  ASSERT_TRUE(fit) << fit.error().message;
   ASSERT_EQ(fit->terms.size(), terms.size());
   EXPECT_NEAR(fit->at_once_N, 0.8, 0.002);
   EXPECT_LT(fit->residual_ratio, 1e-3);

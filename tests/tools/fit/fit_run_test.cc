@@ -24,7 +24,7 @@ TEST(FitRun, FindsTheRhombusChainThatMadeTheData) {
   Scene truth = make_scene();
   truth.rhombus.units = 4;  // 10 mm go nearly to the end: deep enough to tell the springs apart
   truth.pull = {.stiffness_N_per_m = 45.0, .limit_m = 8_mm};
-  FitData data{.sites = {make_site(truth, 100, 8_mm)}};
+  FitData data{.sites = {make_contact_point(truth, 100, 8_mm)}};
   answer(truth, LawKind::kRhombus, data, true);
   Scene start = truth;
   start.pull.reset();
@@ -54,7 +54,7 @@ TEST(FitRun, FindsTheRhombusChainThatMadeTheData) {
 
 TEST(FitRun, FindsTheDiscStackThatMadeTheData) {
   const Scene truth = make_scene();
-  FitData data{.sites = {make_site(truth, 100, 0.0)}};
+  FitData data{.sites = {make_contact_point(truth, 100, 0.0)}};
   answer(truth, LawKind::kDiscStack, data, true);
   Scene start = make_scene();
   start.disc_stack.disc.youngs_modulus_Pa = 1e5;
@@ -65,7 +65,7 @@ TEST(FitRun, FindsTheDiscStackThatMadeTheData) {
 
 TEST(FitRun, DoesNotDependOnTheOrderOfTheRows) {
   const Scene scene = make_scene();
-  FitData data{.sites = {make_site(scene, 100, 0.0)}};
+  FitData data{.sites = {make_contact_point(scene, 100, 0.0)}};
   answer(scene, LawKind::kDiscStack, data, false);
   for (FitSample& s : data.sites[0].samples) s.force_N *= 1.0 + 100.0 * s.depth_m;  // no law's
   const auto modulus_Pa = [&] {
@@ -79,7 +79,7 @@ TEST(FitRun, DoesNotDependOnTheOrderOfTheRows) {
 TEST(FitRun, FindsTheConedDiscsThatMadeTheData) {
   Scene truth = make_scene();
   truth.disc_stack.form = model::indent::DiscForm::kAlmenLaszlo;
-  FitData data{.sites = {make_site(truth, 100, 0.0)}};
+  FitData data{.sites = {make_contact_point(truth, 100, 0.0)}};
   answer(truth, LawKind::kDiscStack, data, false);
   Scene start = make_scene();
   start.disc_stack.disc.youngs_modulus_Pa = 2000.0;
@@ -95,7 +95,7 @@ TEST(FitRun, FindsTheConedDiscsThatMadeTheData) {
 
 TEST(FitRun, FindsThePowerLawThatMadeTheData) {
   const Scene truth = make_scene();
-  FitData data{.sites = {make_site(truth, 100, 0.0)}};
+  FitData data{.sites = {make_contact_point(truth, 100, 0.0)}};
   answer(truth, LawKind::kHuntCrossley, data, true);
   Scene start = make_scene();
   start.hunt_crossley.force_N = 3.0;
@@ -109,7 +109,7 @@ TEST(FitRun, FindsThePowerLawThatMadeTheData) {
 
 TEST(FitRun, FindsTheHexagonalSheetThatMadeTheData) {
   const Scene truth = make_scene();
-  FitData data{.sites = {make_site(truth, 100, 0.0)}};
+  FitData data{.sites = {make_contact_point(truth, 100, 0.0)}};
   answer(truth, LawKind::kHexSheet, data, true);
   Scene start = make_scene();
   start.hex_sheet.ring_pitch_m = 3_mm;
@@ -127,7 +127,7 @@ TEST(FitRun, FindsTheHexagonalSheetThatMadeTheData) {
 
 TEST(FitRun, FactorsOfTheSitesHaveTheMeanOne) {
   const Scene truth = make_scene();
-  FitData data{.sites = {make_site(truth, 100, 0.0), make_site(truth, 60, 0.0)}};
+  FitData data{.sites = {make_contact_point(truth, 100, 0.0), make_contact_point(truth, 60, 0.0)}};
   answer(truth, LawKind::kDiscStack, data, false);
   for (FitSample& s : data.sites[1].samples) s.force_N *= 4.0;
   const FittedLaw fitted =
@@ -149,7 +149,7 @@ TEST(FitRun, KeepsThePatchAsSoftAsTheDataAndItsMassInProportion) {
                         .node_mass_kg = 0.008,
                         .working_depth_m = 12_mm,
                         .nodes = 40};
-  FitData data{.sites = {make_site(truth, 40, 0.0)}};
+  FitData data{.sites = {make_contact_point(truth, 40, 0.0)}};
   data.sites[0].samples = {{.depth_m = 10_mm}};
   answer(truth, LawKind::kSpringPatch, data, true);
   Scene start = truth;
@@ -158,7 +158,7 @@ TEST(FitRun, KeepsThePatchAsSoftAsTheDataAndItsMassInProportion) {
   FitLaw patient = law_named(start, data, "spring_patch");
   patient.most_evaluations = 150;
   const auto result = fit_law(patient, start, data, {});
-  ASSERT_TRUE(result) << result.error().sentence;
+  ASSERT_TRUE(result) << result.error().message;
   const FittedLaw& fitted = *result;
   EXPECT_LT(fitted.checked.fitted.rms_ratio(), 0.01);
   EXPECT_NEAR(

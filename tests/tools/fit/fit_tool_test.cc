@@ -16,7 +16,7 @@ namespace tact::tests::fit_tool_test {
 namespace fs = std::filesystem;
 
 const std::string kScene = std::string(TACT_SOURCE_DIR) + "/model/scenes/liver.toml";
-const std::string kOnePlace = kScene + " --set varies_by_place=false";
+const std::string kOnePlace = kScene + " --set varies_over_surface=false";
 
 class FitTool : public testing::Test {
  protected:
@@ -53,7 +53,7 @@ TEST_F(FitTool, WritesKeysThatTheSceneTakes) {
   const auto scene = model::scene::load_scene(
       kScene, {"disc_stack.form=\"linear\"",
                "disc_stack.youngs_modulus_Pa=" + value.substr(0, value.find('\n'))});
-  ASSERT_TRUE(scene) << scene.error().sentence;
+  ASSERT_TRUE(scene) << scene.error().message;
   const auto stack = make_disc_stack(scene->disc_stack);
   ASSERT_TRUE(stack);
   EXPECT_NEAR(stack->respond(0.01).force_N, 0.5, 0.001);

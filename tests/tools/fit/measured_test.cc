@@ -22,15 +22,15 @@ const std::string kRoot = TACT_SOURCE_DIR;
 /// Silicone cylinders between plates: EF10_100T is fitted, the others judge with a factor each.
 Evaluation check_silicone(const std::string& law, double deepest_m) {
   const auto scene =
-      model::scene::load_scene(kRoot + "/model/scenes/liver.toml", {"varies_by_place=false"});
-  EXPECT_TRUE(scene) << scene.error().sentence;
+      model::scene::load_scene(kRoot + "/model/scenes/liver.toml", {"varies_over_surface=false"});
+  EXPECT_TRUE(scene) << scene.error().message;
   const auto data = read_bench_csv(kRoot + "/tests/data/measured/silicone_compression.csv",
                                    {.depth = "compression_mm",
                                     .force = "load_mean_N",
                                     .depth_unit_m = 0.001,
                                     .deepest_m = deepest_m},
                                    {"EF10_50T", "EF30_50T"});
-  EXPECT_TRUE(data) << data.error().sentence;
+  EXPECT_TRUE(data) << data.error().message;
   return fit(law, *scene, *data, {.scale_by_site = true}).checked;
 }
 
@@ -53,8 +53,8 @@ TEST(Measured, NoLinearStackFollowsSiliconeTo60PercentStrain) {
   }
 }
 
-// A step of force on a linear law with two terms: with a = 1 / tau_1, b = 1 / tau_2 the dent grows
-// as 1 / g_0 + sum of R_i exp(-t / lambda_i), where 1 / lambda_i = p, q solve
+// A step of force on a linear law with two terms: with a = 1 / tau_1, b = 1 / tau_2 the indentation
+// grows as 1 / g_0 + sum of R_i exp(-t / lambda_i), where 1 / lambda_i = p, q solve
 //
 //     p + q = (g_0 + g_2) a + (g_0 + g_1) b          p q = g_0 a b
 //
@@ -101,7 +101,7 @@ TEST(Measured, ALiverThatCreepsAsPublishedRelaxesInShorterTimes) {
 
 TEST(Measured, TheIllustrativeRelaxationCreepsFasterThanAPorcineLiver) {
   const auto scene = model::scene::load_scene(kRoot + "/model/scenes/skin.toml", {});
-  ASSERT_TRUE(scene) << scene.error().sentence;
+  ASSERT_TRUE(scene) << scene.error().message;
   ASSERT_EQ(scene->relaxation.size(), 2U);
   const Creep creep = creep_of(scene->relaxation[0], scene->relaxation[1]);
   EXPECT_NEAR(kLiver.fast_s / creep.fast_s, 2.6, 0.05);

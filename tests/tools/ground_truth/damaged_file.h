@@ -33,8 +33,8 @@ void expect_error(ReferenceReader<Data> read, std::string text, const std::strin
   ASSERT_NE(at, std::string::npos) << from;
   const auto data = read_text(read, text.replace(at, from.size(), to));
   ASSERT_FALSE(data) << "with " << to;
-  EXPECT_NE(data.error().sentence.find(what), std::string::npos) << data.error().sentence;
-  EXPECT_NE(data.error().sentence.find(remedy), std::string::npos) << data.error().sentence;
+  EXPECT_NE(data.error().message.find(what), std::string::npos) << data.error().message;
+  EXPECT_NE(data.error().message.find(remedy), std::string::npos) << data.error().message;
 }
 
 }  // namespace tact::tests

@@ -43,7 +43,7 @@ void expect_error(const std::string& text, const std::string& from, const std::s
 
 TEST(ReferenceData, ComesBackAsItWasWritten) {
   const auto back = tests::read_text(read_reference, reference_text(example()));
-  ASSERT_TRUE(back) << back.error().sentence;
+  ASSERT_TRUE(back) << back.error().message;
   EXPECT_EQ(reference_text(*back), reference_text(example()));
   EXPECT_EQ(back->body.mesh, example().body.mesh);
   ASSERT_EQ(back->sites.size(), 1U);
@@ -63,7 +63,7 @@ TEST(ReferenceData, AnErrorThatIsNotKnownIsNull) {
   const std::string text = reference_text(data);
   EXPECT_NE(text.find("\"force_error_ratio\": null,"), std::string::npos) << text;
   const auto back = tests::read_text(read_reference, text);
-  ASSERT_TRUE(back) << back.error().sentence;
+  ASSERT_TRUE(back) << back.error().message;
   EXPECT_TRUE(std::isnan(back->sites[0].cases[0].force_error_ratio));
   EXPECT_EQ(back->sites[0].cases[1].force_error_ratio, 0.01);
 }
@@ -81,14 +81,14 @@ TEST(ReferenceData, NamesTheFileAndTheKeyOfADamage) {
   const auto none = read_reference("/nowhere/at/all.json");
   ASSERT_FALSE(none);
   EXPECT_EQ(
-      none.error().sentence,
+      none.error().message,
       "/nowhere/at/all.json: no such file; check the name, or make it: tact-lab reference SCENE "
       "--out FILE");
 }
 
 TEST(ReferenceData, ShipsTheLiver) {
   const auto data = read_reference(TACT_SOURCE_DIR "/tests/data/reference/liver.json");
-  ASSERT_TRUE(data) << data.error().sentence;
+  ASSERT_TRUE(data) << data.error().message;
   EXPECT_GE(data->sites.size(), 8U);
   for (const SolvedSite& site : data->sites) {
     double last_N = 0.0;

@@ -27,7 +27,7 @@ class ReferenceFits : public testing::Test {
   }
   std::string said(ModulusOf modulus = ModulusOf::kSame) const {
     const auto error = check_reference_fits(reference_, scene_, modulus);
-    return error ? error->sentence : "";
+    return error ? error->message : "";
   }
   void expect(const std::string& words) const {
     EXPECT_NE(said().find(words), std::string::npos) << said();

@@ -53,7 +53,7 @@ void expect_error(const std::string& text, const std::string& from, const std::s
 
 TEST(ToolReference, ComesBackAsItWasWritten) {
   const auto back = tests::read_text(read_tool_reference, tool_reference_text(example()));
-  ASSERT_TRUE(back) << back.error().sentence;
+  ASSERT_TRUE(back) << back.error().message;
   EXPECT_EQ(tool_reference_text(*back), tool_reference_text(example()));
   EXPECT_FALSE(back->places[0].vertex);
   EXPECT_EQ(name_of(back->places[1]), "slid 20 mm");
@@ -97,10 +97,10 @@ class ToolReferenceFits : public testing::Test {
   }
   void expect(const std::string& words) const {
     const auto error = check_tool_reference_fits(reference_, scene_);
-    ASSERT_EQ(error.has_value(), !words.empty()) << (error ? error->sentence : "");
+    ASSERT_EQ(error.has_value(), !words.empty()) << (error ? error->message : "");
     if (!error) return;
-    EXPECT_NE(error->sentence.find(words), std::string::npos) << error->sentence;
-    EXPECT_NE(error->sentence.find("--tool --out FILE"), std::string::npos) << "the remedy";
+    EXPECT_NE(error->message.find(words), std::string::npos) << error->message;
+    EXPECT_NE(error->message.find("--tool --out FILE"), std::string::npos) << "the remedy";
   }
 
   model::scene::Scene scene_ = tests::make_plate_scene();
@@ -132,11 +132,11 @@ TEST_F(ToolReferenceFits, TheSceneItWasSolvedForAndNoOther) {
 
 TEST(ToolReference, ShipsTheLiver) {
   const auto data = read_tool_reference(TACT_SOURCE_DIR "/tests/data/reference/liver_tool.json");
-  ASSERT_TRUE(data) << data.error().sentence;
+  ASSERT_TRUE(data) << data.error().message;
   ASSERT_EQ(data->places.size(), 9U);
   // Two jaws at the hand's site, finite elements and boundary elements by others: 1, 2, 5, 10 mm.
   const double known_N[] = {0.01862, 0.04888, 0.15939, 0.36985};
-  for (const ToolPlace& place : data->places) {
+  for (const ToolPoint& place : data->places) {
     ASSERT_EQ(place.cases.size(), 4U);
     double last_N = 0.0;
     for (std::size_t k = 0; k < 4; ++k) {

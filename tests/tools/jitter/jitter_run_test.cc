@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "firmware/loop/grid.h"
+#include "firmware/loop/release_schedule.h"
 #include "tests/support/no_alloc.h"
 #include "tests/support/program.h"
 #include "tests/support/puppet_loop.h"
@@ -33,7 +33,7 @@ TickRecord tick_at(std::uint64_t tick, std::int64_t due_ns, std::int32_t wake_ns
   return record;
 }
 
-/// 1000 ticks of which one stalls for 50 ms; then the grid points it slept over are skipped.
+/// 1000 ticks of which one stalls for 50 ms; then the releases it slept over are skipped.
 TickSink stalled_run() {
   TickSink sink({});
   for (std::uint64_t i = 0; i < 500; ++i)
@@ -219,7 +219,7 @@ TEST(PulseMeter, AnEdgeThatWasLostMakesNoPulse) {
 }
 
 TEST(LoopBack, ReadsUntilItIsStopped) {
-  class Pulses final : public hal::gpio::EdgeWatch {
+  class Pulses final : public hal::gpio::EdgeMonitor {
    public:
     explicit Pulses(std::atomic<int>& reads) : reads_{reads} {}
     std::vector<hal::gpio::Edge> read(std::chrono::milliseconds) override {

@@ -17,7 +17,7 @@ TEST(Peer, CountsCyclictestsSamplesAtTheUpperEdgeOfTheirMicrosecond) {
   Series series;
   const auto error = add_cyclictest(
       R"({"thread":{"0":{"histogram":{"2":3,"10":6},"cycles":10,"max":60000}}})", 10, series);
-  ASSERT_FALSE(error) << error->sentence;
+  ASSERT_FALSE(error) << error->message;
   EXPECT_EQ(series.histogram.count(), 10u) << "the one beyond the histogram is the largest";
   EXPECT_EQ(series.histogram.percentile_ns(0.3), 2'999u / 32 * 32 + 31);
   EXPECT_EQ(series.histogram.max_ns(), 60'000'999u);
@@ -35,7 +35,7 @@ TEST(Peer, RefusesMoreSamplesThanTheCyclesAskedForAndCountsNone) {
         std::string(R"({"thread":{"0":{"histogram":)") + samples + R"(,"max":4}}})";
     const auto error = add_cyclictest(text, 10, series);
     ASSERT_TRUE(error) << text;
-    EXPECT_NE(error->sentence.find("the 10 cycles"), std::string::npos) << error->sentence;
+    EXPECT_NE(error->message.find("the 10 cycles"), std::string::npos) << error->message;
   }
   EXPECT_EQ(series.histogram.count(), 0u);
 }
@@ -87,9 +87,9 @@ TEST(PeerGate, ThePeerGateJudgesTheMiddleOfTheTurns) {
   EXPECT_EQ(exit_status(result), 1);
   EXPECT_EQ(to_json(result, "c")["peer_gate"]["passed"], false);
   EXPECT_EQ(to_json(result, "c")["peer_gate"]["most"], 1.2);
-  const char* sentence =
+  const char* message =
       "FAIL: wake-up p99.9 is 1.21 of cyclictest's in the median of 5 turns, allowed are 1.2";
-  EXPECT_TRUE(has(make_summary(result), sentence)) << make_summary(result);
+  EXPECT_TRUE(has(make_summary(result), message)) << make_summary(result);
   EXPECT_TRUE(has(make_page(result, "c", ""), "<span class='stamp red'>peer gate</span> FAIL: "));
 }
 

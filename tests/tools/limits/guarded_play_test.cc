@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "firmware/watch/call_filter.h"
-#include "tests/support/watched_loop.h"
+#include "tests/support/monitored_loop.h"
 #include "tools/limits/verdict/verdict.h"
 
 namespace tact::tools::limits::guarded_play_test {
@@ -99,7 +99,7 @@ TEST_F(OnARealDevice, ACallThatKeepsItsCoreBusyIsARunaway) {
 TEST_F(OnARealDevice, ACallThatIsNotListedEndsThePlan) {
   auto filter =
       firmware::watch::CallFilter::make(device.loop_calls(), lines.loop_calls(), requests);
-  if (!filter) GTEST_SKIP() << filter.error().sentence;
+  if (!filter) GTEST_SKIP() << filter.error().message;
   play(filter->get());
   usleep(300'000);
   device.calls.store(true);

@@ -38,7 +38,7 @@ LimitsReport plan(const std::string& names, Limits (*gate_limits)(const Limits&)
   const auto report = run_plan(
       tests::make_plate_scene(),
       {.cases = *choose_cases(names), .wall = names_wall(names), .gate_limits = gate_limits});
-  EXPECT_TRUE(report) << (report ? "" : report.error().sentence);
+  EXPECT_TRUE(report) << (report ? "" : report.error().message);
   return report ? *report : LimitsReport{};
 }
 Limits larger_force(const Limits& limits) {
@@ -60,13 +60,13 @@ Limits larger_grip_force(const Limits& limits) {
 
 TEST(LimitRows, TheFingersFeelUpToTheirLimitAndNeverMore) {
   const LimitsReport good = plan("fingers");
-  EXPECT_EQ(good.result_words(), "PASS of 1 of 26 cases");
+  EXPECT_EQ(good.result_text(), "PASS of 1 of 26 cases");
   const LimitRow row = limit_rows(good).at(static_cast<std::size_t>(Bound::kGrip));
   EXPECT_NEAR(row.largest, row.limit, 1e-9);
   EXPECT_GT(row.limit, 0.0);
   EXPECT_EQ(row.kept, Kept::kPass);
   const LimitsReport wrong = plan("fingers", larger_grip_force);
-  EXPECT_EQ(wrong.result_words(), "FAIL");
+  EXPECT_EQ(wrong.result_text(), "FAIL");
   EXPECT_EQ(limit_rows(wrong).at(static_cast<std::size_t>(Bound::kGrip)).kept, Kept::kFail);
 }
 

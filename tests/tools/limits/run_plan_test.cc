@@ -36,14 +36,14 @@ LimitsReport plan(const std::string& names, Limits (*gate_limits)(const Limits&)
   const auto report = run_plan(
       scene,
       {.cases = *choose_cases(names), .wall = names_wall(names), .gate_limits = gate_limits});
-  EXPECT_TRUE(report) << (report ? "" : report.error().sentence);
+  EXPECT_TRUE(report) << (report ? "" : report.error().message);
   return report ? *report : LimitsReport{};
 }
-/// The sentences of all checks of the only case that do not hold.
+/// The messages of all checks of the only case that do not hold.
 std::string broken(const LimitsReport& report) {
   std::string all;
   for (const Check& check : report.cases.at(0).verdict.checks)
-    if (!check.holds) all += check.sentence + "; ";
+    if (!check.holds) all += check.message + "; ";
   return all;
 }
 
@@ -85,7 +85,7 @@ TEST(RunPlan, TimesToZeroHoldAtEveryRate) {
 struct Mutant {
   const char* plan;
   Limits (*gate_limits)(const Limits&);
-  const char* sentence;  // the check that must see it
+  const char* message;  // the check that must see it
 };
 template <double Limits::* Key>
 Limits enlarged(const Limits& limits) {
@@ -116,7 +116,7 @@ TEST(RunPlan, AGateWithOneLimitTooLargeFails) {
         Mutant{"workspace", without<&Limits::workspace_radius_m>, "never came to zero"}}) {
     const LimitsReport wrong = plan(mutant.plan, mutant.gate_limits);
     EXPECT_FALSE(wrong.passed()) << mutant.plan;
-    EXPECT_NE(broken(wrong).find(mutant.sentence), std::string::npos)
+    EXPECT_NE(broken(wrong).find(mutant.message), std::string::npos)
         << mutant.plan << ": " << broken(wrong);
     EXPECT_TRUE(plan(mutant.plan, alike).passed()) << mutant.plan;
   }
@@ -259,7 +259,7 @@ TEST(Limits, ARealDeviceDoesNotMoveWithoutTheWords) {
 
 TEST(Limits, ARealDeviceIsTestedAfterTheWordsAndSaysWhatWasNotRun) {
   const Outcome out =
-      run("--consent-from-stdin --json " + real_device() + typed(consent_words(8.0)));
+      run("--consent-from-stdin --json " + real_device() + typed(consent_text(8.0)));
   const std::size_t begin = out.output.find('{');  // after the warning
   ASSERT_NE(begin, std::string::npos) << out.output;
   const auto report = nlohmann::json::parse(out.output.substr(begin));

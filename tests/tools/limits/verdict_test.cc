@@ -38,7 +38,7 @@ constexpr Limits kLimits{.force_N = 2.0,
 
 bool holds(const std::vector<TickRow>& rows, const std::string& words, Limits limits = kLimits) {
   for (const Check& c : check_rows({}, rows, limits, 0.001).checks)
-    if (c.sentence.find(words) != std::string::npos) return c.holds;
+    if (c.message.find(words) != std::string::npos) return c.holds;
   ADD_FAILURE() << "no check says " << words;
   return false;
 }
@@ -112,7 +112,7 @@ TEST(Verdict, SeesATorqueThatStaysWhenTheForceHasGone) {
   estop.grip = Grip::kLever;
   const auto says = [&](const char* words) {
     for (const Check& c : check_rows(estop, rows, kLimits, 0.001).checks)
-      if (c.sentence.find(words) != std::string::npos) return c.holds;
+      if (c.message.find(words) != std::string::npos) return c.holds;
     ADD_FAILURE() << "no check says " << words;
     return false;
   };

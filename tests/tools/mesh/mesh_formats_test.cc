@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tact-mesh reads every format that it names, and refuses a file that is none in one sentence.
+// tact-mesh reads every format that it names, and refuses a file that is none in one message.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -123,7 +123,7 @@ TEST_F(MeshRepair, AScannedOrganBecomesSoundInOneCommand) {
   EXPECT_EQ(report["out"], out);
 
   const auto loaded = model::mesh::load_obj(out, 0.001);
-  ASSERT_TRUE(loaded) << loaded.error().sentence;
+  ASSERT_TRUE(loaded) << loaded.error().message;
   const auto sum = model::mesh::summarize(loaded->mesh);
   EXPECT_EQ(sum.boundary_edges, 0u);
   EXPECT_GT(sum.triangles, 5900u);
@@ -148,7 +148,7 @@ TEST_F(MeshRepair, ACrossingIsSeenByThisTest) {
       kCubeVertices + kCubeFaces +
           "v 5 5 5\nv 15 6 6\nv 6 15 7\nv 7 6 15\nf 9 11 10\nf 9 10 12\nf 10 11 12\nf 11 9 12\n");
   const auto loaded = model::mesh::load_obj(two, 0.001);
-  ASSERT_TRUE(loaded) << loaded.error().sentence;
+  ASSERT_TRUE(loaded) << loaded.error().message;
   EXPECT_GT(crossings(loaded->mesh), 0u);
 }
 

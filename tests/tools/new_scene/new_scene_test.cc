@@ -88,10 +88,10 @@ TEST_F(NewScene, AScanBecomesASceneThatIsFelt) {
     EXPECT_NE(ran.out.find(reported), ran.out.npos) << reported << ran.out;
 
   const auto scene = model::scene::load_scene(out_, {});
-  ASSERT_TRUE(scene) << scene.error().sentence;
+  ASSERT_TRUE(scene) << scene.error().message;
   EXPECT_EQ(scene->name, "mine");
   EXPECT_EQ(scene->law, model::scene::LawKind::kCompliance);
-  EXPECT_TRUE(scene->varies_by_place) << "the map is of this organ";
+  EXPECT_TRUE(scene->varies_over_surface) << "the map is of this organ";
   EXPECT_EQ(scene->elastic->youngs_modulus_Pa, 8000.0);
   const auto sum = summarize(scene->organ_mesh);
   EXPECT_NEAR(sum.high_m.z, 0.0, 1e-6) << "its top is under the tool";
@@ -115,7 +115,7 @@ TEST_F(NewScene, ASoundObjIsTakenAsItIsAndAnEarlierSceneIsKept) {
   ASSERT_EQ(ran.status, 0) << ran.err;
   EXPECT_EQ(made(), (std::vector<std::string>{"mine.compliance", "mine.toml", "mine_tool.obj"}));
   auto scene = model::scene::load_scene(out_, {});
-  ASSERT_TRUE(scene) << scene.error().sentence;
+  ASSERT_TRUE(scene) << scene.error().message;
   EXPECT_EQ(scene->organ.mesh_path, fs::path(organ).lexically_normal().string());
 
   const std::string first = tests::read_text(out_);
@@ -128,7 +128,7 @@ TEST_F(NewScene, ASoundObjIsTakenAsItIsAndAnEarlierSceneIsKept) {
   ran = run(arguments + " --poisson-ratio 0.3 --force");
   ASSERT_EQ(ran.status, 0) << ran.err;
   scene = model::scene::load_scene(out_, {});
-  ASSERT_TRUE(scene) << scene.error().sentence;
+  ASSERT_TRUE(scene) << scene.error().message;
   EXPECT_EQ(scene->elastic->poisson_ratio, 0.3);
   EXPECT_EQ(model::scene::read_compliance_map(path("mine.compliance"))->poisson_ratio, 0.3);
 }
@@ -143,7 +143,7 @@ TEST_F(NewScene, AScanWithColoursKeepsThem) {
   const Ran ran = run(temp_.write("scan.obj", text) + " --smooth --faces 600 --out " + out_);
   ASSERT_EQ(ran.status, 0) << ran.err;
   const auto scene = model::scene::load_scene(out_, {});
-  ASSERT_TRUE(scene) << scene.error().sentence;
+  ASSERT_TRUE(scene) << scene.error().message;
   ASSERT_EQ(scene->look.vertex_color.size(), scene->organ_mesh.vertex_m.size());
   for (std::size_t v = 0; v < scene->look.vertex_color.size(); ++v) {
     const double above_m = scene->organ_mesh.vertex_m[v].z + 0.03;  // its top is at 0
@@ -260,9 +260,9 @@ TEST_F(NewScene, AFileThatAppearsDuringTheWorkIsKept) {
   const auto error = write_all(
       {{path("mine.a"), "a"}, {path("mine.b"), "same kind"}, {path("mine.b"), "same kind"}}, false);
   ASSERT_TRUE(error);
-  EXPECT_NE(error->sentence.find("mine.b: exists already and is never overwritten"),
+  EXPECT_NE(error->message.find("mine.b: exists already and is never overwritten"),
             std::string::npos)
-      << error->sentence;
+      << error->message;
   EXPECT_FALSE(fs::exists(path("mine.a"))) << "none of ours stays";
   const std::string theirs = temp_.write("mine.c", "same kind, theirs");
   EXPECT_TRUE(write_all({{path("mine.a"), "a"}, {theirs, "same kind, ours"}}, false));
@@ -271,10 +271,10 @@ TEST_F(NewScene, AFileThatAppearsDuringTheWorkIsKept) {
   EXPECT_EQ(tests::read_text(theirs), "same kind, ours");
 }
 
-TEST(ScenePlace, HoldsTheLowestTenthAndPressesNoDeeperThanAFifth) {
+TEST(ScenePlacement, HoldsTheLowestTenthAndPressesNoDeeperThanAFifth) {
   SurfaceMesh organ = tests::make_ball(1.0, 2);
   for (Vec3& p : organ.vertex_m) p = {0.05 * p.x, 0.04 * p.y, 0.02 * p.z + 1.0};
-  const ScenePlace place = place_of(organ);
+  const ScenePlacement place = place_of(organ);
   // 0.98 to 1.02 m high: a tenth is 4 mm, a fifth 8 mm.
   EXPECT_NEAR(place.held.max_m.z, 0.984, 1e-12);
   EXPECT_LT(place.held.min_m.z, 0.98);

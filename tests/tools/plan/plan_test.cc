@@ -158,7 +158,7 @@ TEST(Plan, ReadsTactsRowsOfAChart) {
   scene.hash = "another";
   const auto wrong = check_chart_fits(table, scene, "chart.json");
   ASSERT_TRUE(wrong);
-  EXPECT_TRUE(has(wrong->sentence, "tact-lab chart plate.toml")) << wrong->sentence;
+  EXPECT_TRUE(has(wrong->message, "tact-lab chart plate.toml")) << wrong->message;
 }
 
 class PlanFile : public testing::Test {
@@ -182,12 +182,12 @@ class PlanFile : public testing::Test {
   }
   void expect_remedy(const model::Result<model::scene::Plan>& read, const std::string& what) const {
     ASSERT_FALSE(read) << what;
-    EXPECT_TRUE(has(read.error().sentence, what)) << read.error().sentence;
+    EXPECT_TRUE(has(read.error().message, what)) << read.error().message;
     EXPECT_TRUE(
-        has(read.error().sentence,
+        has(read.error().message,
             "run tact-lab plan plate.toml --set law=auto --set 'name=\"a b\"' --reference FILE, "
             "FILE from tact-lab reference plate.toml --out FILE"))
-        << read.error().sentence;
+        << read.error().message;
   }
 
   const std::vector<std::string> kSet{"law=auto", "name=\"a b\""};
@@ -204,7 +204,7 @@ TEST_F(PlanFile, IsFoundAgainByTheSceneAndSetsItsLawAndSizes) {
   ASSERT_TRUE(model::scene::write_plan(plan_, *path));
   const auto read = model::scene::find_plan(scene_, {});
   unsetenv("XDG_CACHE_HOME");
-  ASSERT_TRUE(read) << read.error().sentence;
+  ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(model::scene::plan_text(*read), model::scene::plan_text(plan_));
   model::scene::use_sizes(read->sizes, scene_);
   EXPECT_EQ(scene_.law, LawKind::kCompliance);
@@ -224,11 +224,11 @@ TEST_F(PlanFile, OfAShippedSceneIsFoundWhenAutoIsSetForOneRun) {
   const auto found = model::scene::find_plan(*run, {"law=auto", "rate_Hz=2000"});
   const auto missing = model::scene::find_plan(*slower, {"law=auto"});
   unsetenv("XDG_CACHE_HOME");
-  ASSERT_TRUE(found) << found.error().sentence;
+  ASSERT_TRUE(found) << found.error().message;
   EXPECT_EQ(found->sizes.law, LawKind::kCompliance);
   ASSERT_FALSE(missing) << "the plan of another rate";
-  EXPECT_TRUE(has(missing.error().sentence, "run tact-lab plan " + liver + " --reference"))
-      << missing.error().sentence;
+  EXPECT_TRUE(has(missing.error().message, "run tact-lab plan " + liver + " --reference"))
+      << missing.error().message;
 }
 
 TEST_F(PlanFile, RefusesWhatIsMissingDamagedOrStale) {
@@ -262,7 +262,7 @@ TEST_F(PlanFile, RefusesWhatIsMissingDamagedOrStale) {
 TEST_F(PlanFile, EveryDamageIsTold) {
   tests::expect_all_damage_is_reported(write(plan_text(plan_)), [&](const std::string& path) {
     const auto read = model::scene::read_plan(path, scene_, kSet);
-    return !read && has(read.error().sentence, "damaged, its sha256");
+    return !read && has(read.error().message, "damaged, its sha256");
   });
 }
 

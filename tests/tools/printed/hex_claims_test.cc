@@ -95,7 +95,7 @@ TEST(HexClaims, X15MoreRingsDoNotComeCloserToAnyForce) {
 }
 
 TEST(HexClaims, X15ThePrintedDentHasNoEnd) {
-  // l_i falls like 1/sqrt(i) only: half way out the dent is still a fifth deep, at any m.
+  // l_i falls like 1/sqrt(i) only: half way out the indentation is still a fifth deep, at any m.
   for (const std::size_t rings : {10u, 24u, 64u}) {
     const PaperShape at = paper_shape_at_depth(kPitch_m, rings, 1_mm);
     EXPECT_NEAR(at.drop_m[rings - 1] / at.drop_m[0],

@@ -23,7 +23,7 @@ constexpr HexPaperParameters kPrinted{.ring_pitch_m = 2_mm,
 
 HexPaper make(const HexPaperParameters& p) {
   auto paper = make_hex_paper(p);
-  EXPECT_TRUE(paper) << paper.error().sentence;
+  EXPECT_TRUE(paper) << paper.error().message;
   return *paper;
 }
 
@@ -107,7 +107,7 @@ TEST(HexPaper, RimSlopeAsksForANumberOfRings) {
   // The exact inversion of HX-9: the rim slope of m rings asks for m rings
   for (const std::size_t rings : {2u, 7u, 25u, 60u}) {
     const PaperShape at = paper_shape_at_strain(2_mm, rings, 0.1);
-    EXPECT_NEAR(paper_rings(0.1, at.rim_slope).exact, static_cast<double>(rings), 1e-9);
+    EXPECT_NEAR(paper_rings(0.1, at.boundary_slope).exact, static_cast<double>(rings), 1e-9);
   }
   // HX-13: eps_1 = 0.1 with l_m/r = 0.061 is m = 25
   EXPECT_EQ(paper_rings(0.1, 0.061).rings, 25u);

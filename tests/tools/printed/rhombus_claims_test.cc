@@ -117,7 +117,7 @@ TEST(RhombusClaims, X6ThePrintedUnitsCannotBeFelt) {
                                          .tangential_stiffness_N_per_m = 1.8,
                                          .growth = kBeta,
                                          .units = 10});
-  ASSERT_TRUE(chain) << chain.error().sentence;
+  ASSERT_TRUE(chain) << chain.error().message;
   EXPECT_NEAR(chain->respond(1.0).force_N, 0.015, 1e-5);
   EXPECT_LT(chain->respond(1.0).force_N, 20.0 / 1000.0);
 }
@@ -141,7 +141,7 @@ TEST(RhombusClaims, X7TheLambdaCutHasADeadZoneAndJumps) {
   EXPECT_LT(largest_step_m, 0.01_mm) << "the chain itself is smooth";
 }
 
-// "With the force the dented part grows ever more slowly": so it is, by the source's own rule.
+// "With the force the indented part grows ever more slowly": so it is, by the source's own rule.
 TEST(RhombusClaims, TheDentedPartGrowsEverMoreSlowlyWithTheForce) {
   EXPECT_EQ(cut(0.1 * 15.0).units, 3);
   EXPECT_EQ(cut(0.3 * 15.0).units, 6);

@@ -102,7 +102,7 @@ TEST(Output, NeverReplacesAnInput) {
   std::ofstream(file) << "depth_m,force_N\n";
   const auto error = check_output(file, "depth_m,u", {"", file});
   ASSERT_TRUE(error);
-  EXPECT_NE(error->sentence.find("name another"), std::string::npos);
+  EXPECT_NE(error->message.find("name another"), std::string::npos);
   EXPECT_FALSE(check_output(file, "depth_m,u", {}));
   EXPECT_TRUE(check_output(file, "{", {})) << "another kind of file";
   fs::remove(file);

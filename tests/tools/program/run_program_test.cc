@@ -20,7 +20,7 @@ using model::Result;
 
 ScratchFolder folder() {
   auto made = ScratchFolder::make("tact-run-program-test");
-  EXPECT_TRUE(made) << made.error().sentence;
+  EXPECT_TRUE(made) << made.error().message;
   return std::move(*made);
 }
 
@@ -51,7 +51,7 @@ bool goes_away(pid_t process) {
 TEST(RunProgram, KeepsWhatWasPrintedAndTakesArgumentsAsTheyAre) {
   const auto where = folder();
   const auto said = run(where, "printf", {"%s|", "a b", "$HOME", "'\"*"});
-  ASSERT_TRUE(said) << said.error().sentence;
+  ASSERT_TRUE(said) << said.error().message;
   EXPECT_EQ(*said, "a b|$HOME|'\"*|");
 }
 
@@ -70,7 +70,7 @@ TEST(RunProgram, HandsOnEachLineAsItComes) {
                                    came_before_the_end |=
                                        lines.size() == 1 && fs::file_size(where.file("log")) == 4;
                                  }});
-  ASSERT_TRUE(said) << said.error().sentence;
+  ASSERT_TRUE(said) << said.error().message;
   EXPECT_EQ(lines, (std::vector<std::string>{"one", "two"}));
   EXPECT_TRUE(came_before_the_end);
 }
@@ -78,7 +78,7 @@ TEST(RunProgram, HandsOnEachLineAsItComes) {
 TEST(RunProgram, RunsInItsFolderWithItsEnvironment) {
   const auto where = folder();
   const auto said = run(where, "sh", {"-c", "pwd; echo $TACT_TEST; echo to stderr >&2"});
-  ASSERT_TRUE(said) << said.error().sentence;
+  ASSERT_TRUE(said) << said.error().message;
   EXPECT_EQ(*said, fs::canonical(where.path()).string() + "\na value\nto stderr\n");
 }
 
@@ -86,7 +86,7 @@ TEST(RunProgram, SaysWhatToInstall) {
   const auto where = folder();
   const auto said = run(where, "no-such-program-of-tact", {});
   ASSERT_FALSE(said);
-  EXPECT_EQ(said.error().sentence,
+  EXPECT_EQ(said.error().message,
             "no-such-program-of-tact is not installed; apt install the-package");
 }
 
@@ -94,11 +94,11 @@ TEST(RunProgram, TellsTheLastLinesOfAFailure) {
   const auto where = folder();
   const auto said = run(where, "sh", {"-c", "seq 100; echo the cause; exit 3"});
   ASSERT_FALSE(said);
-  const std::string& sentence = said.error().sentence;
-  EXPECT_NE(sentence.find("status 3"), std::string::npos) << sentence;
-  EXPECT_NE(sentence.find("the cause"), std::string::npos) << sentence;
-  EXPECT_NE(sentence.find(where.file("log")), std::string::npos) << sentence;
-  EXPECT_EQ(sentence.find("\n50\n"), std::string::npos) << "only the end belongs in a message";
+  const std::string& message = said.error().message;
+  EXPECT_NE(message.find("status 3"), std::string::npos) << message;
+  EXPECT_NE(message.find("the cause"), std::string::npos) << message;
+  EXPECT_NE(message.find(where.file("log")), std::string::npos) << message;
+  EXPECT_EQ(message.find("\n50\n"), std::string::npos) << "only the end belongs in a message";
   EXPECT_FALSE(was_interrupted(said.error()));
 }
 
@@ -106,8 +106,8 @@ TEST(RunProgram, EndsAProgramAndItsChildrenAfterTheTimeLimit) {
   const auto where = folder();
   const auto said = run(where, "sh", {"-c", "sleep 60 & echo $!; wait"}, 1.0);
   ASSERT_FALSE(said);
-  EXPECT_NE(said.error().sentence.find("took longer than 1 s"), std::string::npos)
-      << said.error().sentence;
+  EXPECT_NE(said.error().message.find("took longer than 1 s"), std::string::npos)
+      << said.error().message;
   pid_t child = 0;
   std::ifstream(where.file("log")) >> child;
   ASSERT_GT(child, 1);
@@ -116,14 +116,14 @@ TEST(RunProgram, EndsAProgramAndItsChildrenAfterTheTimeLimit) {
 
 TEST(RunProgram, EndsAProgramAtCtrlC) {
   const auto where = folder();
-  const InterruptWatch watch;
+  const InterruptFlag watch;
   std::jthread ctrl_c([] {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     std::raise(SIGINT);
   });
   const auto said = run(where, "sleep", {"60"});
   ASSERT_FALSE(said);
-  EXPECT_TRUE(was_interrupted(said.error())) << said.error().sentence;
+  EXPECT_TRUE(was_interrupted(said.error())) << said.error().message;
 }
 
 pid_t written_number(const std::string& path) {
@@ -137,7 +137,7 @@ pid_t written_number(const std::string& path) {
 TEST(RunProgram, EndsAProgramAtAClosedTerminalAndAtTermination) {
   for (const int signal : {SIGHUP, SIGTERM}) {
     const auto where = folder();
-    const InterruptWatch watch;
+    const InterruptFlag watch;
     std::jthread sender([signal] {
       std::this_thread::sleep_for(std::chrono::milliseconds(100));
       std::raise(signal);
@@ -145,14 +145,14 @@ TEST(RunProgram, EndsAProgramAtAClosedTerminalAndAtTermination) {
     });
     const auto said = run(where, "sleep", {"60"});
     ASSERT_FALSE(said);
-    EXPECT_TRUE(was_interrupted(said.error())) << said.error().sentence;
+    EXPECT_TRUE(was_interrupted(said.error())) << said.error().message;
   }
 }
 
-TEST(InterruptWatch, LetsNohupBeAndForgetsWhatItEndsWith) {
+TEST(InterruptFlag, LetsNohupBeAndForgetsWhatItEndsWith) {
   std::signal(SIGHUP, SIG_IGN);
   {
-    const InterruptWatch watch;
+    const InterruptFlag watch;
     std::raise(SIGHUP);
     EXPECT_FALSE(is_interrupted());
     std::raise(SIGINT);
@@ -165,7 +165,7 @@ TEST(InterruptWatch, LetsNohupBeAndForgetsWhatItEndsWith) {
 TEST(RunProgram, AsksAProgramToEndSoThatItCanEndWhatItHasStarted) {
   const auto where = folder();
   const std::string file = where.file("its");
-  const InterruptWatch watch;
+  const InterruptFlag watch;
   const std::jthread hand([&] {
     written_number(where.file("log"));
     std::raise(SIGINT);
@@ -186,7 +186,7 @@ TEST(RunProgram, ASecondCtrlCLeavesNoProgramBehind) {
   const auto where = folder();
   const pid_t ours = fork();
   if (ours == 0) {  // a program of ours, that a person ends with two quick presses
-    const InterruptWatch watch;
+    const InterruptFlag watch;
     const std::jthread hand([&] {
       if (written_number(where.file("log")) == 0) _exit(1);
       std::raise(SIGINT);
@@ -208,7 +208,7 @@ TEST(RunProgram, ASecondCtrlCLeavesNoProgramBehind) {
 TEST(RunProgram, EndsWhatItsLeaderLeavesBehind) {
   const auto where = folder();
   const auto said = run(where, "sh", {"-c", "sleep 60 & echo $!"});
-  ASSERT_TRUE(said) << said.error().sentence;
+  ASSERT_TRUE(said) << said.error().message;
   EXPECT_TRUE(goes_away(std::stoi(*said)));
 }
 
@@ -222,7 +222,7 @@ TEST(RunningProgram, GoesWithItsWholeGroupWhenItsObjectGoes) {
                                                 .log_path = where.file("log"),
                                                 .package = {},
                                                 .environment = {}});
-    ASSERT_TRUE(running) << running.error().sentence;
+    ASSERT_TRUE(running) << running.error().message;
     grandchild = written_number(where.file("log"));
     ASSERT_GT(grandchild, 1);
     EXPECT_TRUE(running->is_running());
@@ -238,7 +238,7 @@ TEST(RunningProgram, IsKnownToHaveEnded) {
                                               .log_path = where.file("log"),
                                               .package = {},
                                               .environment = {}});
-  ASSERT_TRUE(running) << running.error().sentence;
+  ASSERT_TRUE(running) << running.error().message;
   for (int i = 0; i < 500 && running->is_running(); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   EXPECT_FALSE(running->is_running());
@@ -250,14 +250,14 @@ TEST(RunProgram, AnEndThatNobodyCanKnowIsAnError) {
   const auto said = run(where, "false", {});
   std::signal(SIGCHLD, SIG_DFL);
   ASSERT_FALSE(said);
-  EXPECT_NE(said.error().sentence.find("SIGCHLD is ignored"), std::string::npos)
-      << said.error().sentence;
+  EXPECT_NE(said.error().message.find("SIGCHLD is ignored"), std::string::npos)
+      << said.error().message;
 }
 
 TEST(RunProgram, AProgramTakesTheSignalsThatWeTake) {
   const auto where = folder();
   const auto said = run(where, "grep", {"SigBlk", "/proc/self/status"});
-  ASSERT_TRUE(said) << said.error().sentence;
+  ASSERT_TRUE(said) << said.error().message;
   EXPECT_EQ(*said, "SigBlk:\t0000000000000000\n");
 }
 

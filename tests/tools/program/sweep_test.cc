@@ -38,13 +38,13 @@ TEST(Sweep, TellsTheFirstErrorAndBeginsNoJobAfterIt) {
   std::size_t begun = 0;
   const auto error = run(2, begun);
   ASSERT_TRUE(error);
-  EXPECT_EQ(error->sentence, "job 2");
+  EXPECT_EQ(error->message, "job 2");
   EXPECT_EQ(begun, 3u);
   EXPECT_FALSE(run(6, begun));
 }
 
 TEST(Sweep, CtrlCEndsItBetweenTwoJobs) {
-  const InterruptWatch watch;
+  const InterruptFlag watch;
   std::atomic<int> ran{0};
   const auto results = sweep<int>(1000, {.label = "test", .threads = 2}, [&](std::size_t) {
     if (++ran == 10) std::raise(SIGINT);
@@ -58,11 +58,11 @@ TEST(Sweep, CtrlCEndsItBetweenTwoJobs) {
 
 TEST(Sweep, AnotherWatchStartsWithoutTheOldCtrlC) {
   {
-    const InterruptWatch watch;
+    const InterruptFlag watch;
     std::raise(SIGTERM);
     EXPECT_TRUE(is_interrupted());
   }
-  const InterruptWatch watch;
+  const InterruptFlag watch;
   EXPECT_FALSE(is_interrupted());
 }
 

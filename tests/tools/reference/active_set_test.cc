@@ -59,7 +59,7 @@ std::vector<double> forces_N(const Elasticity& material, double radius_m,
     }
   }
   const auto pressure = solve_contact(compliance, overlap);
-  EXPECT_TRUE(pressure) << (pressure ? "" : pressure.error().sentence);
+  EXPECT_TRUE(pressure) << (pressure ? "" : pressure.error().message);
   std::vector<double> out(balls.size(), 0.0);
   for (Eigen::Index i = 0; pressure && i < n; ++i)
     out[squares[static_cast<std::size_t>(i)].ball] += (*pressure)[i] * h * h;
@@ -111,7 +111,7 @@ TEST(ActiveSet, NeitherPullsNorLetsAnythingInForAnyDefiniteCompliance) {
     const Eigen::MatrixXd compliance =
         root * root.transpose() + 0.01 * Eigen::MatrixXd::Identity(n, n);
     const auto pressure = solve_contact(compliance, overlap);
-    ASSERT_TRUE(pressure) << pressure.error().sentence;
+    ASSERT_TRUE(pressure) << pressure.error().message;
     const Eigen::VectorXd gap = compliance * *pressure - overlap;
     EXPECT_GE(pressure->minCoeff(), -1e-8);
     EXPECT_GE(gap.minCoeff(), -1e-8);
@@ -123,7 +123,7 @@ TEST(ActiveSet, SaysWhenTheComplianceIsNone) {
   const Eigen::MatrixXd none = -Eigen::MatrixXd::Identity(3, 3);
   const auto pressure = solve_contact(none, Eigen::VectorXd::Ones(3));
   ASSERT_FALSE(pressure);
-  EXPECT_NE(pressure.error().sentence.find("not positive definite"), std::string::npos);
+  EXPECT_NE(pressure.error().message.find("not positive definite"), std::string::npos);
 }
 
 }  // namespace tact::tools::reference::active_set_test

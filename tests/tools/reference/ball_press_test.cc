@@ -48,7 +48,7 @@ struct Pressed {
 
 Pressed press_cylinder(double depth_m) {
   const auto block = make_block(0.01, 0.01, kTissue);
-  EXPECT_TRUE(block) << block.error().sentence;
+  EXPECT_TRUE(block) << block.error().message;
   const Circle tip{{0, 0, 0}, {0, 0, -1}, kRadius_m};
   auto body = make_organ_body(block->surface,
                               {.at_m = {},
@@ -58,7 +58,7 @@ Pressed press_cylinder(double depth_m) {
                                .growth = 0.8,
                                .largest_m = 8e-3},
                               block->held);
-  EXPECT_TRUE(body) << body.error().sentence;
+  EXPECT_TRUE(body) << body.error().message;
   Pressed out{.body = std::move(*body), .ball = {}, .displacement_m = {}};
   out.ball = ball_on(out.body, tip, depth_m);
   ElasticProblem problem{
@@ -68,7 +68,7 @@ Pressed press_cylinder(double depth_m) {
       .load = {.direction = tip.axis, .moved = {}, .large_strain = true, .ball = out.ball},
       .reported = nodes_of_faces(out.body, [](std::size_t) { return true; })};
   const auto answer = solve_with_calculix(problem);
-  EXPECT_TRUE(answer) << answer.error().sentence;
+  EXPECT_TRUE(answer) << answer.error().message;
   if (!answer) return out;
   out.force_N = answer->force_N;
   out.displacement_m.resize(out.body.mesh.node_m.size());
@@ -105,12 +105,12 @@ TEST_F(BallPress, TissueSlidesAroundTheBallAndIsNeverInIt) {
 
 TEST_F(BallPress, MayTouchWhatLooksAtItWithinTwoRadii) {
   const auto block = make_block(0.03, 0.03, kTissue);
-  ASSERT_TRUE(block) << block.error().sentence;
+  ASSERT_TRUE(block) << block.error().message;
   const auto body = make_organ_body(
       block->surface,
       {.at_m = {}, .axis = {}, .radius_m = 8e-3, .fine_m = 2e-3, .growth = 0.5, .largest_m = 8e-3},
       block->held);
-  ASSERT_TRUE(body) << body.error().sentence;
+  ASSERT_TRUE(body) << body.error().message;
   const BallContact ball = ball_on(*body, {{0, 0, 0}, {0, 0, -1}, kRadius_m}, 1e-3);
   EXPECT_EQ(ball.centre_m, (Vec3{0, 0, kRadius_m})) << "it rests on the site";
   std::set<model::contact::TriangleCorners> listed(ball.face.begin(), ball.face.end());

@@ -32,7 +32,7 @@ const TetMesh& cube() {
     const auto filled = ground_truth::fill_with_gmsh(
         vertex, triangle,
         {.at_m = {}, .axis = {}, .radius_m = 1.0, .fine_m = 0.5 * kSide_m, .growth = 0.0});
-    EXPECT_TRUE(filled) << filled.error().sentence;
+    EXPECT_TRUE(filled) << filled.error().message;
     return filled ? *filled : TetMesh{};
   }();
   return body;
@@ -70,7 +70,7 @@ TEST(Gmsh, FillsACubeToItsVolumeAndKeepsItsVertices) {
 TEST(Gmsh, RefusesAnOpenSurfaceAndKeepsItsLog) {
   auto where =
       program::ScratchFolder::make("tact-calculix-test");  // for the log, so that it goes too
-  ASSERT_TRUE(where) << where.error().sentence;
+  ASSERT_TRUE(where) << where.error().message;
   setenv("TMPDIR", where->path().c_str(), 1);
   const std::vector<Vec3> vertex{{0, 0, 0}, {0.01, 0, 0}, {0, 0.01, 0}, {0, 0, 0.01}};
   const std::vector<model::contact::TriangleCorners> triangle{{0, 2, 1}, {0, 1, 3}, {0, 3, 2}};
@@ -78,7 +78,7 @@ TEST(Gmsh, RefusesAnOpenSurfaceAndKeepsItsLog) {
       vertex, triangle, {.at_m = {}, .axis = {}, .radius_m = 1.0, .fine_m = 0.01, .growth = 0.0});
   unsetenv("TMPDIR");
   ASSERT_FALSE(body);
-  EXPECT_NE(body.error().sentence.find(where->path()), std::string::npos) << body.error().sentence;
+  EXPECT_NE(body.error().message.find(where->path()), std::string::npos) << body.error().message;
   EXPECT_FALSE(std::filesystem::is_empty(where->path()));
 }
 
@@ -89,7 +89,7 @@ TEST_F(SolvedByCalculiX, PassesThePatchTest) {
   const Vec3 direction = normalized(Vec3{0.3, -0.5, 0.8});
   const auto linear = [](const Vec3& x) { return 1e-3 * (2.0 * x.x - x.y + 0.5 * x.z); };
   const auto answer = solve_with_calculix(moved_along(direction, linear, true));
-  ASSERT_TRUE(answer) << answer.error().sentence;
+  ASSERT_TRUE(answer) << answer.error().message;
   for (std::uint32_t n = 0; n < cube().node_m.size(); ++n) {
     const Vec3 off_m = answer->displacement_m[n] - linear(cube().node_m[n]) * direction;
     EXPECT_LT(norm(off_m), 1e-6 * 1e-3 * kSide_m) << "node " << n;
@@ -110,7 +110,7 @@ TEST_F(SolvedByCalculiX, GivesYoungsModulusInTension) {
     if (z_m > kSide_m - 1e-9) p.load.moved.push_back({n, 1e-3 * kSide_m});
   }
   const auto answer = solve_with_calculix(p);
-  ASSERT_TRUE(answer) << answer.error().sentence;
+  ASSERT_TRUE(answer) << answer.error().message;
   EXPECT_NEAR(answer->force_N.z, 0.5e-3, 1e-6 * 0.5e-3);
   EXPECT_NEAR(std::hypot(answer->force_N.x, answer->force_N.y), 0.0, 1e-9);
   EXPECT_LT(norm(answer->displacement_m[0] - Vec3{0, 0, 1e-5}), 1e-11);
@@ -121,7 +121,7 @@ double confined_work_J(bool large_strain) {
   ElasticProblem p = moved_along({0, 0, 1}, [](const Vec3& x) { return -1e-3 * x.z; }, true);
   p.load.large_strain = large_strain;
   const auto answer = solve_with_calculix(p);
-  EXPECT_TRUE(answer) << answer.error().sentence;
+  EXPECT_TRUE(answer) << answer.error().message;
   double sum_J = 0.0;
   for (std::size_t i = 0; answer && i < p.load.moved.size(); ++i)
     sum_J += 0.5 * answer->moved_force_N[i].z * p.load.moved[i].along_m;
@@ -143,14 +143,14 @@ TEST(CalculiX, SaysWhatToInstall) {
   const auto gmsh = ground_truth::gmsh_version();
   setenv("PATH", path.c_str(), 1);
   ASSERT_FALSE(version);
-  EXPECT_EQ(version.error().sentence, "ccx is not installed; apt install calculix-ccx");
+  EXPECT_EQ(version.error().message, "ccx is not installed; apt install calculix-ccx");
   ASSERT_FALSE(gmsh);
-  EXPECT_EQ(gmsh.error().sentence, "gmsh is not installed; apt install gmsh");
+  EXPECT_EQ(gmsh.error().message, "gmsh is not installed; apt install gmsh");
 }
 
 TEST_F(SolvedByCalculiX, TellsItsVersion) {
   const auto version = calculix_version();
-  ASSERT_TRUE(version) << version.error().sentence;
+  ASSERT_TRUE(version) << version.error().message;
   EXPECT_EQ(version->substr(0, 2), "2.") << *version;
 }
 

@@ -51,7 +51,7 @@ TEST(TipContact, TakesTheGiveOfTheOrganFromOneSolve) {
 TEST(SurfaceFall, OfABallIsItsCap) {
   const model::mesh::SurfaceMesh ball = tests::make_ball(0.03, 5);
   const auto found = surface_fall_m(ball, 4, 17, kPitch_m);
-  ASSERT_TRUE(found) << found.error().sentence;
+  ASSERT_TRUE(found) << found.error().message;
   const std::vector<double>& fall_m = *found;
   ASSERT_EQ(fall_m.size(), 17U);
   EXPECT_EQ(fall_m[0], 0.0);
@@ -63,7 +63,7 @@ TEST(SurfaceFall, OfABallIsItsCap) {
 
 TEST(SurfaceFall, OfAPlateIsNothing) {
   const auto flat = surface_fall_m(tests::make_plate(0.1, 10), 60, 17, kPitch_m);
-  ASSERT_TRUE(flat) << flat.error().sentence;
+  ASSERT_TRUE(flat) << flat.error().message;
   for (const double fall_m : *flat) EXPECT_NEAR(fall_m, 0.0, 1e-15);
 }
 

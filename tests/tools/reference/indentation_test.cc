@@ -62,7 +62,7 @@ TEST(RingMeans, DoNotSeeTheFarSide) {
 
 TEST(Indentation, APullWithLargeStrainHasEdgesItCanDrawOut) {
   const auto block = make_block(0.05, 0.05, {.youngs_modulus_Pa = 1000.0, .poisson_ratio = 0.45});
-  ASSERT_TRUE(block) << block.error().sentence;
+  ASSERT_TRUE(block) << block.error().message;
   const auto fine_m = [&](double depth_m, bool large_strain, int level) {
     return edge_lengths(*block, {.vertex = 0,
                                  .tool_radius_m = 5e-3,
@@ -84,10 +84,10 @@ using SolvedIndentation = tests::NeedsCalculiX;
 TEST_F(SolvedIndentation, OfABlockIsThatOfAnIndependentSolution) {
   // Round block 50 x 50 mm, E = 1 kPa, nu = 0.45, sphere R = 5 mm: 40.46 mN at 5 mm (FEniCS).
   const auto block = make_block(0.05, 0.05, {.youngs_modulus_Pa = 1000.0, .poisson_ratio = 0.45});
-  ASSERT_TRUE(block) << block.error().sentence;
+  ASSERT_TRUE(block) << block.error().message;
   const auto solved =
       solve(*block, {.vertex = 0, .tool_radius_m = 5e-3, .depth_m = 5e-3, .level = kCoarsestLevel});
-  ASSERT_TRUE(solved) << solved.error().sentence;
+  ASSERT_TRUE(solved) << solved.error().message;
   EXPECT_NEAR(solved->force_N, 40.46e-3, 0.025 * 40.46e-3);
   EXPECT_GT(solved->force_N, 1.03 * sphere_force_N(block->material, 5e-3, 5e-3))
       << "the held bottom is felt";

@@ -12,7 +12,7 @@ namespace tact::tools::reference::reference_plan_test {
 
 ReferencePlan plan() {
   auto organ = make_block(0.05, 0.05, {.youngs_modulus_Pa = 1000.0, .poisson_ratio = 0.45});
-  EXPECT_TRUE(organ) << organ.error().sentence;
+  EXPECT_TRUE(organ) << organ.error().message;
   return {.organ = std::move(*organ),
           .mesh_name = "block.obj",
           .tool_radius_m = 5e-3,
@@ -112,24 +112,24 @@ TEST(ReferencePlan, TheCoarsestLevelHasNoErrorThatIsKnown) {
 }
 
 TEST(ReferencePlan, RefusesWhatCannotBeSolved) {
-  const auto sentence = [](auto change) {
+  const auto message = [](auto change) {
     ReferencePlan p = plan();
     change(p);
     const auto error = check(p);
-    return error ? error->sentence : std::string("fine");
+    return error ? error->message : std::string("fine");
   };
-  EXPECT_EQ(sentence([](ReferencePlan&) {}), "fine");
-  EXPECT_EQ(sentence([](ReferencePlan& p) { p.sites = {0, 434}; }),
+  EXPECT_EQ(message([](ReferencePlan&) {}), "fine");
+  EXPECT_EQ(message([](ReferencePlan& p) { p.sites = {0, 434}; }),
             "site 434 is no vertex of block.obj; they are 0 to 433");
-  EXPECT_EQ(sentence([](ReferencePlan& p) { p.sites = {3, 217}; }),
+  EXPECT_EQ(message([](ReferencePlan& p) { p.sites = {3, 217}; }),
             "site 217 lies in the held box, elastic.fixed_min_m to elastic.fixed_max_m; choose "
             "another, or "
             "move the box");
-  EXPECT_EQ(sentence([](ReferencePlan& p) { p.sites = {0, 3, 0}; }),
+  EXPECT_EQ(message([](ReferencePlan& p) { p.sites = {0, 3, 0}; }),
             "site 0 is there twice; give it once");
-  EXPECT_EQ(sentence([](ReferencePlan& p) { p.sites.clear(); }),
+  EXPECT_EQ(message([](ReferencePlan& p) { p.sites.clear(); }),
             "no site to solve; add [[reference_site]] to the scene, or give --sites");
-  EXPECT_EQ(sentence([](ReferencePlan& p) { p.large_strain_sites = {5}; }),
+  EXPECT_EQ(message([](ReferencePlan& p) { p.large_strain_sites = {5}; }),
             "large strain at 5, which is no site; add it to --sites");
   for (const std::vector<double>& bad : {std::vector<double>{},
                                          {0.0, 1e-3},
@@ -140,10 +140,10 @@ TEST(ReferencePlan, RefusesWhatCannotBeSolved) {
                                          {std::nan(""), 1e-3},
                                          {1e-3, std::numeric_limits<double>::infinity()},
                                          {0.1}})
-    EXPECT_EQ(sentence([&](ReferencePlan& p) { p.depths_m = bad; }),
+    EXPECT_EQ(message([&](ReferencePlan& p) { p.depths_m = bad; }),
               "--depths must rise, all above 0 and at most 0.025 m (5 tool radii); give metres: "
               "0.001,0.002");
-  EXPECT_EQ(sentence([](ReferencePlan& p) { p.depths_m = {0.025}; }), "fine");
+  EXPECT_EQ(message([](ReferencePlan& p) { p.depths_m = {0.025}; }), "fine");
 }
 
 }  // namespace tact::tools::reference::reference_plan_test

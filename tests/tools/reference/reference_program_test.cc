@@ -20,10 +20,10 @@ namespace tact::tests::reference_program_test {
 namespace fs = std::filesystem;
 const std::string kLiver = TACT_SOURCE_DIR "/model/scenes/liver.toml";
 
-void expect_refusal(const std::string& arguments, const std::string& sentence) {
+void expect_refusal(const std::string& arguments, const std::string& message) {
   const Outcome outcome = run_program("tact-lab reference", arguments);
   EXPECT_EQ(outcome.status, 2) << outcome.output;
-  EXPECT_EQ(outcome.output, "tact-lab reference: " + sentence + "\n");
+  EXPECT_EQ(outcome.output, "tact-lab reference: " + message + "\n");
 }
 
 TEST(ReferenceProgram, TellsItsOptionsWithUnits) {

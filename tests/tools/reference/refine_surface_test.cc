@@ -21,21 +21,21 @@ constexpr ground_truth::EdgeLengths kFine{
 
 Triangles block() {
   auto organ = make_block(0.05, 0.05, {});
-  EXPECT_TRUE(organ) << organ.error().sentence;
+  EXPECT_TRUE(organ) << organ.error().message;
   return {organ->surface.vertex_m, organ->surface.triangle};
 }
 
 /// Refined as asked; an error fails the test.
 Triangles refined(Triangles coarse, const ground_truth::EdgeLengths& lengths) {
   auto fine = refine_surface(std::move(coarse), lengths);
-  EXPECT_TRUE(fine) << fine.error().sentence;
+  EXPECT_TRUE(fine) << fine.error().message;
   return std::move(*fine);
 }
 
 /// The surface of triangles that must be sound; an error fails the test.
 model::mesh::SurfaceMesh sound(const Triangles& t) {
   auto surface = model::mesh::make_surface_mesh(t.vertex_m, t.triangle);
-  EXPECT_TRUE(surface) << surface.error().sentence;
+  EXPECT_TRUE(surface) << surface.error().message;
   return std::move(*surface);
 }
 
@@ -95,12 +95,12 @@ TEST(RefineSurface, RefusesEdgesThatCannotBeReached) {
     none.fine_m = fine_m;
     const auto endless = refine_surface(block(), none);
     ASSERT_FALSE(endless) << fine_m;
-    EXPECT_NE(endless.error().sentence.find("ask for a larger depth"), std::string::npos);
+    EXPECT_NE(endless.error().message.find("ask for a larger depth"), std::string::npos);
   }
 }
 
 TEST(RefineSurface, StopsAtCtrlC) {
-  const program::InterruptWatch watch;
+  const program::InterruptFlag watch;
   std::raise(SIGINT);
   const auto fine = refine_surface(block(), kFine);
   ASSERT_FALSE(fine);

@@ -20,14 +20,14 @@ namespace fs = std::filesystem;
 
 Organ block() {
   auto organ = make_block(0.05, 0.05, {.youngs_modulus_Pa = 1000.0, .poisson_ratio = 0.45});
-  EXPECT_TRUE(organ) << organ.error().sentence;
+  EXPECT_TRUE(organ) << organ.error().message;
   organ->hash = mesh_hash(organ->surface);
   return std::move(*organ);
 }
 
 program::ScratchFolder folder() {
   auto made = program::ScratchFolder::make("tact-solve-cache-test");
-  EXPECT_TRUE(made) << made.error().sentence;
+  EXPECT_TRUE(made) << made.error().message;
   return std::move(*made);
 }
 
@@ -103,7 +103,7 @@ TEST(SolveCache, SaysWhatToDoWithoutRoom) {
   const SolveCache nowhere(where.file(std::string(300, 'x')));
   const auto error = nowhere.keep("a key", {.depth_m = 1e-3, .profile_m = {}});
   ASSERT_TRUE(error);
-  EXPECT_NE(error->sentence.find("name another --cache"), std::string::npos) << error->sentence;
+  EXPECT_NE(error->message.find("name another --cache"), std::string::npos) << error->message;
 }
 
 TEST(SolveCache, ADamagedFileCountsAsAbsent) {
@@ -162,10 +162,10 @@ TEST(SolveCache, AHitDoesNotRunTheSolver) {
   const auto hit = solve_once(organ, kPress, "s", cache);
   const auto miss = solve_once(organ, kPress, "another solver", cache);
   setenv("PATH", path.c_str(), 1);
-  ASSERT_TRUE(hit) << hit.error().sentence;
+  ASSERT_TRUE(hit) << hit.error().message;
   EXPECT_EQ(hit->force_N, 42.0);
   ASSERT_FALSE(miss);
-  EXPECT_EQ(miss.error().sentence, "gmsh is not installed; apt install gmsh");
+  EXPECT_EQ(miss.error().message, "gmsh is not installed; apt install gmsh");
 }
 
 TEST(SolveCache, APressWithoutARadiusIsSolvedCoarselyFirst) {
@@ -196,7 +196,7 @@ TEST(SolveCache, APressWithoutARadiusIsSolvedCoarselyFirst) {
   ASSERT_FALSE(cache.keep(cache_key(organ, pressed, "s"),
                           {.depth_m = 1e-3, .force_N = 42.0, .profile_m = {}}));
   const auto solved = solve_without_programs();
-  ASSERT_TRUE(solved) << solved.error().sentence;
+  ASSERT_TRUE(solved) << solved.error().message;
   EXPECT_EQ(solved->force_N, 42.0);
 }
 

@@ -17,7 +17,7 @@ using model::Vec3;
 const model::scene::Scene& liver() {
   static const auto scene =
       model::scene::load_scene(TACT_SOURCE_DIR "/model/scenes/liver.toml", {});
-  EXPECT_TRUE(scene) << scene.error().sentence;
+  EXPECT_TRUE(scene) << scene.error().message;
   return *scene;
 }
 
@@ -37,7 +37,7 @@ TEST(SurfaceRays, GoThroughABall) {
 
 TEST(ToolPlan, PressesAlongTheSlidesOfTheHand) {
   const auto plan = tool_plan_of(liver(), {}, {}, 1);
-  ASSERT_TRUE(plan) << plan.error().sentence;
+  ASSERT_TRUE(plan) << plan.error().message;
   const auto& middle = plan->places[1];  // of one slide of 20 mm along y
   const auto& end = plan->places[2];
   EXPECT_EQ(name_of(plan->places[0]) + ", " + name_of(middle) + ", " + name_of(end),
@@ -59,7 +59,7 @@ TEST(ToolPlan, PressesAlongTheSlidesOfTheHand) {
 
 TEST(ToolPlan, PressesAtTheHandsSiteAndAtSixPlacesThatNoFitUses) {
   const auto plan = tool_plan_of(liver(), {}, {}, 1);
-  ASSERT_TRUE(plan) << plan.error().sentence;
+  ASSERT_TRUE(plan) << plan.error().message;
   constexpr std::size_t kOnTheWay = 3;  // the site and its slide
   ASSERT_EQ(plan->places.size(), kOnTheWay + kUnseenPlaces);
   EXPECT_FALSE(plan->places[0].vertex);
@@ -85,7 +85,7 @@ TEST(ToolPlan, PressesAtTheHandsSiteAndAtSixPlacesThatNoFitUses) {
 
 TEST(ToolPlan, FirstTouchesAtDepthZero) {
   const auto plan = tool_plan_of(liver(), {1985, 2478}, {}, 1);
-  ASSERT_TRUE(plan) << plan.error().sentence;
+  ASSERT_TRUE(plan) << plan.error().message;
   const auto presses = presses_of(*plan);
   ASSERT_EQ(presses.size(), 6U) << "three places at two levels";
   for (std::size_t i = 1; i < 3; ++i) {
@@ -108,19 +108,19 @@ TEST(ToolPlan, FirstTouchesAtDepthZero) {
 }
 
 TEST(ToolPlan, NamesWhatCannotBePressed) {
-  EXPECT_NE(tool_plan_of(liver(), {99999}, {}, 1).error().sentence.find("site 99999"),
+  EXPECT_NE(tool_plan_of(liver(), {99999}, {}, 1).error().message.find("site 99999"),
             std::string::npos);
-  EXPECT_NE(tool_plan_of(liver(), {125}, {}, 1).error().sentence.find("held"), std::string::npos);
-  EXPECT_NE(tool_plan_of(liver(), {}, {0.002, 0.001}, 1).error().sentence.find("--depths"),
+  EXPECT_NE(tool_plan_of(liver(), {125}, {}, 1).error().message.find("held"), std::string::npos);
+  EXPECT_NE(tool_plan_of(liver(), {}, {0.002, 0.001}, 1).error().message.find("--depths"),
             std::string::npos);
   model::scene::Scene bare = liver();
   bare.elastic.reset();
-  EXPECT_NE(tool_plan_of(bare, {}, {}, 1).error().sentence.find("[elastic]"), std::string::npos);
+  EXPECT_NE(tool_plan_of(bare, {}, {}, 1).error().message.find("[elastic]"), std::string::npos);
 }
 
 TEST(ToolPlan, AnErrorIsWhatIsLeftOfTheChangeBetweenTwoLevels) {
   const auto plan = tool_plan_of(liver(), {1985}, {0.002}, 1);
-  ASSERT_TRUE(plan) << plan.error().sentence;
+  ASSERT_TRUE(plan) << plan.error().message;
   const auto solved = [](double force_N) {
     return std::vector<ground_truth::ToolCase>{
         {.depth_m = 0.002, .force_N = force_N, .sphere_N = {0.0, force_N}}};

@@ -21,7 +21,7 @@ constexpr double kBar = 0.04;  // of the roughest mesh, which solves in seconds
 /// So large that it is a half-space: 0.3 m round and deep.
 Organ large_block() {
   auto organ = make_block(0.3, 0.3, kTissue);
-  EXPECT_TRUE(organ) << organ.error().sentence;
+  EXPECT_TRUE(organ) << organ.error().message;
   return std::move(*organ);
 }
 
@@ -31,7 +31,7 @@ TEST(ToolPress, OfOneSphereIsSneddons) {
                         .depths_m = {1e-3, 2e-3, 5e-3, 10e-3},
                         .level = kRoughLevel};
   const auto cases = solve(large_block(), press);
-  ASSERT_TRUE(cases) << cases.error().sentence;
+  ASSERT_TRUE(cases) << cases.error().message;
   ASSERT_EQ(cases->size(), 4U);
   for (const auto& c : *cases) {
     const double known_N = sphere_force_N(kTissue, 4e-3, c.depth_m);
@@ -42,12 +42,12 @@ TEST(ToolPress, OfOneSphereIsSneddons) {
 
 TEST(ToolPress, OfOneSphereOnTheLiverIsWhatCalculixFinds) {
   const auto scene = model::scene::load_scene(TACT_SOURCE_DIR "/model/scenes/liver.toml", {});
-  ASSERT_TRUE(scene) << scene.error().sentence;
+  ASSERT_TRUE(scene) << scene.error().message;
   const auto plan = plan_of(*scene);
-  ASSERT_TRUE(plan) << plan.error().sentence;
+  ASSERT_TRUE(plan) << plan.error().message;
   const auto known =
       ground_truth::read_reference(TACT_SOURCE_DIR "/tests/data/reference/liver.json");
-  ASSERT_TRUE(known) << known.error().sentence;
+  ASSERT_TRUE(known) << known.error().message;
   const ground_truth::SolvedSite& site = known->sites[2];
   ASSERT_EQ(site.vertex, 2780U) << "far from what is held: it gives most";
   const double R =
@@ -63,7 +63,7 @@ TEST(ToolPress, OfOneSphereOnTheLiverIsWhatCalculixFinds) {
     known_N.push_back(c.force_N);
   }
   const auto cases = solve(plan->organ, press);
-  ASSERT_TRUE(cases) << cases.error().sentence;
+  ASSERT_TRUE(cases) << cases.error().message;
   for (std::size_t i = 0; i < cases->size(); ++i)
     EXPECT_NEAR((*cases)[i].force_N, known_N[i], kBar * known_N[i]) << press.depths_m[i];
 }
@@ -79,7 +79,7 @@ TEST(ToolPress, OfTwoSpheresCouplesThem) {
       .depths_m = {second_m},
       .level = kRoughLevel};
   const auto cases = solve(large_block(), press);
-  ASSERT_TRUE(cases) << cases.error().sentence;
+  ASSERT_TRUE(cases) << cases.error().message;
   const auto& sphere_N = cases->front().sphere_N;
   EXPECT_NEAR(sphere_N[0], 0.020165, kBar * 0.020165);
   EXPECT_NEAR(sphere_N[1], 0.029695, kBar * 0.029695);

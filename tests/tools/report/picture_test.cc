@@ -34,7 +34,7 @@ TEST_F(PictureFiles, DrawsSvgAndPngFromATable) {
       {.name = "curve",
        .script = "set xlabel 'depth, m'\nplot 'curve.csv' using 2:3 with points title 'force'\n"},
       folder_);
-  ASSERT_TRUE(files) << files.error().sentence;
+  ASSERT_TRUE(files) << files.error().message;
   ASSERT_EQ(files->size(), 2u);
   EXPECT_NE(content((*files)[0]).find("<svg"), std::string::npos);
   EXPECT_NE(content((*files)[0]).find("depth, m"), std::string::npos);
@@ -56,7 +56,7 @@ TEST_F(PictureFiles, TheSameScriptGivesTheSameBytes) {
 TEST_F(PictureFiles, ABrokenScriptIsAnErrorThatQuotesGnuplot) {
   const auto files = draw({.name = "broken", .script = "plot 'none.csv' using\n"}, folder_);
   ASSERT_FALSE(files);
-  EXPECT_NE(files.error().sentence.find("gnuplot"), std::string::npos);
+  EXPECT_NE(files.error().message.find("gnuplot"), std::string::npos);
 }
 
 TEST_F(PictureFiles, WithoutGnuplotItSaysWhatToInstall) {
@@ -65,8 +65,8 @@ TEST_F(PictureFiles, WithoutGnuplotItSaysWhatToInstall) {
   const auto files = draw({.name = "curve", .script = "plot x\n"}, folder_);
   setenv("PATH", path.c_str(), 1);
   ASSERT_FALSE(files);
-  EXPECT_NE(files.error().sentence.find("apt install gnuplot-nox"), std::string::npos)
-      << files.error().sentence;
+  EXPECT_NE(files.error().message.find("apt install gnuplot-nox"), std::string::npos)
+      << files.error().message;
 }
 
 }  // namespace tact::tools::report::picture_test

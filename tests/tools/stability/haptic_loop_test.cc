@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "model/law/haptic_limit.h"
-#include "tools/stability/loop/gate_watch.h"
+#include "tools/stability/loop/gate_monitor.h"
 
 namespace tact::tools::stability::haptic_loop_test {
 
@@ -90,7 +90,7 @@ TEST(HapticLoop, BeyondTheLineTheGateKeepsForceAndSlewWithinLimits) {
     LoopCase loop = bare(0.5, 0.5e-3, rate_Hz);
     const double stiffness = 5.0 * theory(loop);
     loop.balance_m = 2.0 / stiffness;
-    GateWatch gate(rate_Hz);
+    GateMonitor gate(rate_Hz);
     gate.open(2.0);
     const LoopRun run = run_loop(loop, wall(stiffness), [&](double wanted_N, bool fresh) {
       return gate.step(wanted_N, fresh);
@@ -103,7 +103,7 @@ TEST(HapticLoop, BeyondTheLineTheGateKeepsForceAndSlewWithinLimits) {
 }
 
 TEST(HapticLoop, TheWitnessSeesWhatIsOutOfBounds) {
-  GateWatch gate(1000.0);
+  GateMonitor gate(1000.0);
   gate.open(0.0);
   for (int i = 0; i < 100; ++i) gate.step(100.0, true);
   EXPECT_NEAR(gate.written_N(), kSceneLimits.force_N, 1e-9);

@@ -27,10 +27,10 @@ class RunMaps : public testing::Test {
   }
   void check_findings(const std::string& only) {
     const auto run = run_maps(options(only));
-    ASSERT_FALSE(run.error) << run.error->sentence;
+    ASSERT_FALSE(run.error) << run.error->message;
     ASSERT_EQ(run.reports.size(), 1u);
     EXPECT_GE(run.reports.front().findings.size(), 2u);
-    for (const Finding& f : run.reports.front().findings) EXPECT_TRUE(f.holds) << f.sentence;
+    for (const Finding& f : run.reports.front().findings) EXPECT_TRUE(f.holds) << f.message;
   }
   std::string folder_;
 };

@@ -44,13 +44,13 @@ ChartRow check_errors_of(const Scene& scene, const Scene& elastic, const Variant
     if (!scene.relaxation.empty()) subject = make_subject(scene, variant.sizes);
   }
   if (!subject) {
-    row.failure = subject.error().sentence;
+    row.failure = subject.error().message;
     return row;
   }
   row.memory_bytes = (*subject)->memory_bytes();
   if (tool_reference == nullptr) return row;
   const auto checked = check_errors(sized(scene, variant), *tool_reference);
-  row.failure = checked ? checked->failure : checked.error().sentence;
+  row.failure = checked ? checked->failure : checked.error().message;
   if (row.failure.empty()) row.tool = checked->errors;
   return row;
 }
@@ -105,7 +105,7 @@ Result<std::vector<ChartRow>> measure_chart(const Scene& scene,
     if (const auto timing = time_tool(sized(scene, variants[job]), options.timing))
       all[job].timing = *timing;
     else
-      all[job].failure = timing.error().sentence;
+      all[job].failure = timing.error().message;
   });
   if (!timed) return program::interruption();
   std::vector<ChartRow> rows;

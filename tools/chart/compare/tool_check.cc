@@ -16,7 +16,7 @@
 namespace tact::tools::chart {
 namespace {
 
-using ground_truth::ToolPlace;
+using ground_truth::ToolPoint;
 using ground_truth::ToolReference;
 using model::Result;
 using model::Tool;
@@ -35,7 +35,7 @@ Scene reference_scene(Scene scene) {
 }
 
 /// The tool at a place, its lowest point `depth_m` beyond it.
-Tool tool_at(const Scene& scene, const ToolPlace& place, double depth_m) {
+Tool tool_at(const Scene& scene, const ToolPoint& place, double depth_m) {
   // p(d) = point - direction (reach - d), as a press stroke has it (scene_strokes.h)
   const double reach_m = model::scene::reach_m(scene.tool.spheres, scene.hand_inward);
   return {
@@ -46,7 +46,7 @@ Tool tool_at(const Scene& scene, const ToolPlace& place, double depth_m) {
 /// The force against the way, from above down to each depth.
 class Press {
  public:
-  Press(const Scene& scene, const model::scene::Tissue& tissue, const ToolPlace& place)
+  Press(const Scene& scene, const model::scene::Tissue& tissue, const ToolPoint& place)
       : scene_(scene),
         place_(place),
         contact_(tissue.contact_scene()),
@@ -68,14 +68,14 @@ class Press {
   }
 
   const Scene& scene_;
-  const ToolPlace& place_;
+  const ToolPoint& place_;
   model::contact::Contact contact_;
   bool is_stepped_;
   double at_m_ = -kAbove_m;
 };
 
 /// A tool that goes round over the hand's site while it sinks in and comes back.
-std::vector<Tool> moving_tool(const Scene& scene, const ToolPlace& place) {
+std::vector<Tool> moving_tool(const Scene& scene, const ToolPoint& place) {
   constexpr std::size_t kTurnTicks = 1000;
   constexpr double kTurnRadius_m = 0.004, kShallow_m = 0.001, kDeep_m = 0.009;
   const Vec3 side = std::abs(place.direction.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
@@ -92,7 +92,7 @@ std::vector<Tool> moving_tool(const Scene& scene, const ToolPlace& place) {
 }
 
 /// As the first place of a reference.
-ToolPlace hands_place(const Scene& scene) {
+ToolPoint hands_place(const Scene& scene) {
   return {.vertex = {},
           .point_m = scene.hand_site_m - scene.organ.position_m,
           .direction = scene.hand_inward,
@@ -165,12 +165,12 @@ Result<ToolRow> check_errors(const Scene& scene, const ToolReference& reference)
   const Scene elastic = reference_scene(scene);
   const auto tissue = make_tissue(elastic);
   if (!tissue) {
-    row.failure = tissue.error().sentence;
+    row.failure = tissue.error().message;
     return row;
   }
   std::vector<bool> unseen;
   for (std::size_t i = 0; i < reference.places.size(); ++i) {
-    const ToolPlace& place = reference.places[i];
+    const ToolPoint& place = reference.places[i];
     unseen.push_back(place.vertex.has_value());
     Press press(elastic, **tissue, place);
     for (std::size_t k = 0; k < place.cases.size(); ++k) {
@@ -195,7 +195,7 @@ Result<ToolRow> check_tool(const Scene& scene, model::scene::LawKind law,
   if (timed)
     row->timing = *timed;
   else
-    row->failure = timed.error().sentence;
+    row->failure = timed.error().message;
   return row;
 }
 

@@ -16,8 +16,8 @@ using model::Vec3;
 using model::contact::Indentation;
 
 /// The vertex as a place: one of its triangles, all the weight on its corner.
-model::contact::Place place_of(const model::mesh::SurfaceMesh& mesh, std::uint32_t vertex) {
-  model::contact::Place place{.triangle = mesh.fan[mesh.fan_start[vertex]], .weight = {}};
+model::contact::SurfacePoint place_of(const model::mesh::SurfaceMesh& mesh, std::uint32_t vertex) {
+  model::contact::SurfacePoint place{.triangle = mesh.fan[mesh.fan_start[vertex]], .weight = {}};
   for (std::size_t c = 0; c < 3; ++c)
     if (mesh.triangle[place.triangle][c] == vertex) place.weight[c] = 1.0;
   return place;
@@ -41,7 +41,7 @@ Result<std::vector<ProbeCase>> cases_of(const model::scene::Scene& scene,
       // The chart's reference is linear (measure.h).
       if (c.large_strain) continue;
       const Indentation in{.sphere = 0,
-                           .place = place_of(scene.organ_mesh, site.vertex),
+                           .surface_point = place_of(scene.organ_mesh, site.vertex),
                            .normal = -site.direction,
                            .indentation_m = c.depth_m,
                            .held = !c.is_press()};

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "model/contact/site.h"
+#include "model/contact/contact_point.h"
 #include "tools/ground_truth/ring_means.h"
 
 namespace tact::tools::chart {
@@ -14,14 +14,14 @@ namespace {
 using model::Result;
 using model::Vec3;
 using model::contact::Indentation;
-using model::contact::Place;
+using model::contact::SurfacePoint;
 using model::contact::SurfaceView;
 
 constexpr std::size_t kMaxRings = 128;
 constexpr int kRestTicks = 3000;       // at most, for a body with inertia to come to rest
 constexpr double kRestSpeed_m = 1e-9;  // a tick
 
-Vec3 point_of(const SurfaceView& surface, const Place& place) {
+Vec3 point_of(const SurfaceView& surface, const SurfacePoint& place) {
   Vec3 point{};
   for (std::size_t i = 0; i < 3; ++i)
     point += place.weight[i] * surface.vertex_m[surface.triangle[place.triangle][i]];
@@ -32,10 +32,11 @@ Vec3 point_of(const SurfaceView& surface, const Place& place) {
 /// triangle (dent_m: one entry a vertex).
 void ring_means(const SurfaceView& surface, const Indentation& in, double pitch_m,
                 std::span<const double> indentation_m, std::span<double> ring_m) {
-  const Vec3 centre = point_of(surface, in.place);
+  const Vec3 centre = point_of(surface, in.surface_point);
   double middle_m = 0.0;
   for (std::size_t c = 0; c < 3; ++c)
-    middle_m += in.place.weight[c] * indentation_m[surface.triangle[in.place.triangle][c]];
+    middle_m +=
+        in.surface_point.weight[c] * indentation_m[surface.triangle[in.surface_point.triangle][c]];
   ground_truth::RingMeans means(static_cast<int>(ring_m.size()), pitch_m, middle_m);
   for (const model::contact::TriangleCorners& corner : surface.triangle) {
     std::array<Vec3, 3> p{};
@@ -61,14 +62,14 @@ Subject::Subject(std::unique_ptr<model::scene::Scene> scene,
       indentation_m_(scene_->organ_mesh.vertex_m.size()) {}
 
 double Subject::tick(const Indentation& in) {
-  const double force_N = law_->site_law().respond(in).law.force_N;
-  law_->site_law().advance();
+  const double force_N = law_->contact_law().respond(in).law.force_N;
+  law_->contact_law().advance();
   return force_N;
 }
 
 void Subject::release() {
-  law_->site_law().leave(0);
-  law_->site_law().advance();
+  law_->contact_law().leave(0);
+  law_->contact_law().advance();
   // A body with inertia swings on after the tip has left.
   if (is_stepped()) wait_for_rest();
 }
@@ -80,8 +81,8 @@ void Subject::shape(const Indentation& in, double pitch_m, std::span<double> rin
     return;
   }
   std::array<double, kMaxRings> own{};
-  const std::size_t rings = law_->site_law().profile(in, own);
-  const double own_pitch_m = law_->site_law().ring_pitch_m();
+  const std::size_t rings = law_->contact_law().profile(in, own);
+  const double own_pitch_m = law_->contact_law().ring_pitch_m();
   for (std::size_t k = 0; k < ring_m.size(); ++k) {
     // linear between the law's rings, zero beyond the last
     const double x = static_cast<double>(k) * pitch_m / own_pitch_m;
@@ -94,7 +95,7 @@ void Subject::shape(const Indentation& in, double pitch_m, std::span<double> rin
 
 void Subject::fill_indentations(const Vec3& normal) {
   std::fill(indentation_m_.begin(), indentation_m_.end(), 0.0);
-  if (!law_->site_law().shape(shape_)) return;
+  if (!law_->contact_law().shape(shape_)) return;
   for (std::uint32_t i = 0; i < shape_.node_count; ++i) {
     const auto& [x, y, z] = shape_.displacement_m[i];
     const Vec3 moved_m{static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
@@ -107,7 +108,7 @@ void Subject::wait_for_rest() {
   constexpr int kLookEvery = 50;
   double before_m = 0.0;
   for (int i = 0; i < kRestTicks; ++i) {
-    law_->site_law().advance();
+    law_->contact_law().advance();
     if (i % kLookEvery != 0) continue;
     fill_indentations({0.0, 0.0, 1.0});
     double sum_m = 0.0;

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "model/contact/site_law.h"
+#include "model/contact/contact_law.h"
 #include "model/result.h"
 #include "model/scene/plan_file.h"
 #include "model/scene/scene.h"

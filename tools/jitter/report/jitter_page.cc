@@ -120,7 +120,7 @@ json peer_data(const JitterResult& result) {
     out["gate"] = {{"color", !verdict->turns     ? "unknown"
                              : verdict->passed() ? "green"
                                                  : "red"},
-                   {"sentence", verdict->sentence()}};
+                   {"sentence", verdict->message()}};
   return out;
 }
 
@@ -133,7 +133,7 @@ std::string make_page(const JitterResult& result, const std::string& command,
       kText, {{"subject", result.subject},
               {"headline", make_headline(result)},
               {"non_rt", result.non_rt},
-              {"outcome", outcome_of(result).sentence},
+              {"outcome", outcome_of(result).message},
               {"outcome_style", outcome_of(result).style},
               {"began", result.began_utc},
               {"host", result.host},

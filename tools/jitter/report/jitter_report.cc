@@ -60,7 +60,7 @@ json to_json(const std::optional<PeerVerdict>& verdict) {
   if (!verdict) return nullptr;
   return {{"most", verdict->most_ratio},
           {"passed", verdict->turns ? json(verdict->passed()) : json(nullptr)},
-          {"sentence", verdict->sentence()}};
+          {"sentence", verdict->message()}};
 }
 
 }  // namespace
@@ -118,8 +118,8 @@ Outcome outcome_of(const JitterResult& result) {
   if (!verdict)
     return {"part", "NOT JUDGED: no gate was asked for (--peer-gate); the numbers stand alone"};
   // Too few turns is neither pass nor fail: a script must not take it for one of them.
-  if (!verdict->turns) return {"part", "NOT JUDGED: " + verdict->sentence()};
-  return {verdict->passed() ? "pass" : "fail", verdict->sentence()};
+  if (!verdict->turns) return {"part", "NOT JUDGED: " + verdict->message()};
+  return {verdict->passed() ? "pass" : "fail", verdict->message()};
 }
 
 int exit_status(const JitterResult& result) {
@@ -170,7 +170,7 @@ std::string make_summary(const JitterResult& result) {
   }
   out += fmt::format("the largest is that of {} ticks: it bounds nothing\n", result.sink->ticks());
   if (result.peer) out += compare_with_peer(result) + "\n";
-  if (const auto verdict = check_peer(result)) out += verdict->sentence() + "\n";
+  if (const auto verdict = check_peer(result)) out += verdict->message() + "\n";
   const auto& thread = result.thread;
   out += fmt::format("loop's thread: {} heap calls, {} page faults, {} involuntary switches\n",
                      thread.heap_calls_known ? std::to_string(thread.heap_calls) : "unknown",
@@ -191,13 +191,13 @@ json to_json(const JitterResult& result, const std::string& command) {
   json series, late = json::array(), shortfalls = json::array();
   for (const NamedSeries& named : series_of(result)) series[named.key] = series_json(result, named);
   for (const LateTick& tick : result.sink->late_ticks()) late.push_back(late_json(result, tick));
-  for (const firmware::pc::Shortfall& s : result.shortfalls) shortfalls.push_back(s.sentence);
+  for (const firmware::pc::Shortfall& s : result.shortfalls) shortfalls.push_back(s.message);
   const auto ratio = ratio_to_peer(result);
   return {{"format", "tact-jitter"},
           {"version", 2},
           {"began", result.began_utc},
           {"host", result.host},
-          {"outcome", outcome_of(result).sentence},
+          {"outcome", outcome_of(result).message},
           {"command", command},
           {"subject", result.subject},
           {"rate_Hz", result.rate_Hz},

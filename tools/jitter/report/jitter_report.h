@@ -43,16 +43,16 @@ std::string compare_with_peer(const JitterResult& result);
 
 /// Nothing without a gate.
 std::optional<PeerVerdict> check_peer(const JitterResult& result);
-/// The run in one sentence that begins with its outcome, for the top of a report.
+/// The run in one message that begins with its outcome, for the top of a report.
 struct Outcome {
   const char* style;  // of page.css: pass, fail, part
-  std::string sentence;
+  std::string message;
 };
 Outcome outcome_of(const JitterResult& result);
 /// Of the program: 0 good, 1 a fault or a gate that fails, 2 a gate that could not be judged.
 int exit_status(const JitterResult& result);
 
-/// One sentence about the run: what, how long, where, how many late.
+/// One message about the run: what, how long, where, how many late.
 std::string make_headline(const JitterResult& result);
 /// Seconds since the first tick.
 double seconds_into(const JitterResult& result, std::int64_t at_ns);

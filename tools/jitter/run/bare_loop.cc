@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "firmware/loop/grid.h"
+#include "firmware/loop/release_schedule.h"
 
 namespace tact::tools::jitter {
 namespace {

@@ -161,7 +161,7 @@ std::optional<Error> Run::open() {
                                 parts_.tissue->law().title());
   if (options_.loop_back >= 0) {
     auto edges =
-        hal::gpio::open_edge_watch(scene_->device.lines.chip, options_.loop_back, "tact-jitter");
+        hal::gpio::open_edge_monitor(scene_->device.lines.chip, options_.loop_back, "tact-jitter");
     if (!edges) return edges.error();
     loop_back_.emplace(std::move(*edges), loop_period_ns());
   }

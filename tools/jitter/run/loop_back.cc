@@ -16,7 +16,7 @@ void PulseMeter::add(const hal::gpio::Edge& edge) {
   rose_ns_.reset();
 }
 
-LoopBack::LoopBack(std::unique_ptr<hal::gpio::EdgeWatch> edges, std::int64_t period_ns)
+LoopBack::LoopBack(std::unique_ptr<hal::gpio::EdgeMonitor> edges, std::int64_t period_ns)
     : edges_(std::move(edges)), meter_(period_ns), thread_([this] {
         while (!ending_.load())
           for (const hal::gpio::Edge& edge : edges_->read(std::chrono::milliseconds(20)))

@@ -9,7 +9,7 @@
 #include <optional>
 #include <thread>
 
-#include "hal/gpio/edge_watch.h"
+#include "hal/gpio/edge_monitor.h"
 #include "tools/jitter/statistics/tick_times.h"
 
 namespace tact::tools::jitter {
@@ -34,7 +34,7 @@ class PulseMeter {
 /// A thread of its own that reads edges until it is stopped.
 class LoopBack {
  public:
-  LoopBack(std::unique_ptr<hal::gpio::EdgeWatch> edges, std::int64_t period_ns);
+  LoopBack(std::unique_ptr<hal::gpio::EdgeMonitor> edges, std::int64_t period_ns);
   ~LoopBack();
   LoopBack(const LoopBack&) = delete;
   LoopBack& operator=(const LoopBack&) = delete;
@@ -43,7 +43,7 @@ class LoopBack {
   PulseMeter stop();
 
  private:
-  std::unique_ptr<hal::gpio::EdgeWatch> edges_;
+  std::unique_ptr<hal::gpio::EdgeMonitor> edges_;
   PulseMeter meter_;
   std::atomic<bool> ending_{false};
   std::thread thread_;

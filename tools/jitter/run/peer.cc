@@ -96,7 +96,7 @@ std::optional<TurnRatios> middle_of(std::vector<double> ratios) {
   return TurnRatios{ratios.size(), at(0.25), at(0.5), at(0.75)};
 }
 
-std::string PeerVerdict::sentence() const {
+std::string PeerVerdict::message() const {
   if (!turns)
     return fmt::format(
         "--peer-gate {:g} could not be judged: fewer than three turns with a p99.9; measure for "

@@ -51,7 +51,7 @@ struct PeerVerdict {
 
   bool passed() const { return turns && turns->median <= most_ratio; }
   /// "PASS: ...", "FAIL: ..." or why it could not be judged.
-  std::string sentence() const;
+  std::string message() const;
 };
 
 /// Runs it once and adds its samples.

@@ -17,9 +17,9 @@ using firmware::pc::PcFiles;
 using Count = std::optional<std::uint64_t>;
 
 constexpr off_t kSmiCount = 0x34;       // Intel SDM volume 4
-constexpr std::size_t kMaxSources = 4;  // in a sentence
+constexpr std::size_t kMaxSources = 4;  // in a message
 
-std::vector<std::string> words_of(const std::string& line) {
+std::vector<std::string> text_of(const std::string& line) {
   std::istringstream stream(line);
   std::vector<std::string> words;
   for (std::string word; stream >> word;) words.push_back(word);
@@ -44,12 +44,12 @@ void read_interrupts(const PcFiles& files, int core, Costs& costs) {
   std::istringstream table(files.text("/proc/interrupts").value_or(""));
   std::string line;
   std::getline(table, line);
-  const std::vector<std::string> head = words_of(line);  // online CPUs alone have a column
+  const std::vector<std::string> head = text_of(line);  // online CPUs alone have a column
   const auto at = std::find(head.begin(), head.end(), fmt::format("CPU{}", core));
   if (at == head.end()) return;
   const auto column = static_cast<std::size_t>(at - head.begin()) + 1;
   while (std::getline(table, line)) {
-    const std::vector<std::string> words = words_of(line);
+    const std::vector<std::string> words = text_of(line);
     const Count count = number_in(words, column);
     if (count && words[0].ends_with(':'))
       costs.interrupts[name_source(words, head.size())] += *count;
@@ -61,7 +61,7 @@ Count number_after(const std::string& text, const std::string& key) {
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);)
     if (line.starts_with(key)) {
-      const std::vector<std::string> words = words_of(line);
+      const std::vector<std::string> words = text_of(line);
       return words.empty() ? std::nullopt : number_in(words, words.size() - 1);
     }
   return std::nullopt;
@@ -101,18 +101,18 @@ Costs read_costs(const PcFiles& files, int thread, int core) {
   const std::string task = fmt::format("/proc/self/task/{}", thread);
   const std::string stat = files.line(task + "/stat").value_or("");
   // Behind the last bracket: a thread's name may have blanks and brackets of its own.
-  const auto fields = words_of(stat.substr(std::min(stat.rfind(')') + 1, stat.size())));
+  const auto fields = text_of(stat.substr(std::min(stat.rfind(')') + 1, stat.size())));
   costs.minor_faults = number_in(fields, 10 - 3);  // field 3 is the first behind the name
   costs.major_faults = number_in(fields, 12 - 3);
   const std::string status = files.text(task + "/status").value_or("");
   costs.voluntary_switches = number_after(status, "voluntary_ctxt_switches");
   costs.involuntary_switches = number_after(status, "nonvoluntary_ctxt_switches");
   costs.migrations = number_after(files.text(task + "/sched").value_or(""), "se.nr_migrations");
-  costs.waited_ns = number_in(words_of(files.line(task + "/schedstat").value_or("")), 1);
+  costs.waited_ns = number_in(text_of(files.line(task + "/schedstat").value_or("")), 1);
   std::istringstream stat_lines(files.text("/proc/stat").value_or(""));
   for (std::string line; std::getline(stat_lines, line);)
     if (line.starts_with(fmt::format("cpu{} ", core)))
-      if (const Count ticks = number_in(words_of(line), 8))
+      if (const Count ticks = number_in(text_of(line), 8))
         costs.steal_ms = *ticks * 1000 / static_cast<std::uint64_t>(sysconf(_SC_CLK_TCK));
   costs.smi = read_smi_count(files, core);
   return costs;

@@ -46,7 +46,7 @@ class TickSink {
 
   std::uint64_t ticks() const { return ticks_; }
   std::uint64_t skipped() const { return skipped_; }
-  /// Ticks that took longer than a period: the grid points after them had no tick.
+  /// Ticks that took longer than a period: the releases after them had no tick.
   std::uint64_t late() const { return late_; }
   /// Ticks that the ring has dropped: in no histogram.
   std::uint64_t unseen() const { return unseen_; }

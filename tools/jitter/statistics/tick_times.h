@@ -18,7 +18,7 @@ namespace tact::tools::jitter {
 struct TickTimes {
   std::uint64_t tick = 0;  // over all slices of a run
   std::int64_t due_ns = 0;
-  std::uint32_t skipped_before = 0;  // grid points that had no tick, just before this one
+  std::uint32_t skipped_before = 0;  // releases that had no tick, just before this one
   std::array<std::int32_t, firmware::loop::kPhaseCount> phase_ns{};
 
   std::int32_t phase(firmware::loop::Phase p) const {

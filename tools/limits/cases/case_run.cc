@@ -56,7 +56,7 @@ model::scene::Scene plate_scene(const Case& c, const LimitsBench& bench,
 std::unique_ptr<model::scene::Tissue> make_plate(const model::scene::Scene& scene) {
   auto tissue = model::scene::make_tissue(scene);
   if (tissue) return std::move(*tissue);
-  fmt::print(stderr, "tact-limits: {}\n", tissue.error().sentence);
+  fmt::print(stderr, "tact-limits: {}\n", tissue.error().message);
   std::abort();
 }
 

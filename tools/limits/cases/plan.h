@@ -92,7 +92,7 @@ struct Case {
 inline constexpr double kCause_s = 0.1;
 
 /// The case as it is run at this rate: bounds in seconds, long enough to see the end of them. Late
-/// ticks are borne for longer without hard real time (late_watch.h).
+/// ticks are borne for longer without hard real time (overrun_counter.h).
 Case at_rate(Case c, double period_s, bool hard_real_time);
 
 /// All cases but the wall (wall.h), in the order of the report.

@@ -57,9 +57,10 @@ bool in_trouble(const Case& c, const Moment& now) RT_SAFE {
   return now.after_cause() && now.ticks - now.cause_tick() < c.trouble_ticks;
 }
 
-model::contact::SiteResponse CommandLaw::respond(const model::contact::Indentation& in) RT_SAFE {
+model::contact::ContactLawResponse CommandLaw::respond(
+    const model::contact::Indentation& in) RT_SAFE {
   const Vec3 force_N = command_at(case_, now_, tool_, limit_N_);
-  model::contact::SiteResponse response;
+  model::contact::ContactLawResponse response;
   // A tool of one sphere: others would command the force again.
   if (in.sphere != 0) return response;
   response.law.force_N = force_N.z;

@@ -13,7 +13,7 @@
 #include "hal/device.h"
 #include "hal/safety_lines.h"
 #include "hal/sim/sim_lines.h"
-#include "model/contact/site_law.h"
+#include "model/contact/contact_law.h"
 #include "tools/limits/cases/plan.h"
 
 namespace tact::tools::limits {
@@ -40,12 +40,13 @@ Vec3 command_at(const Case& c, const Moment& now, const model::Tool& tool, doubl
 bool in_trouble(const Case& c, const Moment& now) RT_SAFE;
 
 /// One spring that always touches and pushes as commanded.
-class CommandLaw final : public model::contact::SiteLaw {
+class CommandLaw final : public model::contact::ContactLaw {
  public:
   CommandLaw(const Case& c, double limit_N, const Moment& now, const model::Tool& tool)
       : case_(c), limit_N_(limit_N), now_(now), tool_(tool) {}
 
-  model::contact::SiteResponse respond(const model::contact::Indentation& in) RT_SAFE override;
+  model::contact::ContactLawResponse respond(
+      const model::contact::Indentation& in) RT_SAFE override;
   void leave(std::size_t) RT_SAFE override {}
   void advance() RT_SAFE override {}
   std::size_t profile(const model::contact::Indentation&,

@@ -16,14 +16,14 @@ std::string warning_text(const std::string& device_name, double force_limit_N, b
                 : "The scene wires no emergency stop: a second hand stays on the power switch.");
 }
 
-std::string consent_words(double force_limit_N) {
+std::string consent_text(double force_limit_N) {
   return fmt::format("I hold the device and allow {:g} N", force_limit_N);
 }
 
 std::optional<model::Error> read_consent(std::istream& in, double force_limit_N) {
   std::string line;
   std::getline(in, line);
-  if (line == consent_words(force_limit_N)) return std::nullopt;
+  if (line == consent_text(force_limit_N)) return std::nullopt;
   return model::Error{"not agreed to: nothing moved; type the words exactly as they are shown"};
 }
 

@@ -17,9 +17,9 @@ namespace {
 
 constexpr auto kLook = std::chrono::milliseconds(100);
 
-std::vector<firmware::run::LoopTurn> turns_of(const Runs& runs, firmware::loop::Requests& requests,
-                                              std::atomic<std::size_t>& done) {
-  std::vector<firmware::run::LoopTurn> turns;
+std::vector<firmware::run::LoopRun> turns_of(const Runs& runs, firmware::loop::Requests& requests,
+                                             std::atomic<std::size_t>& done) {
+  std::vector<firmware::run::LoopRun> turns;
   for (const auto& run : runs)
     turns.push_back({run->progress(), [&run, &requests, &done] {
                        if (run->play())

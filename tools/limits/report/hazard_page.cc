@@ -16,7 +16,7 @@ using nlohmann::json;
 
 /// What this run says of one of its own cases.
 enum class Played : std::uint8_t { kNot, kPassed, kFailed };
-const char* words_of(Played played) {
+const char* text_of(Played played) {
   constexpr const char* kWords[] = {"not played", "pass", "FAIL"};
   return kWords[static_cast<std::size_t>(played)];
 }
@@ -62,7 +62,7 @@ json requirement_data(const Requirement& requirement, const LimitsReport& report
   for (const std::string& name : own_cases(requirement)) {
     const Played result = played(report, name);
     here.push_back({{"name", name},
-                    {"words", words_of(result)},
+                    {"words", text_of(result)},
                     {"style", result == Played::kPassed   ? "ok"
                               : result == Played::kFailed ? "bad"
                                                           : "quiet"}});
@@ -76,8 +76,7 @@ json requirement_data(const Requirement& requirement, const LimitsReport& report
 
 json requirement_json(const Requirement& requirement, const LimitsReport& report) {
   json here = json::object(), tests = json::array();
-  for (const std::string& name : own_cases(requirement))
-    here[name] = words_of(played(report, name));
+  for (const std::string& name : own_cases(requirement)) here[name] = text_of(played(report, name));
   for (const HazardTest& test : requirement.tests) tests.push_back(test.id);
   return {{"id", requirement.id},         {"text", requirement.text},     {"by", requirement.by},
           {"stages", requirement.stages}, {"faults", requirement.faults}, {"tests", tests},

@@ -48,7 +48,7 @@ void add_case(LimitRow& row, const CaseVerdict& v, bool reached, const TighterLi
 
 }  // namespace
 
-const char* kept_words(Kept kept) {
+const char* kept_text(Kept kept) {
   switch (kept) {
     case Kept::kNotReached:
       return "not reached";

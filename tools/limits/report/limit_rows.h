@@ -16,7 +16,7 @@ enum class Kept : std::uint8_t {
   kFail,  // in any case, tightened or not
 };
 /// "not reached", "pass at a tighter limit", "pass", "FAIL"
-const char* kept_words(Kept kept);
+const char* kept_text(Kept kept);
 
 /// The limit of a case that made it tighter.
 struct TighterLimit {

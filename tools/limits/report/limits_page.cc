@@ -74,7 +74,7 @@ json limit_data(const LimitRow& row) {
           {"style", row.kept == Kept::kFail         ? "bad"
                     : row.kept == Kept::kNotReached ? "part-text"
                                                     : "ok"},
-          {"kept", kept_words(row.kept)},
+          {"kept", kept_text(row.kept)},
           {"tighter", tighter}};
 }
 
@@ -101,7 +101,7 @@ std::string plain(double value) {
 json case_data(const CaseVerdict& v, const LimitsReport& report) {
   json broken = json::array();
   for (const Check& c : v.checks)
-    if (!c.holds) broken.push_back(c.sentence);
+    if (!c.holds) broken.push_back(c.message);
   const auto& allowed = v.subject.expected.zero_within_s;
   return {{"name", v.subject.name},
           {"what", v.subject.what},
@@ -114,7 +114,7 @@ json case_data(const CaseVerdict& v, const LimitsReport& report) {
           {"overshoot", fmt::format("{:.3g} N", v.overshoot_N)},
           {"zero", v.worst.zero_s ? fmt::format("{:.0f} ms", 1e3 * *v.worst.zero_s) : "-"},
           {"allowed", allowed ? fmt::format("{:.0f} ms", std::floor(1e3 * *allowed)) : "-"},
-          {"stages", v.acted_words()},
+          {"stages", v.acted_text()},
           {"fault", v.fault == Fault::kNone ? "" : model::describe(v.fault).name},
           {"holds", v.passed()}};
 }
@@ -122,20 +122,20 @@ json case_data(const CaseVerdict& v, const LimitsReport& report) {
 json wall_data(const WallVerdict& wall, const std::string& picture) {
   json checks = json::array();
   for (const Check& c : wall.checks)
-    checks.push_back({{"holds", c.holds}, {"sentence", c.sentence}});
+    checks.push_back({{"holds", c.holds}, {"sentence", c.message}});
   return {{"checks", checks},
           {"theory", fmt::format("{:.4g}", wall.theory_N_per_m)},
           {"picture", picture}};
 }
 
 /// What the page fills in as it is: words, numbers, and what is there to be told.
-json words_data(const LimitsReport& report) {
+json text_data(const LimitsReport& report) {
   const auto failed = static_cast<std::size_t>(std::ranges::count_if(
                           report.cases, [](const auto& r) { return !r.verdict.passed(); })) +
                       (report.wall && !report.wall->passed() ? 1 : 0);
   const bool kept = report.played() > 0 && failed == 0;
   const model::Limits& l = report.limits;
-  return {{"result", report.result_words()},
+  return {{"result", report.result_text()},
           {"played", std::to_string(report.played())},
           {"not_played", std::to_string(report.not_run.size())},
           {"none_played", report.played() == 0},
@@ -169,7 +169,7 @@ json words_data(const LimitsReport& report) {
 }  // namespace
 
 std::string page_html(const LimitsReport& report, const std::vector<std::string>& svg) {
-  json data = words_data(report);
+  json data = text_data(report);
   for (const auto& [why, names] : report.left_out_by_why())
     data["left_out"].push_back({{"why", why}, {"names", names}});
   for (const LimitRow& row : limit_rows(report)) data["limits"].push_back(limit_data(row));

@@ -52,7 +52,7 @@ report::Table case_table(const LimitsReport& report) {
                v.worst.step_N, v.worst.step_Nm, v.worst.power_W, v.worst.given_J, v.worst.rms_N,
                // NaN: never, or not asked for.
                v.worst.rms_Nm, v.worst.zero_s.value_or(std::nan("")),
-               v.subject.expected.zero_within_s.value_or(std::nan("")), word_of(v.acted_words()),
+               v.subject.expected.zero_within_s.value_or(std::nan("")), word_of(v.acted_text()),
                static_cast<double>(v.fault)});
   }
   return table;
@@ -107,7 +107,7 @@ report::Table trace_table(const CaseResult& result) {
                r.fresh ? 1.0 : 0.0,
                r.armed ? 1.0 : 0.0,
                static_cast<double>(r.skipped_periods),
-               word_of(stages.acted_words()),
+               word_of(stages.acted_text()),
                static_cast<double>(r.limit),
                static_cast<double>(r.fault)});
   }
@@ -142,7 +142,7 @@ bool LimitsReport::passed() const {
                      [](const CaseResult& r) { return r.verdict.passed(); });
 }
 
-std::string LimitsReport::result_words() const {
+std::string LimitsReport::result_text() const {
   if (!passed()) return "FAIL";
   if (not_run.empty()) return "PASS";
   return fmt::format("PASS of {} of {} cases", played(), played() + not_run.size());
@@ -169,14 +169,14 @@ std::string to_text(const LimitsReport& report) {
                        v.passed() ? "ok" : "FAIL", v.subject.name, v.worst.force_N,
                        v.limits.force_N, v.overshoot_N,
                        v.worst.zero_s ? fmt::format("after {:.0f} ms", 1e3 * *v.worst.zero_s) : "-",
-                       v.acted_words());
+                       v.acted_text());
     for (const Check& c : v.checks)
-      if (!c.holds) out += fmt::format("      FAIL: {}\n", c.sentence);
+      if (!c.holds) out += fmt::format("      FAIL: {}\n", c.message);
   }
   if (report.wall) {
     out += fmt::format("{:4}  {}\n", report.wall->passed() ? "ok" : "FAIL", kWallName);
     for (const Check& c : report.wall->checks)
-      out += fmt::format("      {}{}\n", c.holds ? "" : "FAIL: ", c.sentence);
+      out += fmt::format("      {}{}\n", c.holds ? "" : "FAIL: ", c.message);
   }
   for (const auto& [why, names] : report.left_out_by_why())
     out += fmt::format("-     not tested, {}: {}\n", why, names);

@@ -44,7 +44,7 @@ struct LimitsReport {
   bool passed() const;
   std::size_t played() const { return cases.size() + (wall ? 1 : 0); }
   /// "PASS", "PASS of 2 of 26 cases", "FAIL"; the page says SIMULATED before it
-  std::string result_words() const;
+  std::string result_text() const;
   /// Names of the cases that were left out, by why.
   std::vector<std::pair<std::string, std::string>> left_out_by_why() const;
 };

@@ -12,7 +12,7 @@ using nlohmann::json;
 
 json checks_json(const std::vector<Check>& checks) {
   json out = json::array();
-  for (const Check& c : checks) out.push_back({{"holds", c.holds}, {"sentence", c.sentence}});
+  for (const Check& c : checks) out.push_back({{"holds", c.holds}, {"sentence", c.message}});
   return out;
 }
 
@@ -38,7 +38,7 @@ json case_json(const CaseVerdict& v, bool simulated) {
           {"largest_rms_Nm", v.worst.rms_Nm},
           {"time_to_zero_s", or_null(v.worst.zero_s)},
           {"allowed_zero_s", or_null(v.subject.expected.zero_within_s)},
-          {"stages", v.acted_words()},
+          {"stages", v.acted_text()},
           {"fault", static_cast<int>(v.fault)},
           {"checks", checks_json(v.checks)}};
 }
@@ -53,7 +53,7 @@ json limit_json(const LimitRow& row) {
           {"unit", row.unit},
           {"value", row.limit},
           {"largest", row.largest},
-          {"kept", kept_words(row.kept)},
+          {"kept", kept_text(row.kept)},
           {"reached_by", row.reached_by},
           {"tighter", tighter}};
 }
@@ -112,7 +112,7 @@ json to_json(const LimitsReport& report) {
            {"overrides", evidence.overrides},
            {"hazard_table", hazards_json(report)},
            {"passed", report.passed()},
-           {"result", report.result_words()},
+           {"result", report.result_text()},
            {"cases_played", report.played()},
            // So that "2 passed" cannot be read as all.
            {"cases_of_plan", report.played() + report.not_run.size()},

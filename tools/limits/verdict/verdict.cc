@@ -59,7 +59,7 @@ class Checks {
     for (Check& check : more) list_.push_back(std::move(check));
   }
   void add(bool holds, const char* good, const char* broken) { add(holds, holds ? good : broken); }
-  void add(bool holds, std::string sentence) { list_.push_back({std::move(sentence), holds}); }
+  void add(bool holds, std::string message) { list_.push_back({std::move(message), holds}); }
   std::vector<Check> list() { return std::move(list_); }
 
  private:
@@ -172,7 +172,7 @@ bool CaseVerdict::passed() const {
   return std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.holds; });
 }
 
-std::string CaseVerdict::acted_words() const {
+std::string CaseVerdict::acted_text() const {
   std::string words;
   for (std::size_t i = 0; i < kStageCount; ++i)
     if ((acted >> i & 1u) != 0)

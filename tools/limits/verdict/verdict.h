@@ -15,7 +15,7 @@ namespace tact::tools::limits {
 
 /// One thing that had to hold.
 struct Check {
-  std::string sentence;  // with the numbers
+  std::string message;  // with the numbers
   bool holds = false;
 };
 
@@ -39,7 +39,7 @@ struct CaseVerdict {
 
   bool passed() const;
   /// "slew, magnitude"
-  std::string acted_words() const;
+  std::string acted_text() const;
 };
 
 Extremes extremes_of(const std::vector<TickRow>& rows, const model::Limits& limits,

@@ -107,8 +107,8 @@ Result<ElasticAnswer> solve_with_calculix(const ElasticProblem& problem) {
   const auto said = run_ccx(*folder, {"-i", "case"}, false);
   if (!said) {
     if (!program::was_interrupted(said.error())) folder->keep();
-    if (said.error().sentence.rfind("ccx ended", 0) != 0) return said.error();
-    return Error{fmt::format("{}: {}", kNoSolution, said.error().sentence)};
+    if (said.error().message.rfind("ccx ended", 0) != 0) return said.error();
+    return Error{fmt::format("{}: {}", kNoSolution, said.error().message)};
   }
   ElasticAnswer answer;
   if (read_answer(folder->file("case.dat"), problem, answer)) return answer;
@@ -118,7 +118,7 @@ Result<ElasticAnswer> solve_with_calculix(const ElasticProblem& problem) {
   return error;
 }
 
-bool found_no_solution(const Error& error) { return error.sentence.rfind(kNoSolution, 0) == 0; }
+bool found_no_solution(const Error& error) { return error.message.rfind(kNoSolution, 0) == 0; }
 
 Result<std::string> calculix_version() {
   auto folder = program::ScratchFolder::make("tact-ccx");

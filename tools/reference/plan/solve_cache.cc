@@ -10,7 +10,7 @@
 
 #include "model/io/file_writer.h"
 #include "model/io/json.h"
-#include "model/reader/scene_words.h"
+#include "model/reader/scene_text.h"
 #include "tools/reference/press/contact_radius.h"
 
 namespace tact::tools::reference {
@@ -57,7 +57,7 @@ std::optional<model::Error> SolveCache::write(const std::string& key, json solve
   const auto error = model::io::write_file(path_of(key), model::io::text_of(solved, 1) + "\n");
   // Another program may have kept the same case at this moment: then it is there.
   if (!error || read(key)) return std::nullopt;
-  return model::Error{error->sentence + ", or name another --cache"};
+  return model::Error{error->message + ", or name another --cache"};
 }
 
 std::optional<ground_truth::ReferenceCase> SolveCache::find(const std::string& key) const {

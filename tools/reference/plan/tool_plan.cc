@@ -14,7 +14,7 @@ namespace tact::tools::reference {
 namespace {
 
 using ground_truth::ToolCase;
-using ground_truth::ToolPlace;
+using ground_truth::ToolPoint;
 using model::Result;
 using model::Vec3;
 using model::contact::ProbeSphere;
@@ -30,7 +30,7 @@ constexpr double kMinSlide_m = 1e-3;
 constexpr double kFromAbove = 5.0;  // radii along the way, in which a first touch is looked for
 
 /// The tool's spheres where it stands at depth 0.
-std::vector<RigidSphere> spheres_at(const std::vector<ProbeSphere>& spheres, const ToolPlace& place,
+std::vector<RigidSphere> spheres_at(const std::vector<ProbeSphere>& spheres, const ToolPoint& place,
                                     const Vec3& rest_inward) {
   // p(0) = point - direction reach, as a press stroke has it (scene_strokes.h)
   const double reach_m = model::scene::reach_m(spheres, rest_inward);
@@ -60,7 +60,7 @@ class PlaceFinder {
   }
 
   /// The tool at a vertex, its tip on it.
-  ToolPlace place_at(std::uint32_t vertex) const {
+  ToolPoint place_at(std::uint32_t vertex) const {
     const Vec3 direction = -surface_.vertex_normal[vertex];
     return {.vertex = vertex,
             .point_m = surface_.vertex_m[vertex],
@@ -70,7 +70,7 @@ class PlaceFinder {
   }
 
   bool is_reachable(std::uint32_t vertex) const {
-    const ToolPlace place = place_at(vertex);
+    const ToolPoint place = place_at(vertex);
     if (dot(place.direction, rest_inward_) < kTowardsHand) return false;
     for (const std::uint32_t h : held_)
       if (norm(surface_.vertex_m[h] - place.point_m) < kFromHeld * largest_m() + deepest_m_)
@@ -86,7 +86,7 @@ class PlaceFinder {
   }
 
   /// Moved along its way until it first touches.
-  ToolPlace touching(ToolPlace place) const {
+  ToolPoint touching(ToolPoint place) const {
     double way_m = std::numeric_limits<double>::infinity();
     for (const RigidSphere& s : spheres_at(spheres_, place, rest_inward_))
       way_m = std::min(way_m, way_until_touch_m(s, place.direction));
@@ -201,7 +201,7 @@ std::vector<Vec3> slides_of(const model::scene::Scene& scene) {
 
 void ask_for_skin(ToolPlan& plan) {
   const model::mesh::SurfaceMesh& surface = plan.organ.surface;
-  for (ToolPlace& place : plan.places)
+  for (ToolPoint& place : plan.places)
     for (std::uint32_t v = 0; v < surface.vertex_m.size(); ++v)
       if (norm(surface.vertex_m[v] - place.point_m) < kSkin_m &&
           dot(surface.vertex_normal[v], place.direction) < -ground_truth::kFacing)
@@ -246,7 +246,7 @@ std::vector<ToolPress> presses_of(const ToolPlan& plan) {
   const auto rest_inward = plan.places.front().direction;  // of the hand's own site
   for (const int level : {plan.level, plan.level - 1}) {
     if (level < kRoughLevel) continue;
-    for (const ToolPlace& place : plan.places)
+    for (const ToolPoint& place : plan.places)
       out.push_back({.direction = place.direction,
                      .sphere = spheres_at(plan.sphere, place, rest_inward),
                      .depths_m = plan.depths_m,

@@ -32,7 +32,7 @@ struct ToolPlan {
   Organ organ;
   std::string mesh_name;
   std::vector<model::contact::ProbeSphere> sphere;
-  std::vector<ground_truth::ToolPlace> places;  // without cases
+  std::vector<ground_truth::ToolPoint> places;  // without cases
   std::vector<double> depths_m;                 // above 0, rising
   int level = 2;
 };

@@ -54,7 +54,7 @@ Result<bool> check_block(double size_m, const std::vector<Known>& cases,
                                        .large_strain = large_strain,
                                        .level = large_strain ? kCoarsestLevel : kLevel});
     if (!solved && !found_no_solution(solved.error())) return solved.error();
-    if (!solved) fmt::print("{}: {}\n", known.name, solved.error().sentence);
+    if (!solved) fmt::print("{}: {}\n", known.name, solved.error().message);
     good &= solved && check(known, solved->force_N);
   }
   return good;

@@ -5,27 +5,27 @@
 #include <functional>
 #include <memory>
 
-#include "model/contact/site_law.h"
+#include "model/contact/contact_law.h"
 #include "model/law/law.h"
 
 namespace tact::tools::stability {
 
 /// Makes a law with memory, at rest, on the plate of memory_laws.h.
-using SiteLawMaker = std::function<std::unique_ptr<model::contact::SiteLaw>()>;
+using ContactLawMaker = std::function<std::unique_ptr<model::contact::ContactLaw>()>;
 
 class RenderedTissue {
  public:
   /// A closed-form law, or one with memory if `make` is there.
-  RenderedTissue(std::shared_ptr<const model::law::Law> law, const SiteLawMaker& make)
+  RenderedTissue(std::shared_ptr<const model::law::Law> law, const ContactLawMaker& make)
       : law_(std::move(law)), site_(make ? make() : nullptr) {}
 
   /// One tick of 1 ms at this depth, in the middle of the plate; a pull holds the tissue.
   model::law::LawResponse tick(double depth_m) {
     if (!site_) return law_->respond(depth_m);
-    const model::contact::SiteResponse now = site_->respond({.place = kMiddle,
-                                                             .normal = {0.0, 0.0, 1.0},
-                                                             .indentation_m = depth_m,
-                                                             .held = depth_m < 0.0});
+    const model::contact::ContactLawResponse now = site_->respond({.surface_point = kMiddle,
+                                                                   .normal = {0.0, 0.0, 1.0},
+                                                                   .indentation_m = depth_m,
+                                                                   .held = depth_m < 0.0});
     site_->advance();
     return now.law;
   }
@@ -38,10 +38,10 @@ class RenderedTissue {
   }
 
  private:
-  static constexpr model::contact::Place kMiddle{420, {0.3, 0.3, 0.4}};
+  static constexpr model::contact::SurfacePoint kMiddle{420, {0.3, 0.3, 0.4}};
 
   std::shared_ptr<const model::law::Law> law_;
-  std::unique_ptr<model::contact::SiteLaw> site_;
+  std::unique_ptr<model::contact::ContactLaw> site_;
 };
 
 }  // namespace tact::tools::stability

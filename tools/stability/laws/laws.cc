@@ -50,7 +50,7 @@ void add_memory(std::vector<NamedLaw>& laws) {
                     .beyond = "each part of the force stays at the working depth's and fades",
                     .range_m = closed.range_m,
                     .rendered_range_m = closed.rendered_range_m,
-                    .make_site = relaxing_maker(closed.rendered)});
+                    .make_contact_point = relaxing_maker(closed.rendered)});
   }
   for (const bool relaxes : {false, true})
     laws.push_back({.name = relaxes ? "spring patch relaxing" : "spring patch",
@@ -59,7 +59,7 @@ void add_memory(std::vector<NamedLaw>& laws) {
                     .beyond = "the nodes are pushed no further: the force stays",
                     .range_m = kPatchRange_m,
                     .rendered_range_m = kPatchRange_m,
-                    .make_site = patch_maker(relaxes)});
+                    .make_contact_point = patch_maker(relaxes)});
 }
 
 /// The chain of RC-13 at another angle, or with stiffer tangential springs.

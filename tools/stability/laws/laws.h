@@ -18,11 +18,11 @@ struct NamedLaw {
   std::string beyond;             // what a press beyond its range does, in words without commas
   double range_m = 0.0;           // of the press
   double rendered_range_m = 0.0;  // of the table
-  SiteLawMaker make_site{};       // of a law with memory
+  ContactLawMaker make_contact_point{};  // of a law with memory
 
-  bool remembers() const { return static_cast<bool>(make_site); }
+  bool remembers() const { return static_cast<bool>(make_contact_point); }
   /// Untouched until now.
-  RenderedTissue fresh() const { return {rendered, make_site}; }
+  RenderedTissue fresh() const { return {rendered, make_contact_point}; }
 };
 
 /// Made once; a law that this build cannot make is left out.

@@ -40,7 +40,7 @@ const model::mesh::SurfaceMesh& plate() {
 }
 
 /// An elastic field of one law that it owns.
-class RelaxingLaw final : public model::contact::SiteLaw {
+class RelaxingLaw final : public model::contact::ContactLaw {
  public:
   RelaxingLaw(std::shared_ptr<const model::law::Law> law, const model::law::Relaxation& relaxation)
       // Before curve_ and field_, which point into it; so the object neither copies nor moves.
@@ -54,7 +54,8 @@ class RelaxingLaw final : public model::contact::SiteLaw {
   RelaxingLaw(const RelaxingLaw&) = delete;
   RelaxingLaw& operator=(const RelaxingLaw&) = delete;
 
-  model::contact::SiteResponse respond(const model::contact::Indentation& in) RT_SAFE override {
+  model::contact::ContactLawResponse respond(
+      const model::contact::Indentation& in) RT_SAFE override {
     return field_.respond(in);
   }
   void leave(std::size_t sphere) RT_SAFE override { field_.leave(sphere); }
@@ -73,7 +74,7 @@ class RelaxingLaw final : public model::contact::SiteLaw {
 
 }  // namespace
 
-SiteLawMaker patch_maker(bool relaxes) {
+ContactLawMaker patch_maker(bool relaxes) {
   model::springs::SpringPatchParameters p{.tissue = {.surface_stiffness_N_per_m = 50.0,
                                                      .body_stiffness_N_per_m = 5.0,
                                                      .damping_time_s = 0.0008,
@@ -86,12 +87,12 @@ SiteLawMaker patch_maker(bool relaxes) {
                                           .tick_s = kTick_s,
                                           .nodes = 120};
   if (relaxes) p.relaxation = *model::law::make_relaxation(kTerms, kTick_s);
-  return [p]() -> std::unique_ptr<model::contact::SiteLaw> {
+  return [p]() -> std::unique_ptr<model::contact::ContactLaw> {
     return std::move(*model::springs::make_spring_patch(plate().view(), p));
   };
 }
 
-SiteLawMaker relaxing_maker(const std::shared_ptr<const model::law::Law>& law) {
+ContactLawMaker relaxing_maker(const std::shared_ptr<const model::law::Law>& law) {
   const model::law::Relaxation relaxation = *model::law::make_relaxation(kTerms, kTick_s);
   return [law, relaxation] { return std::make_unique<RelaxingLaw>(law, relaxation); };
 }

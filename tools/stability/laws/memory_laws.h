@@ -15,7 +15,7 @@ namespace tact::tools::stability {
 inline constexpr double kPatchRange_m = 0.01;
 
 /// Vendors of a mass-spring patch, and of a closed-form law that relaxes.
-SiteLawMaker patch_maker(bool relaxes);
-SiteLawMaker relaxing_maker(const std::shared_ptr<const model::law::Law>& law);
+ContactLawMaker patch_maker(bool relaxes);
+ContactLawMaker relaxing_maker(const std::shared_ptr<const model::law::Law>& law);
 
 }  // namespace tact::tools::stability

@@ -19,7 +19,7 @@
 #include "model/law/haptic_limit.h"
 #include "model/scene/tissue.h"
 #include "tools/program/simulated_loop.h"
-#include "tools/stability/loop/gate_watch.h"
+#include "tools/stability/loop/gate_monitor.h"
 #include "tools/stability/loop/haptic_loop.h"
 #include "tools/stability/sweep/axes.h"
 #include "tools/stability/sweep/map.h"
@@ -100,7 +100,7 @@ model::scene::Scene wall_scene(double stiffness_N_per_m, double rate_Hz,
   scene.tool.spheres = {{{}, kRadius_m}};
   scene.device.kind = "sim-delta";
   scene.device.sim = device;
-  // Their energy budget has no end: the passivity stage must not hide the limit (gate_watch.h).
+  // Their energy budget has no end: the passivity stage must not hide the limit (gate_monitor.h).
   scene.limits = kSceneLimits;
   scene.organ_mesh = make_plate();
   // the hand's spring is stretched by the push when the tool rests at its depth
@@ -134,7 +134,7 @@ ControllerRun run_controller(double stiffness_N_per_m, double rate_Hz,
   const auto device = hal::sim::make_sim_delta(scene.device.sim, scene.hand);
   if (!tissue || !device) {  // the scene is ours, above: a map of nothing would prove nothing
     fmt::print(stderr, "tact-lab stability: {}\n",
-               tissue ? device.error().sentence : tissue.error().sentence);
+               tissue ? device.error().message : tissue.error().message);
     std::abort();
   }
   program::SimulatedLoop loop((*tissue)->contact_scene(), scene.limits, rate_Hz, **device);

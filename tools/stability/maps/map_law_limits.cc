@@ -10,7 +10,7 @@
 #include <cmath>
 
 #include "tools/stability/laws/laws.h"
-#include "tools/stability/loop/gate_watch.h"
+#include "tools/stability/loop/gate_monitor.h"
 #include "tools/stability/pictures/pictures.h"
 #include "tools/stability/sweep/axes.h"
 #include "tools/stability/sweep/map.h"
@@ -65,8 +65,8 @@ report::Row run(std::size_t job, Grid grid) {
   const NamedLaw& named = probed_laws()[which];
   const double range_m = named.range_m;
   const double share = depth_share(depth, grid), depth_m = share * range_m;
-  // A new gate for each cell: cells are independent, whoever computes them.
-  GateWatch gate(kRate_Hz);
+  // A new gate for each cell: cells are independent, any user computes them.
+  GateMonitor gate(kRate_Hz);
   gate.open(0.0);
   const int ticks = static_cast<int>(std::ceil(std::abs(depth_m) / kSpeed_mps * kRate_Hz));
   RenderedTissue tissue = named.fresh();

@@ -13,7 +13,7 @@
 
 #include "model/law/haptic_limit.h"
 #include "tools/stability/laws/laws.h"
-#include "tools/stability/loop/gate_watch.h"
+#include "tools/stability/loop/gate_monitor.h"
 #include "tools/stability/loop/haptic_loop.h"
 #include "tools/stability/pictures/pictures.h"
 #include "tools/stability/sweep/axes.h"
@@ -63,7 +63,7 @@ TissueForce settled(const NamedLaw& named, double balance_m) {
 }
 
 /// The law three times stiffer than what is stable, every force through the gate.
-void run_gated(const LoopCase& loop, const TissueForce& tissue, GateWatch& gate) {
+void run_gated(const LoopCase& loop, const TissueForce& tissue, GateMonitor& gate) {
   LoopCase shaken = loop;
   // So large that the gate is put to the test.
   shaken.kick_m = 1e-3;
@@ -93,7 +93,7 @@ report::Row run(std::size_t job, Grid grid) {
   const double factor = largest_factor(loop, fresh, Verdict::kGrow, low * guess, high * guess);
   // Settled again: each run of the search had one of its own.
   const TissueForce tissue = fresh();
-  GateWatch gate(loop.rate_Hz);
+  GateMonitor gate(loop.rate_Hz);
   run_gated(loop, [&](double depth_m) { return 3.0 * factor * tissue(depth_m); }, gate);
   // what the law as it is asks of the device at its steepest point
   const double needed = steepest_N_per_m(named) * (0.5 / loop.rate_Hz + loop.device.delay_s);

@@ -9,7 +9,7 @@
 #include <algorithm>
 
 #include "model/law/haptic_limit.h"
-#include "tools/stability/loop/gate_watch.h"
+#include "tools/stability/loop/gate_monitor.h"
 #include "tools/stability/loop/haptic_loop.h"
 #include "tools/stability/pictures/pictures.h"
 #include "tools/stability/sweep/axes.h"
@@ -75,7 +75,7 @@ std::vector<report::Column> columns() {
 }
 
 /// Three times too stiff, pressed with 2 N, every force through the gate.
-LoopRun run_gated(LoopCase loop, double stiffness_N_per_m, GateWatch& gate) {
+LoopRun run_gated(LoopCase loop, double stiffness_N_per_m, GateMonitor& gate) {
   // A quarter of the gate's limit: the swing has room before it is clipped.
   constexpr double kPush_N = 2.0;
   loop.balance_m = kPush_N / stiffness_N_per_m;
@@ -100,7 +100,7 @@ report::Row run(std::size_t job, Grid grid) {
   LoopCase patient = loop;  // close to the line it rings for long
   patient.duration_s *= 3.0;
   const double rest_N_per_m = largest_wall_N_per_m(patient, Verdict::kBuzz);
-  GateWatch gate(loop.rate_Hz);
+  GateMonitor gate(loop.rate_Hz);
   // A cell may have no limit above zero; the gate still has to be tested there.
   const LoopRun gated = run_gated(loop, 3.0 * std::max(grow_N_per_m, 1.0), gate);
   return {loop.rate_Hz,

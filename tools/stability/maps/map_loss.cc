@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/stability/loop/gate_watch.h"
+#include "tools/stability/loop/gate_monitor.h"
 #include "tools/stability/pictures/pictures.h"
 #include "tools/stability/sweep/axes.h"
 #include "tools/stability/sweep/map.h"
@@ -38,7 +38,7 @@ std::vector<report::Column> columns() {
 report::Row run(std::size_t job, Grid grid) {
   const auto [rate, lost] = axes(grid).at(job);
   const double period_s = 1.0 / kRates_Hz[rate];
-  GateWatch gate(kRates_Hz[rate]);
+  GateMonitor gate(kRates_Hz[rate]);
   // Armed and at the wall's force before the burst begins.
   gate.open(kPush_N);
   double depth_m = kPush_N / kWall_N_per_m, hold_J = 0.0, gate_J = 0.0;

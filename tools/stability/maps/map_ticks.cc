@@ -12,7 +12,7 @@
 #include <algorithm>
 
 #include "model/law/haptic_limit.h"
-#include "tools/stability/loop/gate_watch.h"
+#include "tools/stability/loop/gate_monitor.h"
 #include "tools/stability/loop/haptic_loop.h"
 #include "tools/stability/pictures/pictures.h"
 #include "tools/stability/sweep/axes.h"
@@ -73,7 +73,7 @@ report::Row run(std::size_t job, Grid grid) {
   const double measured = largest_wall_N_per_m(loop, Verdict::kGrow);
   constexpr double kPush_N = 2.0;
   const double stiffness = 3.0 * measured;
-  GateWatch gate(loop.rate_Hz);
+  GateMonitor gate(loop.rate_Hz);
   gate.open(kPush_N);
   loop.balance_m = kPush_N / stiffness;
   run_loop(

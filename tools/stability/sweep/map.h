@@ -12,10 +12,10 @@
 
 namespace tact::tools::stability {
 
-/// A sentence about a whole table that must be true, and its numbers by name for --json.
+/// A message about a whole table that must be true, and its numbers by name for --json.
 struct Finding {
   bool holds = false;
-  std::string sentence;
+  std::string message;
   std::map<std::string, double> numbers = {};
 };
 

@@ -17,7 +17,7 @@ using model::Result;
 
 Result<report::Table> computed(const Map& map, const StabilityOptions& options) {
   report::Table table(map.name, map.columns());
-  // In the order of the jobs, whoever was first: a second run gives the same bytes.
+  // In the order of the jobs, any user was first: a second run gives the same bytes.
   const auto rows =
       program::sweep<report::Row>(map.jobs(options.grid), {.label = map.name},
                                   [&](std::size_t job) { return map.run(job, options.grid); });

@@ -30,7 +30,7 @@ class CanBus {
   CanBus& operator=(const CanBus&) = delete;
   ~CanBus();
 
-  /// False: the sentence with the remedy.
+  /// False: the message with the remedy.
   bool open(const std::string& interface, std::string& error);
   /// Any end of a packet socket in place of an interface; it is closed with the bus.
   void adopt(int descriptor) { fd_ = descriptor; }

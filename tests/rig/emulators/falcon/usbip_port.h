@@ -36,7 +36,7 @@ class UsbipPort {
   UsbipPort& operator=(const UsbipPort&) = delete;
   ~UsbipPort() { detach(); }
 
-  /// A full-speed device. False: the sentence with the remedy.
+  /// A full-speed device. False: the message with the remedy.
   bool attach(int port, std::string& error);
   void detach();
   bool is_attached() const { return fd_ >= 0; }

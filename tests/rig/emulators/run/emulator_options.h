@@ -25,13 +25,13 @@ struct EmulatorOptions {
 };
 
 void add_options(CLI::App& app, EmulatorOptions& options, FaultSide side);
-/// The faults ordered. False: the sentence with the remedy.
+/// The faults ordered. False: the message with the remedy.
 bool parse_faults(const EmulatorOptions& options, FaultSide side, FaultPlan& plan,
                   std::string& error);
 /// The answer on stdout and the record, when real time is over. The exit status.
 int finish(const std::string& program, const EmulatorOptions& options,
            const class RunRecord& record, const std::string& json);
-/// The sentence on stderr; exit status 2.
+/// The message on stderr; exit status 2.
 int refuse(const std::string& program, const std::string& error);
 
 }  // namespace tact::rig

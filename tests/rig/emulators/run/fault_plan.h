@@ -57,7 +57,7 @@ struct Fault {
   std::array<bool, 3> seen{};  // for what happens once per axis
 };
 
-/// One order; else the sentence with the remedy in `error`.
+/// One order; else the message with the remedy in `error`.
 bool parse_fault(std::string_view text, FaultSide side, Fault& fault, std::string& error);
 /// The kinds of one program, for its --help.
 std::string fault_names(FaultSide side);

@@ -13,7 +13,7 @@ namespace tact::rig {
 
 std::int64_t monotonic_ns();
 
-/// Locked memory and SCHED_FIFO of this priority; 0 stays as it is. False: the sentence with the
+/// Locked memory and SCHED_FIFO of this priority; 0 stays as it is. False: the message with the
 /// remedy.
 bool enter_real_time(int priority, std::string& error);
 void leave_real_time();

@@ -41,11 +41,11 @@ void SelfCheck::begin(const std::string& what) {
   compared_ = different_ = 0;
 }
 
-void SelfCheck::count(bool good, const std::string& sentence) {
+void SelfCheck::count(bool good, const std::string& message) {
   ++compared_;
   if (good) return;
   ++total_different_;
-  if (++different_ <= kShown) std::fprintf(stderr, "%s: %s\n", what_.c_str(), sentence.c_str());
+  if (++different_ <= kShown) std::fprintf(stderr, "%s: %s\n", what_.c_str(), message.c_str());
 }
 
 void SelfCheck::equal(const std::string& where, double own, double theirs, double tolerance) {

@@ -31,7 +31,7 @@ class SelfCheck {
   int end();
 
  private:
-  void count(bool good, const std::string& sentence);
+  void count(bool good, const std::string& message);
 
   std::string folder_, what_;
   int compared_ = 0, different_ = 0, total_different_ = 0;

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// overrun_counter.h - when has the loop lost its time?
+//
+//     hard real time   20 periods skipped at once, or 20 late ticks in a row (RT-15)
+//     elsewhere        100 late ticks in a row; a stall alone is what a stock kernel does
+//
+// A tick is late when it eats into the next period, so at least one is skipped after it. A loop
+// that is late in every tick is too slow for its rate: it holds each force too long for the hand.
+#pragma once
+
+#include <cstdint>
+
+#include "model/rt.h"
+
+namespace tact::firmware::loop {
+
+class OverrunCounter {
+ public:
+  explicit OverrunCounter(bool hard_real_time) : hard_real_time_(hard_real_time) {}
+
+  /// One tick, with the periods skipped before it. True: stop.
+  bool step(std::uint32_t skipped_periods) RT_SAFE {
+    if (skipped_periods == 0)
+      late_in_a_row_ = 0;
+    else if (late_in_a_row_ < kLateInARow)
+      ++late_in_a_row_;
+    if (hard_real_time_ && skipped_periods >= kSkippedAtOnce) return true;
+    return late_in_a_row_ >= (hard_real_time_ ? kLateInARowHard : kLateInARow);
+  }
+
+ private:
+  static constexpr std::uint32_t kSkippedAtOnce = 20;
+  static constexpr std::uint32_t kLateInARowHard = 20, kLateInARow = 100;
+
+  bool hard_real_time_;
+  std::uint32_t late_in_a_row_ = 0;
+};
+
+}  // namespace tact::firmware::loop

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/run/start_text.h"
+
+#include <fmt/format.h>
+
+#include "firmware/admission/grip_note.h"
+#include "firmware/admission/inertia_note.h"
+#include "firmware/admission/open_organ_note.h"
+#include "firmware/admission/reach_note.h"
+#include "firmware/admission/torque_note.h"
+#include "hal/mounting.h"
+#include "model/scene/accuracy_file.h"
+
+namespace tact::firmware::run {
+
+std::vector<std::string> start_notes(const model::scene::Scene& scene, const LoopParts& parts,
+                                     bool is_check) {
+  std::vector<std::string> notes{admission::inertia_note(scene, parts.tissue->law()),
+                                 parts.device->info().caution,
+                                 admission::grip_note(scene, parts.device->info())};
+  if (is_check) {
+    notes.push_back(admission::reach_note(scene));
+    notes.push_back(admission::open_organ_note(scene));
+    notes.push_back(admission::torque_note(scene, parts.device->info()));
+    if (parts.presses) notes.push_back(parts.presses->note);
+  }
+  std::erase(notes, std::string());
+  return notes;
+}
+
+std::string check_lines(const model::scene::Scene& scene, const LoopParts& parts) {
+  const model::scene::TissueLaw& law = parts.tissue->law();
+  std::string out = fmt::format(
+      "{}: sound. {} on {}, {} vertices; law {}, range {:.1f} to {:.1f} mm, stiffness {:.4g} of "
+      "{:.4g} N/m",
+      scene.path, scene.name, parts.device->info().name, scene.organ_mesh.vertex_m.size(),
+      law.title(), 1e3 * law.range().pull_m, 1e3 * law.range().press_m,
+      parts.stiffness.needed_N_per_m, parts.stiffness.limit_N_per_m);
+  if (const auto& time = parts.time)
+    out += fmt::format(", {:.3g} of {:g} us a tick ({})", time->checked_us, time->budget_us,
+                       time->tail_counts ? "p99.9" : "median");
+  if (const auto& presses = parts.presses)
+    out += fmt::format("\nlargest felt slope {:.4g} N/m at {}, of {} presses of the whole tool{}",
+                       presses->slope_N_per_m, presses->place, presses->presses,
+                       presses->slope_N_per_m > parts.stiffness.limit_N_per_m
+                           ? ": more than the device shows"
+                           : "");
+  out += "\n" + hal::text_of(hal::mounting_of(scene.device));
+  return out + "\n" + model::scene::accuracy_line(scene);
+}
+
+}  // namespace tact::firmware::run

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/watch/loop_monitor.h"
+
+#include <pthread.h>
+
+#include "firmware/loop/release_schedule.h"
+
+namespace tact::firmware::watch {
+
+void LoopMonitor::start(const pc::RtSettings& loop) {
+  thread_ = std::thread([this, loop] {
+    pthread_setname_np(pthread_self(), "tact-watch");
+    std::vector<pc::Shortfall> known;
+    // What is refused here was told before the loop (pc::probe_rt_threads).
+    enter_watch_thread(loop, known);
+    run();
+    pc::leave_rt_thread();
+  });
+}
+
+void LoopMonitor::stop() {
+  ending_.store(true, std::memory_order_relaxed);
+  if (thread_.joinable()) thread_.join();
+}
+
+void LoopMonitor::run() RT_SAFE {
+  // Relaxed: join() orders whatever the end needs.
+  while (!ending_.load(std::memory_order_relaxed)) {
+    clock_.sleep_until_ns(next_ns(clock_.now_ns()));
+    check();
+  }
+}
+
+void LoopMonitor::check() RT_SAFE {
+  // The first fault stays (Requests::trip), so the order of these says which is told.
+  const model::Fault found = stall_.step(progress_);
+  if (found != model::Fault::kNone) requests_.trip(found);
+  if (guardian_lost_ != nullptr && guardian_lost_->load(std::memory_order_relaxed))
+    requests_.trip(model::Fault::kGuardianLost);
+  if (requests_.fault.load(std::memory_order_relaxed) != model::Fault::kNone) lines_.drop();
+}
+
+// On one core the watch would else delay the loop's wake-up, each time by its own. What it is late
+// itself, less than half a period, does not add up.
+std::int64_t LoopMonitor::next_ns(std::int64_t now_ns) const RT_SAFE {
+  const std::int64_t period_ns = stall_.period_ns();
+  return loop::next_half_way_ns(now_ns + stall_.check_ns() - period_ns / 2, period_ns);
+}
+
+}  // namespace tact::firmware::watch

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// contact_point.h - the point of a surface nearest to a probe centre p, followed from tick to tick.
+//
+//     phi   signed distance of p to the undeformed surface, m, positive outside
+//     q     nearest surface point      n = grad phi = sign (p - q) / |p - q|
+//
+// The walk goes from triangle to neighbouring triangle while the distance falls, at most
+// kMaxWalkSteps a call: its cost does not depend on the size of the mesh. It finds the local
+// minimum near its start, which is what contact wants: a probe pressed into a thin lobe must not
+// jump to the far side.
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "model/contact/surface.h"
+#include "model/types.h"
+
+namespace tact::model::contact {
+
+inline constexpr int kMaxWalkSteps = 64;
+
+/// A point of the undeformed surface: a triangle and its corners' weights, which sum to 1. A corner
+/// that does not count has exactly 0: one such on an edge, two in a vertex.
+struct SurfacePoint {
+  std::uint32_t triangle = kNoTriangle;
+  std::array<double, 3> weight{};
+};
+
+/// Is it a triangle of the surface, with finite weights?
+inline bool is_on_surface(const SurfacePoint& surface_point, const SurfaceView& surface) RT_SAFE {
+  return surface_point.triangle < surface.triangle.size() &&
+         std::isfinite(surface_point.weight[0]) && std::isfinite(surface_point.weight[1]) &&
+         std::isfinite(surface_point.weight[2]);
+}
+
+struct ContactPoint {
+  SurfacePoint surface_point;  // of q
+  Vec3 point_m;                // q
+  Vec3 normal;                 // n, unit
+  Vec3 outward;                // pseudo-normal of the surface in q, unit
+  double distance_m = 0.0;     // phi
+};
+
+/// Nearest point near `start`, which must be a triangle of the surface; after kMaxWalkSteps, the
+/// nearest so far.
+ContactPoint follow(const SurfaceView& surface, std::uint32_t start, const Vec3& p_m) RT_SAFE;
+
+}  // namespace tact::model::contact
