@@ -105,7 +105,7 @@ void Gate::note(Stage stage, Fault reason, LimitedForce& verdict) RT_SAFE {
     verdict.acting = reason;
 }
 
-// What was written before this tick has done its work by now: its energy and its heat.
+// What was written before this tick has done its work by now: its energy and its heating.
 void Gate::book_last_write(const GateInput& input, double periods) RT_SAFE {
   tank_.observe(input.tool, input.fresh && is_finite(input.tool), periods, written_);
   thermal_force_.add(written_.force_N, periods);

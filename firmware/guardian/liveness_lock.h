@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// liveness lock.h - a robust mutex between two processes: who waits for it learns how its holder
+// liveness_lock.h - a robust mutex between two processes: who waits for it learns how its holder
 // ended.
 //
 //     holder lets go      await() gives kLetGo: it leaves in good order

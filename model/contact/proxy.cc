@@ -23,15 +23,15 @@ void Proxy::follow(const SurfaceView& surface, const Vec3& p_m, const Vec3& move
   const double before_m = radius_m - contact_point_.distance_m;
   const Vec3 normal_before = contact_point_.normal;
   const bool lagged = lags_;
-  surface_point(surface, p_m, norm(tangential(moved_m, normal_before)), radius_m);
+  move_to(surface, p_m, norm(tangential(moved_m, normal_before)), radius_m);
   // Where g is nearest, the depth is a function of p alone. Else its work decides: the trapezium
   // rule over both normals.
   const double led_m = -0.5 * dot(normal_before + contact_point_.normal, moved_m);
   lengthened_m_ = lagged || lags_ ? radius_m - contact_point_.distance_m - before_m - led_m : 0.0;
 }
 
-void Proxy::surface_point(const SurfaceView& surface, const Vec3& p_m, double across_m,
-                          double radius_m) RT_SAFE {
+void Proxy::move_to(const SurfaceView& surface, const Vec3& p_m, double across_m,
+                    double radius_m) RT_SAFE {
   const ContactPoint nearest = contact::follow(surface, contact_point_.surface_point.triangle, p_m);
   const Vec3 goal_m = nearest.point_m + radius_m * nearest.normal;
   const double most_m = kSlide_ratio * across_m;

@@ -41,8 +41,8 @@ class Proxy {
               double radius_m) RT_SAFE;
 
  private:
-  void surface_point(const SurfaceView& surface, const Vec3& p_m, double across_m,
-                     double radius_m) RT_SAFE;
+  void move_to(const SurfaceView& surface, const Vec3& p_m, double across_m,
+               double radius_m) RT_SAFE;
   Vec3 depth_m(const Vec3& p_m) const RT_SAFE;
   Vec3 outward_of(const ContactPoint& nearest, const Vec3& line_m, double radius_m) const RT_SAFE;
   void slide(const SurfaceView& surface, const Vec3& goal_m, double way_m, double radius_m) RT_SAFE;

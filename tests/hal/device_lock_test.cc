@@ -6,7 +6,7 @@
 #include <string>
 
 #include "tests/support/forked.h"
-#include "tests/support/sentence.h"
+#include "tests/support/message.h"
 
 namespace tact::hal::device_lock_test {
 

@@ -23,7 +23,7 @@ UNIT = re.compile(r"_(?:s|ms|us|m|mm|um|N|Nm|J|W|kg|Hz|rad|deg|radps|mps|mps2|m2
 PLAIN = {
     "x", "y", "z", "w", "level", "share", "weight", "factor", "fraction", "value", "slope", "integral", "step",
     "low", "high", "alpha", "lambda", "exponent", "growth", "along", "across", "steepness", "faded_from", "cell",
-    "peak", "continuous", "continuous_squared", "heat", "periods",  # of a force or a torque; of a period
+    "peak", "continuous", "continuous_squared", "mean_square", "periods",  # of a force or a torque; of a period
     "least_transmission", "least_rod_sigma", "limit_tan", "critical_zeta", "f0", "m0", "c2", "c3", "u0",
     "normal", "tilt", "tool_orientation",  # a direction; m/m; w, x, y, z
     "axis", "face_normal", "vertex_normal", "held_normal", "unit", "outward", "inward", "hand_inward", "radial",  # directions
@@ -37,7 +37,7 @@ PLAIN = {
     "xx", "xy", "yy",  # of a tensor, which has the unit
     "limit", "largest", "size", "median", "lower_quartile", "upper_quartile", "rel", "tolerance", "exact",
     "scale", "best_scale", "difference", "good_residual", "shape_weight", "sum_of_squares", "middle_value",
-    "first_strain", "rim_slope", "instructions", "kFacing", "kLargePull", "kMmPerM", "kNPerMN",
+    "first_strain", "boundary_slope", "instructions", "kFacing", "kLargePull", "kMmPerM", "kNPerMN",
     "kGripHeight", "kMaxObjCoordinate", "kStiffestPlace", "kNonRtForceShare", "kRoundingRoom", "kNothing",
 }
 

@@ -15,10 +15,14 @@ OTHERS = ("CHANGELOG.md", "package-lock.json", "words_test.py")  # what was, wha
 PARTS = {
     "feel": "render_force", "felt": "rendered", "judge": "limit (the gate), check, evaluate", "tell": "publish, report, log",
     "told": "reported", "cure": "remedy", "slack_m": "depth_offset_m", "dent": "indentation", "wish": "request",
+    "sentence": "message", "heat": "thermal, mean_square", "lip": "cut_edge", "fader": "ramp",
+    "lifeline": "liveness", "temper": "input strategy", "mischief": "fault injection", "promises": "invariants",
     "patience": "timeout", "tally": "counters", "strays": "unknown_frames", "maker_library": "vendor_sdk",
 }
 TYPES = {"SphereTouch": "SphereContact", "TouchState": "ContactState", "GateVerdict": "LimitedForce",
-         "OperatorDesk": "RequestHandler", "LastWords": "ShutdownFrames", "MakerLibrary": "VendorSdk"}
+         "SiteLaw": "ContactLaw", "Place": "SurfacePoint", "LoopWatch": "LoopMonitor", "StallWatch": "StallDetector",
+         "LateWatch": "OverrunCounter", "EdgeWatch": "EdgeMonitor", "InterruptWatch": "InterruptFlag", "StopWatch": "StopTimer",
+         "GateWatch": "GateMonitor", "Outlets": "Sinks", "OperatorDesk": "RequestHandler", "LastWords": "ShutdownFrames", "MakerLibrary": "VendorSdk"}
 # Anywhere: whole words.
 WORDS = {"cure": "remedy", "cures": "remedies", "maker's library": "vendor SDK", "last words": "shutdown frames",
          "anew": "again", "mend": "repair", "mends": "repairs"}

@@ -2,7 +2,7 @@
 // tact-soak: a day at the device in simulated time, as fast as the CPU allows.
 //
 // The whole controller with the simulated delta and its safety lines: random strokes, faults,
-// stops, late ticks and operators by a seed; after each tick its promises are checked: force,
+// stops, late ticks and operators by a seed; after each tick its invariants are checked: force,
 // torque, their slew, power, energy and RMS by accounts of its own (energy_ledger.h), states,
 // latching, the grid. A quarter as many ticks, but 100 000 at least, follow with narrower limits,
 // so that every stage of the gate has its say. The same seed gives the same hashes with every
@@ -92,8 +92,8 @@ model::Result<Outcome> soak(const model::scene::Scene& scene, std::uint64_t tick
       /*hard_real_time=*/true);
   firmware::loop::RtLoop loop({.period_ns = period_ns}, **device, lines, *controller, clock,
                               requests, *ring);
-  FaultInjection mischief(seed, scene.hand, period_ns);
-  Invariants promises(limits, period_ns);
+  FaultInjection injected(seed, scene.hand, period_ns);
+  Invariants invariants(limits, period_ns);
   Outcome outcome;
   firmware::loop::State state = firmware::loop::State::kOff;
   firmware::loop::TickRecord record;
@@ -102,14 +102,14 @@ model::Result<Outcome> soak(const model::scene::Scene& scene, std::uint64_t tick
   std::int64_t early_kB = 0;
   firmware::pc::flush_denormals();
   for (; outcome.ticks < ticks && !interrupted.load(); ++outcome.ticks) {
-    mischief.step(**device, lines, clock, requests, state == firmware::loop::State::kStopped);
+    injected.step(**device, lines, clock, requests, state == firmware::loop::State::kStopped);
     {
       const firmware::loop::HeapCallCounter heap;
       loop.step();
       outcome.heap_calls += heap.calls();
     }
     ring->pop(record);
-    promises.check(record);
+    invariants.check(record);
     count(record, state, outcome);
     state = record.output.state;
     if (outcome.ticks == ticks / 10) early_kB = resident_kB();
@@ -120,8 +120,8 @@ model::Result<Outcome> soak(const model::scene::Scene& scene, std::uint64_t tick
   if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\n");
   outcome.grown_kB = resident_kB() - early_kB;
   outcome.skipped = loop.statistics().skipped_ticks;
-  outcome.broken = promises.broken();
-  outcome.first = promises.first();
+  outcome.broken = invariants.broken();
+  outcome.first = invariants.first();
   outcome.acted = controller->gate().counters();
   return outcome;
 }

@@ -22,7 +22,7 @@
 
 #include "host/run/telemetry_client.h"
 #include "host/server/viewer_server.h"
-#include "tests/support/sentence.h"
+#include "tests/support/message.h"
 #include "tests/support/telemetry_source.h"
 
 namespace tact::test {

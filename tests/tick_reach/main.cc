@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // tact-tick-reach: enters what a tick can enter, and leaves clang's coverage of that alone.
 //
-// `sim` is the whole loop on the simulated delta with the mischief of tact-soak: strokes, faults,
+// `sim` is the whole loop on the simulated delta with the injected of tact-soak: strokes, faults,
 // stops, late ticks, operators. `odrive` and `falcon` are the devices' part of a tick, from the
 // first one after opening to a device that is lost. Set-up, tests and physics are not counted.
 #include <fmt/format.h>
@@ -71,11 +71,11 @@ int reach_sim(const std::string& path) {
                                         /*hard_real_time=*/true);
   firmware::loop::RtLoop loop({.period_ns = kPeriod_ns}, counted, lines, controller, clock,
                               requests, *ring);
-  soak::FaultInjection mischief(1, scene->hand, kPeriod_ns);
+  soak::FaultInjection injected(1, scene->hand, kPeriod_ns);
   firmware::loop::State state = firmware::loop::State::kOff;
   firmware::loop::TickRecord record;
   for (int tick = 0; tick < 100'000; ++tick) {
-    mischief.step(**device, lines, clock, requests, state == firmware::loop::State::kStopped);
+    injected.step(**device, lines, clock, requests, state == firmware::loop::State::kStopped);
     counters::resume();
     loop.step();
     counters::pause();

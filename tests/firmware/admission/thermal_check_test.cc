@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace tact::firmware::admission::heat_check_test {
+namespace tact::firmware::admission::thermal_check_test {
 
 // A PHANTOM's: the scene says 20 N for long, the device bears 1.4.
 model::Limits limits(double continuous_N, double thermal_time_s) {
@@ -32,4 +32,4 @@ TEST(HeatCheck, ADeviceThatBearsLessForLongThanTheSceneSaysNeedsTheTimeForIt) {
   EXPECT_FALSE(check_thermal(scene, limits(1.4, 1.89)));
 }
 
-}  // namespace tact::firmware::admission::heat_check_test
+}  // namespace tact::firmware::admission::thermal_check_test

@@ -14,7 +14,7 @@
 #include "firmware/telemetry/telemetry_frame.h"
 #include "host/record/recording.h"
 #include "tests/support/damage.h"
-#include "tests/support/sentence.h"
+#include "tests/support/message.h"
 #include "tests/support/test_scene.h"
 
 namespace tact::firmware::black_box::black_box_test {

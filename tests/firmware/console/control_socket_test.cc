@@ -15,7 +15,7 @@
 #include "firmware/console/control_name.h"
 #include "model/io/socket_file.h"
 #include "tests/support/forked.h"
-#include "tests/support/sentence.h"
+#include "tests/support/message.h"
 
 namespace tact::firmware::console::control_socket_test {
 

@@ -20,7 +20,7 @@ std::string run(InputStrategy strategy, const GateSetting& setting, GateRules& r
     Sequence sequence(seed, strategy, setting);
     for (int tick = 0; tick < ticks; ++tick)
       if (const char* broken = rules.check(sequence.next(rules.verdict().wrench)))
-        return std::string(broken) + ": " + setting.name + ", temper " +
+        return std::string(broken) + ": " + setting.name + ", strategy " +
                std::to_string(static_cast<int>(strategy)) + ", seed " + std::to_string(seed) +
                ", tick " + std::to_string(tick);
   }

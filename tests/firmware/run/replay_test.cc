@@ -14,8 +14,8 @@
 #include "firmware/telemetry/tick_csv.h"
 #include "hal/registry/open_device.h"
 #include "tests/support/damage.h"
+#include "tests/support/message.h"
 #include "tests/support/pass_time.h"
-#include "tests/support/sentence.h"
 #include "tests/support/test_scene.h"
 
 namespace tact::firmware::run::replay_test {

@@ -22,9 +22,9 @@
 #include "model/scene/tissue.h"
 #include "model/time_ns.h"
 #include "model/units.h"
+#include "tests/support/message.h"
 #include "tests/support/mountings.h"
 #include "tests/support/scene_loop.h"
-#include "tests/support/sentence.h"
 #include "tests/support/stub_dhd/stub_client.h"
 #include "tests/support/stub_hd/hd_client.h"
 

@@ -18,7 +18,7 @@
 #include "firmware/loop/rt_loop.h"
 #include "hal/registry/open_device.h"
 #include "host/server/frame_json.h"
-#include "tests/support/sentence.h"
+#include "tests/support/message.h"
 #include "tests/support/test_scene.h"
 
 namespace tact::firmware::telemetry::telemetry_test {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/forked.h"
-#include "tests/support/sentence.h"
+#include "tests/support/message.h"
 
 namespace tact::hal::can::can_lock_test {
 

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "tests/support/sentence.h"
+#include "tests/support/message.h"
 
 namespace tact::hal::vendor_sdk::library_trust_test {
 

@@ -7,8 +7,8 @@
 
 #include "host/figure/figure.h"
 #include "host/tracking/operator_tracker.h"
+#include "tests/support/message.h"
 #include "tests/support/operator_motion.h"
-#include "tests/support/sentence.h"
 #include "tests/support/tracking_views.h"
 
 namespace tact::host::figure::operator_roles_test {

@@ -15,7 +15,7 @@
 #include <random>
 
 #include "host/igtl/igtl_frame.h"
-#include "tests/support/sentence.h"
+#include "tests/support/message.h"
 
 namespace tact::host::igtl::igtl_wire_test {
 

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "host/igtl/igtl_link.h"
-#include "tests/support/sentence.h"
+#include "tests/support/message.h"
 
 namespace tact::tests {
 

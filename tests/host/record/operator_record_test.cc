@@ -13,7 +13,7 @@
 #include "host/record/recording_csv.h"
 #include "host/server/live_view.h"
 #include "tests/host/record/spoilt_file.h"
-#include "tests/support/sentence.h"
+#include "tests/support/message.h"
 #include "tests/support/telemetry_source.h"
 #include "tests/support/tracking_views.h"
 

@@ -20,7 +20,7 @@
 #include "host/record/telemetry_check.h"
 #include "tests/host/record/spoilt_file.h"
 #include "tests/support/damage.h"
-#include "tests/support/sentence.h"
+#include "tests/support/message.h"
 #include "tests/support/telemetry_source.h"
 
 namespace tact::host::record::recording_test {

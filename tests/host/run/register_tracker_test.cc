@@ -19,8 +19,8 @@
 
 #include "host/tracking/registration.h"
 #include "tests/support/mesh_files.h"
+#include "tests/support/message.h"
 #include "tests/support/program.h"
-#include "tests/support/sentence.h"
 #include "tests/support/telemetry_source.h"
 #include "tests/support/tracking_views.h"
 

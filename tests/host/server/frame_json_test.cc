@@ -7,7 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "tests/support/sentence.h"
+#include "tests/support/message.h"
 #include "tests/support/telemetry_source.h"
 
 namespace tact::host::server::frame_json_test {

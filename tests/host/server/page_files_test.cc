@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "tests/support/sentence.h"
+#include "tests/support/message.h"
 
 namespace tact::host::server::page_files_test {
 

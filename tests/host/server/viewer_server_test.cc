@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "hal/sim/hand_target.h"
-#include "tests/support/sentence.h"
+#include "tests/support/message.h"
 #include "tests/support/viewer_fixture.h"
 
 namespace tact::test::viewer_server_test {

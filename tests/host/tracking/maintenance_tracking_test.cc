@@ -14,7 +14,7 @@
 #include "host/tracking/operator_tracker.h"
 #include "host/tracking/tracking_setup.h"
 #include "tests/support/mesh_files.h"
-#include "tests/support/sentence.h"
+#include "tests/support/message.h"
 
 namespace tact::host::maintenance_tracking_test {
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/sentence.h"
+#include "tests/support/message.h"
 #include "tests/support/tracking_views.h"
 
 namespace tact::host::tracking::operator_tracker_test {

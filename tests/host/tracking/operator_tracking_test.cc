@@ -9,7 +9,7 @@
 #include <chrono>
 #include <filesystem>
 
-#include "tests/support/sentence.h"
+#include "tests/support/message.h"
 #include "tests/support/tracking_views.h"
 
 namespace tact::host::tracking::operator_tracking_test {

@@ -10,7 +10,7 @@
 #include <random>
 
 #include "host/tracking/tracking_setup.h"
-#include "tests/support/sentence.h"
+#include "tests/support/message.h"
 #include "tests/support/tracking_views.h"
 
 namespace tact::host::tracking::registration_test {

@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-#include "tests/support/sentence.h"
+#include "tests/support/message.h"
 #include "tests/support/tracking_views.h"
 
 namespace tact::host::tracking::tracking_setup_test {

@@ -59,14 +59,14 @@ TEST(Blade, RefusesWhatIsNoNumber) {
 TEST(Blade, MissesNothingThatItCrosses) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> at(-2.0, 2.0);
-  const auto surface_point = [&] { return Vec3{at(random), at(random), at(random)}; };
+  const auto random_point_m = [&] { return Vec3{at(random), at(random), at(random)}; };
   int crossed = 0, missed = 0;
   for (int i = 0; i < 100000; ++i) {
-    const BladeSweep s{.from_a_m = surface_point(),
-                       .from_b_m = surface_point(),
-                       .to_a_m = surface_point(),
-                       .to_b_m = surface_point()};
-    const Vec3 p_m = surface_point(), q_m = surface_point();
+    const BladeSweep s{.from_a_m = random_point_m(),
+                       .from_b_m = random_point_m(),
+                       .to_a_m = random_point_m(),
+                       .to_b_m = random_point_m()};
+    const Vec3 p_m = random_point_m(), q_m = random_point_m();
     const bool beyond = misses(box_around(s), p_m, q_m);
     if (beyond) ASSERT_FALSE(crosses(s, p_m, q_m)) << i;
     crossed += crosses(s, p_m, q_m);

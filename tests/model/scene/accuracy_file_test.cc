@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "tests/support/sentence.h"
+#include "tests/support/message.h"
 #include "tests/support/test_scene.h"
 
 namespace tact::model::scene::accuracy_file_test {

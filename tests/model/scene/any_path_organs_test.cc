@@ -6,8 +6,8 @@
 
 #include "model/scene/scene.h"
 #include "tests/support/extent.h"
+#include "tests/support/message.h"
 #include "tests/support/path_run.h"
-#include "tests/support/sentence.h"
 
 namespace tact::model::scene::any_path_organs_test {
 

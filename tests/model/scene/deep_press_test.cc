@@ -16,7 +16,7 @@
 #include "model/tissue/elastic_field.h"
 #include "model/units.h"
 #include "tests/support/extent.h"
-#include "tests/support/sentence.h"
+#include "tests/support/message.h"
 
 namespace tact::model::scene::deep_press_test {
 

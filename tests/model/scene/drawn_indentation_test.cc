@@ -13,7 +13,7 @@
 #include "model/scene/scene.h"
 #include "model/scene/scene_strokes.h"
 #include "model/scene/tissue.h"
-#include "tests/support/sentence.h"
+#include "tests/support/message.h"
 
 namespace tact::model::scene::drawn_indentation_test {
 

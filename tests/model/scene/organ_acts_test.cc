@@ -18,7 +18,7 @@
 #include "tests/support/brute_force.h"
 #include "tests/support/contact_rules.h"
 #include "tests/support/extent.h"
-#include "tests/support/sentence.h"
+#include "tests/support/message.h"
 
 namespace tact::model::scene::organ_acts_test {
 

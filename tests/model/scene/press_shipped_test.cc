@@ -28,7 +28,7 @@
 #include "model/scene/press_sweep.h"
 #include "model/units.h"
 #include "tests/support/extent.h"
-#include "tests/support/sentence.h"
+#include "tests/support/message.h"
 
 namespace tact::model::scene::press_shipped_test {
 

@@ -10,7 +10,7 @@
 
 #include "model/scene/tissue.h"
 #include "model/units.h"
-#include "tests/support/sentence.h"
+#include "tests/support/message.h"
 #include "tests/support/test_scene.h"
 
 namespace tact::model::scene::press_sweep_test {

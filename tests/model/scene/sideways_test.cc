@@ -10,7 +10,7 @@
 #include "model/contact/contact_law.h"
 #include "model/scene/scene.h"
 #include "model/scene/tissue.h"
-#include "tests/support/sentence.h"
+#include "tests/support/message.h"
 
 namespace tact::model::scene::sideways_test {
 

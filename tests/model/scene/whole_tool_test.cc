@@ -12,7 +12,7 @@
 #include "model/scene/scene.h"
 #include "model/scene/scene_strokes.h"
 #include "model/scene/tissue.h"
-#include "tests/support/sentence.h"
+#include "tests/support/message.h"
 
 namespace tact::model::scene::whole_tool_test {
 
