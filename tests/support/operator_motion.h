@@ -6,13 +6,9 @@
 #include <cmath>
 
 #include "host/tracking/tracked_operator.h"
-#include "tools/tracking_bench/tool_motion.h"
+#include "tests/support/tool_motion.h"
 
 namespace tact::test {
-
-using tools::tracking_bench::kMotion_s;
-using tools::tracking_bench::kMotionFrame_s;
-using tools::tracking_bench::tool_at;
 
 /// A body that sways about `home` by `sway_m` and turns a little.
 inline host::tracking::TrackedBody sways(const Eigen::Vector3d& home_m, double sway_m, double t_s) {

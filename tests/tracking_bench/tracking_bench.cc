@@ -23,8 +23,8 @@
 #include "host/tracking/observation_player.h"
 #include "host/tracking/operator_tracker.h"
 #include "model/scene/tissue.h"
+#include "tests/support/tool_motion.h"
 #include "tools/program/simulated_loop.h"
-#include "tools/tracking_bench/tool_motion.h"
 
 namespace {
 
@@ -39,7 +39,7 @@ using tact::host::pose::PoseEstimate;
 using tact::host::pose::PoseStatus;
 using tact::model::Result;
 using tact::tools::program::SimulatedLoop;
-using namespace tact::tools::tracking_bench;
+using namespace tact::test;
 namespace figure = tact::host::figure;
 namespace tracking = tact::host::tracking;
 

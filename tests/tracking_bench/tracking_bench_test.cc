@@ -10,7 +10,7 @@
 #include "host/figure/tool_arm.h"
 #include "tests/support/mesh_files.h"
 
-namespace tact::tools::tracking_bench::tracking_bench_test {
+namespace tact::tracking_bench::tracking_bench_test {
 
 const std::string kScenes = TACT_SOURCE_DIR "/model/scenes/";
 
@@ -65,4 +65,4 @@ TEST(TrackingBench, RefusesWhatMakesNoMotionInOneLine) {
   }
 }
 
-}  // namespace tact::tools::tracking_bench::tracking_bench_test
+}  // namespace tact::tracking_bench::tracking_bench_test

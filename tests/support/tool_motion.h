@@ -8,7 +8,7 @@
 
 #include "host/pose/coordinate_chain.h"
 
-namespace tact::tools::tracking_bench {
+namespace tact::test {
 
 inline constexpr double kMotion_s = 30.0, kMotionFrame_s = 1.0 / 60.0;
 
@@ -40,4 +40,4 @@ inline host::pose::Pose turned_tool_at(double t_s) {
   return {.rotation = Eigen::Quaterniond(turn), .position_m = {0.0, 0.0, 0.05}};
 }
 
-}  // namespace tact::tools::tracking_bench
+}  // namespace tact::test
