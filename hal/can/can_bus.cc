@@ -16,25 +16,6 @@ bool is_no_room(int error) RT_SAFE {
   return error == ENOBUFS || error == EAGAIN || error == EINTR || error == ENOMEM;
 }
 
-/// The message of the worst thing that these bits say.
-const char* message_of(std::uint32_t bits, std::span<const CanErrorText> words,
-                       std::uint32_t only) {
-  for (const CanErrorText& one : words)
-    if ((bits & only & one.bit) != 0) return one.message;
-  return nullptr;
-}
-
-std::string error_frame_text(std::uint32_t code) {
-  constexpr auto kGone = static_cast<std::uint32_t>(CanErrorClass::kBusOff) |
-                         static_cast<std::uint32_t>(CanErrorClass::kRestarted);
-  constexpr auto kPassive = static_cast<std::uint32_t>(CanControllerState::kRxPassive) |
-                            static_cast<std::uint32_t>(CanControllerState::kTxPassive);
-  const std::uint32_t classes = code & 0xFFFFu, controller = code >> 16;
-  if (const char* words = message_of(classes, can_error_class_texts(), kGone)) return words;
-  if (const char* words = message_of(controller, can_controller_texts(), kPassive)) return words;
-  return "The CAN controller left its normal state: check cable, termination and bit rate.";
-}
-
 std::optional<CanFrame> unpack(const CanFrameBytes& bytes) RT_SAFE {
   return unpack_can_frame(bytes);
 }
@@ -72,12 +53,9 @@ auto BasicCanBus<Frame>::receive() RT_SAFE -> std::span<const Received> {
 template <class Frame>
 void BasicCanBus<Frame>::evaluate(const CanError& error) RT_SAFE {
   ++counts_.error_frames;
-  classes_seen_ |= error.classes;
-  controller_seen_ = static_cast<std::uint8_t>(controller_seen_ | error.controller);
-  // "Restarted" alone: bus-off was missed, and the drives' state is not known any more.
-  const bool gone =
-      error.action == CanErrorAction::kDisableDrives || error.has(CanErrorClass::kRestarted);
-  if (!gone) return;
+  errors_seen_.classes |= error.classes;
+  errors_seen_.controller = static_cast<std::uint8_t>(errors_seen_.controller | error.controller);
+  if (!error.is_bus_gone()) return;
   latch_.set(
       {.fault = Fault::kBusOff,
        .kind = kind_of(CanCause::kErrorFrame),
@@ -140,7 +118,10 @@ std::string can_bus_trouble(const FaultCause& cause, const std::string& interfac
           "drives powered? ip link set {} txqueuelen 100",
           interface, CanBus::kMaxMissedInARow, interface);
     case CanCause::kErrorFrame:
-      return fmt::format("{}: {}", interface, error_frame_text(cause.code));
+      return fmt::format("{}: {}", interface,
+                         CanError{.classes = cause.code & 0xFFFFu,
+                                  .controller = static_cast<std::uint8_t>(cause.code >> 16)}
+                             .words());
     default:
       return {};
   }
@@ -148,19 +129,14 @@ std::string can_bus_trouble(const FaultCause& cause, const std::string& interfac
 
 template <class Frame>
 std::string silent_bus_trouble(const BasicCanBus<Frame>& bus, const std::string& interface) {
-  const auto classes = [&bus](CanErrorClass one) {
-    return (bus.error_classes_seen() & static_cast<std::uint32_t>(one)) != 0;
-  };
-  const auto controller = [&bus](CanControllerState one) {
-    return (bus.controller_seen() & static_cast<std::uint8_t>(one)) != 0;
-  };
-  const bool disturbed = classes(CanErrorClass::kBusOff) || classes(CanErrorClass::kProtocol) ||
-                         classes(CanErrorClass::kBusError) ||
-                         controller(CanControllerState::kRxPassive);
-  const bool unheard = classes(CanErrorClass::kNoAck) ||
-                       controller(CanControllerState::kTxPassive) ||
-                       bus.cause().kind == kind_of(CanCause::kNoRoom);
-  if (unheard && !classes(CanErrorClass::kBusOff)) {
+  using enum CanErrorClass;
+  using enum CanControllerState;
+  const CanError& seen = bus.errors_seen();
+  const bool disturbed =
+      seen.has(kBusOff) || seen.has(kProtocol) || seen.has(kBusError) || seen.has(kRxPassive);
+  const bool unheard =
+      seen.has(kNoAck) || seen.has(kTxPassive) || bus.cause().kind == kind_of(CanCause::kNoRoom);
+  if (unheard && !seen.has(kBusOff)) {
     return fmt::format(
         "nobody on {} acknowledges a frame: switch the drives on and connect them; if they are on, "
         "give {} their bit rate",

@@ -66,9 +66,8 @@ class BasicCanBus {
   Fault fault() const RT_SAFE { return latch_.fault(); }
   FaultCause cause() const RT_SAFE { return latch_.cause(); }
   const CanBusCounts& counts() const RT_SAFE { return counts_; }
-  /// All error classes and controller states of error frames so far: why nobody answers at start.
-  std::uint32_t error_classes_seen() const RT_SAFE { return classes_seen_; }
-  std::uint8_t controller_seen() const RT_SAFE { return controller_seen_; }
+  /// Of all error frames so far: why nobody answers at start.
+  const CanError& errors_seen() const RT_SAFE { return errors_seen_; }
   Socket& socket() { return *socket_; }
   const CanRate& rate() const { return socket_->rate(); }
 
@@ -84,8 +83,7 @@ class BasicCanBus {
   bool batch_whole_ = true;
   bool was_cut_short_ = false;
   int missed_in_a_row_ = 0;
-  std::uint32_t classes_seen_ = 0;
-  std::uint8_t controller_seen_ = 0;
+  CanError errors_seen_;
   CanBusCounts counts_;
   FaultLatch latch_;
 };

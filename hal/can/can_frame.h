@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// can_frame.h - one frame of a classic CAN bus with an 11-bit identifier, and its cost in bits.
+// can_frame.h - one frame of a classic CAN bus with an 11-bit identifier, and its most bits.
 //
 // Bytes are those of SocketCAN's `struct can_frame` (linux/can.h), 16 of them, little endian:
 //
@@ -59,13 +59,11 @@ std::optional<CanFrameBytes> pack_can_frame(const CanFrame& frame) RT_SAFE;
 /// number of bytes but 16. Data beyond the length, and all of a remote request, is zeroed.
 std::optional<CanFrame> unpack_can_frame(std::span<const std::uint8_t> bytes) RT_SAFE;
 
-struct CanBits {
-  int exact = 0;  // with the stuff bits of these very bytes
-  int least = 0;  // no stuff bit
-  int most = 0;   // a stuff bit after every fourth: the budget of a cycle
-};
-
-/// Bits on the bus, intermission included; zero for a frame that cannot be packed.
-CanBits can_bits_on_bus(const CanFrame& frame) RT_SAFE;
+/// Bits on the bus at most, of a data frame of `length` bytes: with a stuff bit after every fourth
+/// of those that are stuffed, and intermission. The budget of a cycle.
+constexpr int most_can_bits(int length) RT_SAFE {
+  const int stuffed = 34 + 8 * length;
+  return stuffed + (stuffed - 1) / 4 + 13;
+}
 
 }  // namespace tact::hal::can

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // fault_latch.h - the first fault of a device stays, with its cause, for the loop and for words.
 //
-// The loop's thread sets it; any thread may read it. One 64-bit word holds it all, so a reader
-// never sees half of it: fault 16 bits, axis 8, kind of cause 8, code 32.
+// The loop's thread sets it; any thread may read it. A cause is one atomic of 64 bits, so a
+// reader never sees half of it.
 #pragma once
 
 #include <atomic>
@@ -38,47 +38,31 @@ class FaultLatch {
 
   /// Keeps the first one.
   void set(const FaultCause& cause) RT_SAFE {
-    if (fault() == model::Fault::kNone) word_.store(packed(cause), std::memory_order_relaxed);
+    if (fault() == model::Fault::kNone) cause_.store(cause, std::memory_order_relaxed);
   }
   /// The same fault, better known: a code often comes a frame later than the state.
   void explain(const FaultCause& cause) RT_SAFE {
     const FaultCause old = this->cause();
     if (old.fault == cause.fault && old.axis == cause.axis)
-      word_.store(packed(cause), std::memory_order_relaxed);
+      cause_.store(cause, std::memory_order_relaxed);
   }
-  FaultCause cause() const RT_SAFE { return unpacked(word_.load(std::memory_order_relaxed)); }
+  FaultCause cause() const RT_SAFE { return cause_.load(std::memory_order_relaxed); }
 
  private:
-  friend class WaitNote;
-  static FaultCause unpacked(std::uint64_t word) RT_SAFE {
-    return {.fault = static_cast<model::Fault>(word >> 48),
-            .axis = static_cast<std::uint8_t>(word >> 40),
-            .kind = static_cast<std::uint8_t>(word >> 32),
-            .code = static_cast<std::uint32_t>(word)};
-  }
-  static constexpr std::uint64_t packed(const FaultCause& cause) RT_SAFE {
-    return static_cast<std::uint64_t>(cause.fault) << 48 |
-           static_cast<std::uint64_t>(cause.axis) << 40 |
-           static_cast<std::uint64_t>(cause.kind) << 32 | cause.code;
-  }
-  static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
-  std::atomic<std::uint64_t> word_{0};
+  static_assert(std::atomic<FaultCause>::is_always_lock_free);
+  std::atomic<FaultCause> cause_{};
 };
 
 /// What the device waits for, which is no fault: the loop notes it, any thread reads it.
 class WaitNote {
  public:
-  void set(const FaultCause& cause) RT_SAFE {
-    word_.store(FaultLatch::packed(cause), std::memory_order_relaxed);
-  }
-  void clear() RT_SAFE { word_.store(0, std::memory_order_relaxed); }
+  void set(const FaultCause& cause) RT_SAFE { cause_.store(cause, std::memory_order_relaxed); }
+  void clear() RT_SAFE { set({}); }
   /// Of kind 0: nothing is waited for.
-  FaultCause cause() const RT_SAFE {
-    return FaultLatch::unpacked(word_.load(std::memory_order_relaxed));
-  }
+  FaultCause cause() const RT_SAFE { return cause_.load(std::memory_order_relaxed); }
 
  private:
-  std::atomic<std::uint64_t> word_{0};
+  std::atomic<FaultCause> cause_{};
 };
 
 }  // namespace tact::hal::can

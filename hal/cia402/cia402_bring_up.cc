@@ -194,10 +194,7 @@ std::vector<std::uint32_t> cia402_ids(const model::CanSettings& can) {
 
 int cia402_cycle_bits() {
   // SYNC, three commands, three samples (CB-2).
-  const auto most = [](std::uint8_t length) {
-    return can_bits_on_bus(can::make_can_frame(0, length)).most;
-  };
-  return most(0) + 3 * (most(4) + most(8));
+  return can::most_can_bits(0) + 3 * (can::most_can_bits(4) + can::most_can_bits(8));
 }
 
 CstConfiguration cst_settings(const model::CanSettings& can, double rate_Hz) {

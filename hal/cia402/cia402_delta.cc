@@ -225,8 +225,7 @@ Result<std::unique_ptr<Device>> start_cia402_delta(std::unique_ptr<can::CanBus> 
   // if they wait for SYNC.
   const auto period_ns = model::period_ns(rate_Hz);
   const int periods = can.command_at_sync ? 2 : 1;
-  const int bits = 3 * can_bits_on_bus(can::make_can_frame(0, 4)).most;
-  const double bus_s = can::bus_time_s(bits, bus->rate());
+  const double bus_s = can::bus_time_s(3 * can::most_can_bits(4), bus->rate());
   return can::start_can_device(
       std::move(bus), settings, rate_Hz,
       {.drives = std::make_unique<Cia402s>(can, rate_Hz, *start),

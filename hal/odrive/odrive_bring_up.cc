@@ -242,9 +242,8 @@ std::vector<std::uint32_t> odrive_ids(const model::CanSettings& can) {
 }
 
 int odrive_cycle_bits(const model::CanSettings& can) {
-  const auto length = static_cast<std::uint8_t>(odrive_torque_length(can));
-  const int torque = can_bits_on_bus(can::make_can_frame(0, length)).most;
-  return 3 * (torque + can_bits_on_bus(can::make_can_frame(0, 8)).most);
+  const int torque_bytes = static_cast<int>(odrive_torque_length(can));
+  return 3 * (can::most_can_bits(torque_bytes) + can::most_can_bits(8));
 }
 
 Result<OdriveStart> bring_up_odrives(can::CanBus& bus, const model::CanSettings& can,

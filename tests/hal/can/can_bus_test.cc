@@ -134,7 +134,7 @@ TEST(CanBus, ErrorFramesAreNoFramesOfDrives) {
   b.wire.say_error(0x020, 0);
   EXPECT_TRUE(b.bus->receive().empty());
   EXPECT_EQ(b.bus->counts().error_frames, 1u);
-  EXPECT_EQ(b.bus->error_classes_seen(), 0x020u);
+  EXPECT_EQ(b.bus->errors_seen().classes, 0x020u);
   EXPECT_EQ(b.bus->fault(), Fault::kNone);
 }
 

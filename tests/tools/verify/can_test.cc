@@ -72,7 +72,7 @@ void check_file(const std::string& name, int cases, const std::map<std::string, 
 TEST(VerifyCan, EveryPublishedFrameOfTheKernelPassesAndEveryFieldIsLookedAt) {
   // An error frame is what goes in; of its bytes not all have a meaning.
   check_file("can_socketcan.json", 85,
-             {{"error_frames", {"can_frame"}}, {"bus_bits", {"id", "data"}}});
+             {{"error_frames", {"can_frame"}}, {"bus_bits", {"id", "data", "bits"}}});
 }
 
 TEST(VerifyCan, EveryPublishedFrameOfOdrivePassesAndEveryFieldIsLookedAt) {
