@@ -30,7 +30,7 @@ model::DeviceAtTool delta_at_tool(const DeltaKinematics& delta, const DeltaJoint
     const DeltaInverse solved = delta.inverse(p_m);
     // None reachable leaves no damping: the safe side.
     if (!solved.reachable) continue;
-    s = std::max(s, workspace_indices(delta, p_m, solved.theta_rad).sigma_m_per_rad[0]);
+    s = std::max(s, model::singular_values(jacobian(delta.pose(p_m, solved.theta_rad)))[0]);
   }
   return {.damping_Ns_per_m = s > 0.0 ? joint.viscous_Nms_per_rad / (s * s) : 0.0,
           .friction_N = s > 0.0 ? joint.coulomb_Nm / s : 0.0,

@@ -9,8 +9,6 @@ namespace tact::hal::delta {
 namespace {
 
 constexpr Vec3 kAxis{0.0, 0.0, 1.0};
-constexpr double kMinTransmission = 0.35;  // DK-5
-constexpr double kMinRodSigma = 0.25;      // DK-5
 
 /// An angle of (-2 pi, 2 pi) to (-pi, pi], to compare with joint stops.
 double wrapped_rad(double angle_rad) RT_SAFE {
@@ -39,15 +37,12 @@ DeltaInverse DeltaKinematics::inverse(const Vec3& position_m) const RT_SAFE {
     const double a = 2.0 * la * x, b = 2.0 * la * z;
     const double c = x * x + y * y + z * z + la * la - lb * lb;
     const double reach = std::hypot(a, b);
-    out.margin_ratio[i] = reach > 0.0 ? 1.0 - std::abs(c) / reach : -1.0;
     if (!(std::abs(c) <= reach && reach > 0.0)) {
       out.reachable = false;
       continue;
     }
-    // Two solutions, knee outward or inward. theta = atan2(B, A) -+ acos(C / hypot(A, B))
-    const double middle_rad = std::atan2(b, a), half_rad = std::acos(c / reach);
-    out.theta_rad[i] = wrapped_rad(middle_rad - half_rad);
-    out.theta_inner_rad[i] = wrapped_rad(middle_rad + half_rad);
+    // theta = atan2(B, A) - acos(C / hypot(A, B)): of two solutions the elbow outward
+    out.theta_rad[i] = wrapped_rad(std::atan2(b, a) - std::acos(c / reach));
   }
   return out;
 }
@@ -69,9 +64,9 @@ DeltaForward DeltaKinematics::forward(const Joints& theta_rad) const RT_SAFE {
   // The rods are too short to meet; so written, NaN ends here too.
   if (!(height_squared >= 0.0)) return {};
   const Vec3 circumcentre = centre[0] + to_circumcentre;
-  // The sign by n.z: far_m is the larger z, whichever way the arms turn n.
+  // The sign by n.z: the larger z, whichever way the arms turn n.
   const Vec3 up = n * (std::sqrt(height_squared / nn) * (n.z < 0.0 ? -1.0 : 1.0));
-  return {.solved = true, .far_m = circumcentre + up, .near_m = circumcentre - up};
+  return {.solved = true, .far_m = circumcentre + up};
 }
 
 DeltaPose DeltaKinematics::pose(const Vec3& position_m, const Joints& theta_rad) const RT_SAFE {
@@ -148,31 +143,6 @@ double saturation_ratio(const Joints& held_Nm, const Joints& wanted_Nm, double l
     if (!(ratio > 0.0)) return 0.0;
   }
   return ratio;
-}
-
-DeltaIndices workspace_indices(const DeltaKinematics& delta, const Vec3& position_m,
-                               const Joints& theta_rad) RT_SAFE {
-  const DeltaGeometry& g = delta.geometry();
-  const DeltaPose pose = delta.pose(position_m, theta_rad);
-  DeltaIndices out;
-  out.sigma_m_per_rad = model::singular_values(jacobian(pose));
-  out.least_rod_sigma = model::singular_values(Mat3{pose.rod_m})[2] / g.forearm_m;
-  out.least_transmission = 1.0;
-  out.within_limits = true;
-  for (std::size_t i = 0; i < 3; ++i) {
-    out.least_transmission = std::min(out.least_transmission,
-                                      std::abs(pose.lever_m2[i]) / (g.upper_arm_m * g.forearm_m));
-    // y_i: platform point across the plane of arm i; normal of that plane: radial x tangent / la
-    const Vec3 across = cross(pose.radial[i], pose.tangent_m[i]) / g.upper_arm_m;
-    // Elbow and joint of the platform differ within that plane: what is across is the rod's.
-    const double side = std::abs(dot(across, position_m)) / g.forearm_m;
-    out.largest_side_rad = std::max(out.largest_side_rad, std::asin(std::min(side, 1.0)));
-    const bool inside = theta_rad[i] >= g.theta_min_rad && theta_rad[i] <= g.theta_max_rad;
-    out.within_limits = out.within_limits && inside;
-  }
-  out.within_limits = out.within_limits && out.least_transmission >= kMinTransmission &&
-                      out.least_rod_sigma >= kMinRodSigma;
-  return out;
 }
 
 }  // namespace tact::hal::delta

@@ -11,7 +11,7 @@
 //     F        force of the device on the hand, N;  tau_i  joint torque that makes it, N m
 //
 // Frame D: origin in the middle of the three motor axes, +z from the base to the workspace, arm i
-// at azimuth phi_i. Closed forms only (DK-1 to DK-5): the time does not depend on the pose.
+// at azimuth phi_i. Closed forms only (DK-1 to DK-4): the time does not depend on the pose.
 // Everything is plain algebra of the loop closure; R. Clavel, EPFL thesis 925 (1991) is where the
 // mechanism is from.
 #pragma once
@@ -38,15 +38,12 @@ struct DeltaGeometry {
 
 struct DeltaInverse {
   bool reachable = false;
-  Joints theta_rad{};        // elbow outside: the branch that is built
-  Joints theta_inner_rad{};  // elbow inside
-  Joints margin_ratio{};     // 1 - |C| / hypot(A, B); 0 at the reach limit, negative beyond
+  Joints theta_rad{};  // elbow outside: the branch that is built
 };
 
 struct DeltaForward {
   bool solved = false;  // false: the rods cannot meet, or their centres lie on one line
-  Vec3 far_m;           // larger z: the working side
-  Vec3 near_m;
+  Vec3 far_m;           // of two points the one with the larger z: the working side
 };
 
 /// What every derivative of one pose is made of.
@@ -86,15 +83,5 @@ Joints joint_drift_radps2(const DeltaPose& pose, const Vec3& velocity_mps) RT_SA
 /// Largest s in [0, 1] with |held + s wanted| <= limit on each joint; 0 for NaN. One factor for all
 /// joints keeps the direction of the force.
 double saturation_ratio(const Joints& held_Nm, const Joints& wanted_Nm, double limit_Nm) RT_SAFE;
-
-struct DeltaIndices {
-  Joints sigma_m_per_rad{};         // singular values of J, descending
-  double least_transmission = 0.0;  // min |d_i| / (la lb)
-  double least_rod_sigma = 0.0;     // smallest singular value of [s_1 s_2 s_3] / lb
-  double largest_side_rad = 0.0;    // how far a rod leaves the plane of its arm
-  bool within_limits = false;       // joint stops, transmission and rod index
-};
-DeltaIndices workspace_indices(const DeltaKinematics& delta, const Vec3& position_m,
-                               const Joints& theta_rad) RT_SAFE;
 
 }  // namespace tact::hal::delta

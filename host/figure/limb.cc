@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/figure/limb.h"
 
+#include <algorithm>
 #include <cmath>
-
-#include "host/figure/leg_ik.h"
 
 namespace tact::host::figure {
 
@@ -19,16 +18,20 @@ Limb pose_limb(const LimbBones& bones, const Vector3d& root_m, const Vector3d& e
                const Vector3d& hint, const Vector3d& otherwise) {
   const Vector3d limb_m = end_m - root_m;
   const double distance_m = limb_m.norm();
+  if (!std::isfinite(distance_m))
+    return {.middle_m = root_m, .end_m = root_m, .missed_m = distance_m};
   const Vector3d x = distance_m > 1e-6 ? Vector3d(limb_m / distance_m) : -Vector3d::UnitZ();
   const Vector3d y = across(hint, x, otherwise);
-  const LegPose flat =
-      pose_leg({.thigh_m = bones.upper_m, .calf_m = bones.lower_m}, {0.0, 0.0}, {distance_m, 0.0});
-  const auto in_space = [&](const Eigen::Vector2d& p_m) -> Vector3d {
-    return root_m + p_m.x() * x + p_m.y() * y;
-  };
-  return {.middle_m = in_space(flat.knee_m),
-          .end_m = in_space(flat.ankle_m),
-          .missed_m = std::abs(distance_m - flat.ankle_m.x())};
+  const double l1 = bones.upper_m, l2 = bones.lower_m;
+  const double d = std::clamp(distance_m, std::abs(l1 - l2), l1 + l2);
+  // 16 A^2 = (L1+L2+D) (L1+L2-D) (D+(L1-L2)) (D-(L1-L2)); a factor is exactly 0 where the limb is
+  // straight or folded. The law of cosines through acos has half its digits left there.
+  const double product = ((l1 + l2) + d) * ((l1 + l2) - d) * (d + (l1 - l2)) * (d - (l1 - l2));
+  const double along_m = d > 0.0 ? 0.5 * ((l1 - l2) * (l1 + l2) / d + d) : 0.0;
+  const double across_m = d > 0.0 ? 0.5 * std::sqrt(std::max(product, 0.0)) / d : l1;
+  return {.middle_m = root_m + along_m * x + across_m * y,
+          .end_m = root_m + d * x,
+          .missed_m = std::abs(distance_m - d)};
 }
 
 }  // namespace tact::host::figure

@@ -2,7 +2,10 @@
 // limb.h - two bones in space: root and end are known, and to which side the middle joint bends.
 //
 //     x = (end - root) / |end - root|      y = the part of the hint across x, of length 1
-//     the middle joint by CC-10 in the plane of x and y (leg_ik.h)
+//     D = |end - root|, kept within |L1 - L2| .. L1 + L2 ,   A  area of the triangle, m^2
+//     middle joint - root = (L1^2 - L2^2 + D^2)/(2 D) x + 2 A/D y                            CC-10
+//
+//     L1 upper, L2 lower bone, m.   At D = 0, with L1 = L2, the limb is folded along y.
 //
 // Frame and unit: those of the arguments, m. For display, not for the force loop. Source: CC-10.
 #pragma once
@@ -26,7 +29,8 @@ Eigen::Vector3d across(const Eigen::Vector3d& v, const Eigen::Vector3d& along,
                        const Eigen::Vector3d& otherwise);
 
 /// `hint` is a direction from the root, `otherwise` one for a limb that lies along it. An end at
-/// the root gives no direction: the limb goes down, -z, then.
+/// the root gives no direction: the limb goes down, -z, then. An end that is not finite: no limb,
+/// both points at the root.
 Limb pose_limb(const LimbBones& bones, const Eigen::Vector3d& root_m, const Eigen::Vector3d& end_m,
                const Eigen::Vector3d& hint, const Eigen::Vector3d& otherwise);
 

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "host/figure/ccd.h"
-#include "host/figure/leg_ik.h"
+#include "host/figure/limb.h"
 #include "host/pose/coordinate_chain.h"
 #include "host/pose/epnp.h"
 #include "tools/verify/report.h"
@@ -66,23 +66,17 @@ json transform_results(const json& one_case) {
 
 json leg_results(const json& one_case) {
   const json &p = one_case.at("params"), &inputs = one_case.at("inputs");
-  // CC-10: a leg by the law of cosines.
-  const host::figure::Leg leg{.thigh_m = number(p.at("L_lap")),
-                              .calf_m = number(p.at("L_calf")),
-                              .bend = p.at("bend") == 1 ? host::figure::Bend::kCounterClockwise
-                                                        : host::figure::Bend::kClockwise};
-  const host::figure::LegPose at =
-      host::figure::pose_leg(leg, vector_2(inputs.at("P1")), vector_2(inputs.at("P2")));
-  if (at.status == host::figure::LegStatus::kInvalid) return {{"status", "INVALID_ARGUMENT"}};
-  return {{"status", at.status == host::figure::LegStatus::kOk ? "OK" : "UNREACHABLE"},
-          {"knee", list(at.knee_m)},
-          {"ankle", list(at.ankle_m)},
-          {"interior_hip", at.interior_hip_rad},
-          {"interior_knee", at.interior_knee_rad},
-          {"interior_ankle", at.interior_ankle_rad},
-          {"flexion_knee", at.flexion_knee_rad},
-          {"thigh_angle", at.thigh_angle_rad},
-          {"shank_angle", at.shank_angle_rad}};
+  // CC-10: a leg by the law of cosines; its plane is z = 0 here.
+  const Vector3d hip_m = in_plane(inputs.at("P1")), ankle_m = in_plane(inputs.at("P2"));
+  const Vector3d counter_clockwise = Vector3d::UnitZ().cross(ankle_m - hip_m);
+  const double bend = number(p.at("bend"));
+  const host::figure::Limb at =
+      host::figure::pose_limb({.upper_m = number(p.at("L_lap")), .lower_m = number(p.at("L_calf"))},
+                              hip_m, ankle_m, bend * counter_clockwise, Vector3d::UnitY());
+  if (!at.middle_m.allFinite()) return {{"status", "INVALID_ARGUMENT"}};
+  return {{"status", at.missed_m == 0.0 ? "OK" : "UNREACHABLE"},
+          {"knee", list(at.middle_m, 2)},
+          {"ankle", list(at.end_m, 2)}};
 }
 
 const char* word(host::figure::ReachStatus status) {

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "hal/sim/sim_delta_model.h"
+#include "tests/support/delta_indices.h"
 #include "tests/support/no_alloc.h"
 
 namespace tact::hal::sim::delta_plant_test {
@@ -150,8 +151,7 @@ TEST(DeltaPlant, CannotBePushedNearASingularPose) {
     for (int step = 0; step < 3000; ++step) {
       plant.step(kStep_s, step < 2000 ? motors_Nm(plant, force_N) : delta::Joints{}, {});
       if (step % 20 != 0) continue;
-      const delta::DeltaIndices indices =
-          workspace_indices(kDelta, plant.position_D_m(), plant.theta_rad());
+      const auto indices = tests::delta_indices(kDelta, plant.position_D_m(), plant.theta_rad());
       ASSERT_GT(indices.least_transmission, 0.2);
       ASSERT_GT(indices.least_rod_sigma, 0.25);
       ASSERT_LT(norm(plant.velocity_mps()), 6.0);

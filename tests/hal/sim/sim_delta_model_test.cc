@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/support/delta_indices.h"
+
 namespace tact::hal::sim_delta::sim_delta_model_test {
 
 TEST(SimDeltaModel, WorldAxesArePlacedAsTheHeaderSays) {
@@ -38,7 +40,11 @@ TEST(SimDeltaModel, InTheWholeCylinderPoseAndMotorsAreWithinTheirLimits) {
         const model::Vec3 p_D = sim::point_D({x, r * std::cos(a), r * std::sin(a)});
         const delta::DeltaInverse inverse = delta.inverse(p_D);
         ASSERT_TRUE(inverse.reachable);
-        EXPECT_TRUE(workspace_indices(delta, p_D, inverse.theta_rad).within_limits);
+        EXPECT_TRUE(tests::delta_indices(delta, p_D, inverse.theta_rad).within_limits());
+        for (const double theta_rad : inverse.theta_rad) {
+          EXPECT_GE(theta_rad, sim::kGeometry.theta_min_rad);
+          EXPECT_LE(theta_rad, sim::kGeometry.theta_max_rad);
+        }
         // 20 N in the worst direction for joint i, on top of gravity, within the motors
         const delta::DeltaPose pose = delta.pose(p_D, inverse.theta_rad);
         const delta::Joints gravity_Nm = gravity_torques_Nm(
