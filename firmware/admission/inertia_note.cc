@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware/admission/inertia_note.h"
-
+// Do the strokes of the hand need the inertia that the law leaves out?
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
 
+#include "firmware/admission/notes.h"
 #include "model/indent/compliance_law.h"
 #include "model/indent/inertia.h"
 #include "model/scene/scene_strokes.h"

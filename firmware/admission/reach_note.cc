@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware/admission/reach_note.h"
-
+// Does the simulated hand touch the organ, and is the organ as large as an organ?
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
 
+#include "firmware/admission/notes.h"
 #include "model/contact/contact_point.h"
 #include "model/mesh/mesh.h"
 

@@ -13,7 +13,6 @@
 #include "firmware/console/say.h"
 #include "firmware/console/service_manager.h"
 #include "firmware/loop/release_schedule.h"
-#include "firmware/run/bus_wait.h"
 #include "firmware/run/loop_executor.h"
 #include "firmware/run/loop_parts.h"
 #include "firmware/run/real_time.h"

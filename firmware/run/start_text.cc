@@ -3,13 +3,12 @@
 
 #include <fmt/format.h>
 
-#include "firmware/admission/grip_note.h"
-#include "firmware/admission/inertia_note.h"
-#include "firmware/admission/open_organ_note.h"
-#include "firmware/admission/reach_note.h"
-#include "firmware/admission/torque_note.h"
+#include "firmware/admission/notes.h"
+#include "firmware/console/say.h"
 #include "hal/mounting.h"
+#include "hal/registry/open_device.h"
 #include "model/scene/accuracy_file.h"
+#include "model/time_ns.h"
 
 namespace tact::firmware::run {
 
@@ -26,6 +25,19 @@ std::vector<std::string> start_notes(const model::scene::Scene& scene, const Loo
   }
   std::erase(notes, std::string());
   return notes;
+}
+
+bool wait_for_bus(const model::scene::Scene& scene, const console::OperatorSignals& signals) {
+  std::string reported;
+  for (;;) {
+    const std::string missing = hal::registry::missing_interface(scene.device);
+    if (missing.empty()) return true;
+    if (reported != missing)
+      console::say(stderr, "tactd: waiting for {}: it is not there, or not up; ip link shows it\n",
+                   missing);
+    reported = missing;
+    if (signals.wait_for_end(model::kSecond_ns)) return false;
+  }
 }
 
 std::string check_lines(const model::scene::Scene& scene, const LoopParts& parts) {

@@ -7,7 +7,7 @@
 
 #include <ctime>
 
-#include "firmware/admission/grip_note.h"
+#include "firmware/admission/notes.h"
 #include "firmware/pc/environment.h"
 #include "model/io/socket_file.h"
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What tactd tells before the loop starts: a stroke that is too fast for its law.
-#include "firmware/admission/inertia_note.h"
-
 #include <gtest/gtest.h>
 
+#include "firmware/admission/notes.h"
 #include "tests/support/test_scene.h"
 
 namespace tact::firmware::admission::inertia_note_test {

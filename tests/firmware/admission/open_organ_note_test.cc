@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What tactd --check tells of an organ with a hole.
-#include "firmware/admission/open_organ_note.h"
-
 #include <gtest/gtest.h>
 
+#include "firmware/admission/notes.h"
 #include "tests/support/test_scene.h"
 
 namespace tact::firmware::admission::open_organ_note_test {

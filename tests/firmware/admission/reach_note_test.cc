@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What tactd --check tells of an organ that no stroke reaches, or that has the size of a house.
-#include "firmware/admission/reach_note.h"
-
 #include <gtest/gtest.h>
 
+#include "firmware/admission/notes.h"
 #include "tests/support/test_scene.h"
 
 namespace tact::firmware::admission::reach_note_test {

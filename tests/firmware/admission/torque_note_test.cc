@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware/admission/torque_note.h"
-
 #include <gtest/gtest.h>
 
+#include "firmware/admission/notes.h"
 #include "tests/support/test_scene.h"
 
 namespace tact::firmware::admission::torque_note_test {

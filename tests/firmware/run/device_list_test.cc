@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware/run/device_list.h"
-
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
+#include "firmware/run/lists.h"
 #include "tests/support/program.h"
 
 namespace tact::firmware::run::device_list_test {

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "firmware/admission/torque_note.h"
+#include "firmware/admission/notes.h"
 #include "firmware/gate/limits_for.h"
 #include "firmware/loop/rt_loop.h"
 #include "hal/mounting.h"

@@ -1,13 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// parameter_list.h - `tactd SCENE --parameters`: the numbers of the scene's law, as text or JSON.
+// lists.h - what tactd lists: `--list-devices`, `SCENE --parameters`. For people, and as JSON.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "hal/list/list_devices.h"
 #include "model/scene/law_numbers.h"
 
 namespace tact::firmware::run {
+
+/// For people: one paragraph per part, then what is not there.
+std::string devices_as_text(const std::vector<hal::list::FoundPart>& parts);
+
+/// {"devices":[{"kind","name","what","scene","ready","lacking","remedy"}]}
+std::string devices_as_json(const std::vector<hal::list::FoundPart>& parts);
 
 /// For people: one line per number, as --help-scene has them, with the scene's value.
 std::string parameters_as_text(const std::vector<model::reader::SceneNumber>& numbers);
