@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "model/scene/scene_device.h"
-
+// The keys of [device]: every device's own section, and the safety lines.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "model/scene/scene_keys.h"
 
 namespace tact::model::scene {
 namespace {

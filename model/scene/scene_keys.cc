@@ -5,8 +5,6 @@
 
 #include <array>
 
-#include "model/scene/scene_device.h"
-#include "model/scene/scene_laws.h"
 #include "model/scene/scene_limits.h"
 
 namespace tact::model::scene {

@@ -42,4 +42,13 @@ struct SceneText {
 /// Reads every key into `out`, or describes them all.
 void visit_scene(reader::Keys& root, SceneText& out);
 
+// Of that, in scene_device.cc:
+void visit_device(reader::Keys& keys, DeviceSettings& out);
+// In scene_laws.cc. `law` and the sections of all laws; the chosen one must be there.
+void visit_laws(reader::Keys& root, SceneText& out);
+/// [pull] and [relaxation], of any law.
+void visit_law_options(reader::Keys& root, Scene& scene);
+/// [elastic], [[reference_site]] and [tolerance]: what reference, fit and plan of tact-lab ask.
+void visit_truth(reader::Keys& root, Scene& scene);
+
 }  // namespace tact::model::scene

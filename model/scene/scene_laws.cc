@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "model/scene/scene_laws.h"
-
+// The keys that say what the tissue is: its laws, their options, the elastic body they stand for.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 
 #include "model/law/hermite_table.h"
+#include "model/scene/scene_keys.h"
 
 namespace tact::model::scene {
 namespace {

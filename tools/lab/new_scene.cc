@@ -16,7 +16,6 @@
 #include "tools/lab/commands.h"
 #include "tools/mesh/mesh_report.h"
 #include "tools/mesh/unit.h"
-#include "tools/new_scene/ask.h"
 #include "tools/new_scene/choose_law.h"
 #include "tools/new_scene/organ.h"
 #include "tools/new_scene/outputs.h"

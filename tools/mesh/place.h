@@ -17,7 +17,6 @@
 #include "model/mesh/mesh.h"
 #include "model/result.h"
 #include "model/types.h"
-#include "tools/mesh/misfit.h"
 
 namespace tact::tools::mesh {
 
@@ -25,6 +24,13 @@ namespace tact::tools::mesh {
 double rounded_m(double x_m);
 /// As an array of TOML, each number so rounded.
 std::string toml_of(const model::Vec3& v);
+
+/// What in a scene was made for the organ that it had before, and no longer fits. It was measured,
+/// by hand or by minutes of finite elements, and is left to the user.
+struct Misfit {
+  std::string keys;  // of the scene
+  std::string text;  // why they do not fit, and what to write or run
+};
 
 struct Placement {
   std::string mesh_path;  // absolute

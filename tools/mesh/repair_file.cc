@@ -2,16 +2,20 @@
 #include "tools/mesh/repair_file.h"
 
 #include <fmt/format.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <iterator>
+#include <utility>
 
 #include "model/io/input_file.h"
 #include "model/io/json.h"
 #include "model/io/program/installed.h"
 #include "model/mesh/obj_parser.h"
-#include "tools/program/memory_file.h"
 #include "tools/program/run_program.h"
 
 namespace tact::tools::mesh {
@@ -23,6 +27,46 @@ using model::Result;
 using nlohmann::json;
 
 constexpr std::string_view kFileRemedy = "name a mesh file of at most 2 GB";
+
+/// A file in no folder, for a program that we run: gone when the last that has it open ends,
+/// however it ends.
+class MemoryFile {
+ public:
+  static Result<MemoryFile> make() {
+    // Open in the programs that we start: they find it under the same number.
+    const int fd = memfd_create("tact", 0);
+    if (fd < 0) return error_of(errno);
+    return MemoryFile(fd);
+  }
+  MemoryFile(MemoryFile&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  MemoryFile& operator=(MemoryFile&&) = delete;
+  ~MemoryFile() {
+    if (fd_ >= 0) close(fd_);
+  }
+
+  /// Names it for us and for every program that we start while it is here, and for nobody else.
+  std::string path() const { return fmt::format("/proc/self/fd/{}", fd_); }
+  /// At its end.
+  std::optional<Error> put(std::string_view bytes) const {
+    while (!bytes.empty()) {
+      const ssize_t n = write(fd_, bytes.data(), bytes.size());
+      if (n < 0 && errno == EINTR) continue;
+      if (n <= 0) return error_of(n == 0 ? EIO : errno);
+      bytes.remove_prefix(static_cast<std::size_t>(n));
+    }
+    return std::nullopt;
+  }
+
+ private:
+  explicit MemoryFile(int fd) : fd_(fd) {}
+  static Error error_of(int number) {
+    return {fmt::format("no file in memory: {}; free some memory, or close programs",
+                        std::strerror(number))};
+  }
+  int fd_ = -1;
+};
 
 std::string ending_of(const std::string& path) {
   std::string ending = fs::path(path).extension().string();
@@ -45,7 +89,7 @@ Result<std::string> find_script() {
 
 /// An OBJ file is read by tact's own parser, which knows the line of an error, and handed on with
 /// vertices, their colours and faces alone.
-std::optional<Error> write_plain_obj(const std::string& from, const program::MemoryFile& to) {
+std::optional<Error> write_plain_obj(const std::string& from, const MemoryFile& to) {
   const auto file = model::io::read_file(from, kFileRemedy, model::mesh::kMaxObjBytes);
   if (!file) return file.error();
   if (file->empty()) return Error{from + ":1: the file is empty; export the mesh again"};
@@ -149,8 +193,7 @@ Result<Repaired> repair_file(const RepairOrder& order,
   const auto script = find_script();
   if (!script) return Error{fmt::format("{}: {}", order.source, script.error().message)};
   // In memory: any user kills this program with all the numbers of a scan in it cleans up nothing.
-  const auto plain = program::MemoryFile::make(), repaired = program::MemoryFile::make(),
-             log = program::MemoryFile::make();
+  const auto plain = MemoryFile::make(), repaired = MemoryFile::make(), log = MemoryFile::make();
   for (const auto* file : {&plain, &repaired, &log})
     if (!*file) return file->error();
   std::string source = order.source;

@@ -11,8 +11,6 @@
 
 #include "tests/support/program.h"
 #include "tools/jitter/report/jitter_compare.h"
-#include "tools/jitter/report/jitter_page.h"
-#include "tools/jitter/report/jitter_picture.h"
 #include "tools/program/run_program.h"
 
 namespace tact::tools::jitter::jitter_report_test {

@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/program.h"
-#include "tools/jitter/report/jitter_page.h"
 #include "tools/jitter/report/jitter_report.h"
 
 namespace tact::tools::jitter::peer_test {

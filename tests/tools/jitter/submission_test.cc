@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // The row that a person sends for the table of PCs.
-#include "tools/jitter/report/submission.h"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -14,6 +12,7 @@
 
 #include "tests/support/files.h"
 #include "tests/support/program.h"
+#include "tools/jitter/report/jitter_report.h"
 
 namespace tact::tools::jitter::submission_test {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/jitter/report/jitter_page.h"
-
+// A measurement as one HTML file.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "tools/jitter/report/jitter.html.h"
+#include "tools/jitter/report/jitter_report.h"
 #include "tools/report/page.h"
 
 namespace tact::tools::jitter {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/jitter/report/jitter_picture.h"
-
+// The histograms of a run as a picture.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "model/io/file_writer.h"
+#include "tools/jitter/report/jitter_report.h"
 #include "tools/report/picture.h"
 
 namespace tact::tools::jitter {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/jitter/report/submission.h"
-
+// A measurement as a row of tools/deploy/PCS.md.
 #include <fmt/format.h>
 
 #include <algorithm>
