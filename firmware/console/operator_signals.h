@@ -11,7 +11,7 @@ namespace tact::firmware::console {
 
 /// First of all in main: no signal that somebody sends by mistake ends or halts a process whose
 /// loop pushes. A file that may not grow is an error of its writer. A crash of its own ends it all
-/// the same: the kernel heeds nobody's wish to ignore that.
+/// the same: the kernel lets no process ignore that.
 void outlive_stray_signals();
 
 class OperatorSignals {

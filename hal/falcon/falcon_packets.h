@@ -57,8 +57,8 @@ struct FalconReport {
   bool operator==(const FalconReport&) const = default;
 };
 
-/// Words for these wishes, rounded. One beyond the range scales all three down, so the force keeps
-/// its direction; NaN or infinity in any makes all zero.
+/// Motor words for these values, rounded. One beyond the range scales all three down, so the force
+/// keeps its direction; NaN or infinity in any makes all zero.
 FalconWords falcon_motor_words(const std::array<double, 3>& wanted) RT_SAFE;
 
 /// Each word is clamped to +-kFalconMotorMax; bits that are no light are left out.

@@ -70,7 +70,7 @@ void add_source(CLI::App& app, Options& options) {
       ->needs(open);
   app.add_option("--scenes", options.scenes,
                  "for who starts tactd and tact-view in simulation, as tools/run: folder with the "
-                 "--parameters of scenes that the page offers; a wish is a line of the output "
+                 "--parameters of scenes that the page offers; a request is a line of the output "
                  "(host/server/README.md)")
       ->excludes(open);
 }

@@ -53,7 +53,7 @@ void warn_of_silence(double silence_s) {
 /// A file name with broken UTF-8 is repaired instead of throwing.
 std::string to_text(const nlohmann::json& json) { return model::io::text_of(json); }
 
-/// The answers to wishes: lines of standard input, by the program that gave --scenes.
+/// The answers to requests: lines of standard input, by the program that gave --scenes.
 class Answers {
  public:
   Answers(boost::asio::io_context& io, server::ScenePicker& picker) : input_(io), picker_(picker) {}

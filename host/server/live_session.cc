@@ -126,7 +126,7 @@ void LiveSession::take(const std::string& text) {
   if (const std::optional<HandRequest> hand = parse_hand(text)) move_hand_(*hand);
   // Behind the hand's right: who may not move it chooses no scene.
   if (ask_scene_)
-    if (const nlohmann::json request = object_in(text, "wish"); !request.is_null())
+    if (const nlohmann::json request = object_in(text, "request"); !request.is_null())
       ask_scene_(request);
 }
 

@@ -49,7 +49,7 @@ std::optional<ReplayRequest> parse_replay(const std::string& text) {
                           ? take(value, 1.0 / kFastest_ratio, kFastest_ratio, request.speed_ratio)
                       : key == "repeats" ? take(value, request.repeats)
                                          : false;
-    // One wrong key refuses all: half a wish would play what nobody asked for.
+    // One wrong key refuses all: half a request would play what nobody asked for.
     if (!good) return std::nullopt;
   }
   return request;

@@ -80,7 +80,7 @@ void ScenePicker::ask(const json& request) {
   } else {
     answer_.clear();
     asked_ = choice;
-    std::string line = "wish " + choice.scene;
+    std::string line = "request " + choice.scene;
     for (const auto& [key, value] : choice.set.items()) line += " " + key + "=" + text_of(value);
     send_(line);
   }

@@ -2,11 +2,11 @@
 // scene_picker.h - which scenes of a simulation a page may choose, what one asked for, and what
 // came of it, as the status's "picker".
 //
-//     {"wish": {"scene": "heart", "set": {"disc_stack.layers": 12}}}
+//     {"request": {"scene": "heart", "set": {"disc_stack.layers": 12}}}
 //
-// tact-view starts and sets nothing: a wish becomes a line for the program that started tact-view
-// (tools/run), which starts tactd again or answers why not. tactd alone judges the numbers; here
-// only names are compared with what it offers. One wish at a time.
+// tact-view starts and sets nothing: a request becomes a line for the program that started it
+// (tools/run), which starts tactd again or answers why not. tactd alone checks the numbers; here
+// only names are compared with what it offers. One request at a time.
 #pragma once
 
 #include <functional>
@@ -52,7 +52,7 @@ class ScenePicker {
   std::map<std::string, nlohmann::json> offers_;  // the files, by name of the scene
   Choice shown_;                                  // what runs
   std::optional<Choice> asked_;                   // and does not run yet
-  std::string answer_;                            // why the last wish was refused; or empty
+  std::string answer_;                            // why the last request was refused; or empty
 };
 
 }  // namespace tact::host::server

@@ -60,7 +60,7 @@ function faults_of_layout(least_px) {
     }
   }
   const hit = [...document.querySelectorAll("button, .button, select, input")].filter(seen);
-  const beneath = (a, b) => a.closest("#parameters") && b.closest("#wish_end"); // these scroll there
+  const beneath = (a, b) => a.closest("#parameters") && b.closest("#request_end"); // these scroll there
   for (const [a, b] of pairs(hit)) if (!beneath(a, b) && cover(box(a), box(b))) out.push(`${name(a)} covers ${name(b)}`);
   for (const one of hit) {
     const { width, height } = box(one);
@@ -100,7 +100,7 @@ function offer_headset() {
 /** The scene with the most numbers; it is not asked for. */
 async function open_picker(page) {
   await page.keyboard.press("l");
-  await page.selectOption("#wished_scene", "gum");
+  await page.selectOption("#requested_scene", "gum");
   await page.waitForTimeout(200);
 }
 
@@ -122,7 +122,7 @@ async function check_screen(browser, url, name, screen, condition, is_live) {
     await open_picker(page);
     await check_page(page, `${name}_picker`, least_px);
     const ends = await page.evaluate(() =>
-      ["picker_title", "wish_end"]
+      ["picker_title", "request_end"]
         .map((id) => document.getElementById(id).getBoundingClientRect())
         .every(({ top, bottom }) => top >= 0 && bottom <= innerHeight + 1),
     );

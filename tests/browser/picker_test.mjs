@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // tools/run as a person starts it, and its page in Chromium: another scene, another number of its law, and
-// what happens to the force; wishes that are refused, with a sentence, while the scene goes on.
+// what happens to the force; requests that are refused, with a sentence, while the scene goes on.
 //
 //     node tests/browser/picker_test.mjs BUILD_DIR   (tools/run builds what is missing, there)
 //
@@ -72,10 +72,10 @@ async function check_scenes(page) {
   check("the page of tools/run shows the liver", await runs(page, "liver"));
   check("... and offers scenes", await waits(page, () => document.getElementById("pick").checkVisibility()));
   await page.keyboard.press("l");
-  const offered = await page.$$eval("#wished_scene option", (all) => all.map((one) => one.value));
+  const offered = await page.$$eval("#requested_scene option", (all) => all.map((one) => one.value));
   check("... all that are shipped", offered.join() === kScenes.join(), offered.join(" "));
   check("... with the numbers of the law that runs", (await page.locator(".parameter").count()) === 7);
-  await page.selectOption("#wished_scene", "heart");
+  await page.selectOption("#requested_scene", "heart");
   check("what is chosen and not applied is told", (await words(page)) === "heart is not applied yet", await words(page));
   await page.keyboard.press("Escape");
   await page.keyboard.press("p");
@@ -144,7 +144,7 @@ async function check_phone(browser, url, page) {
   await phone.tap("#pick");
   check(
     "on a phone the panel opens at its top",
-    (await in_sight(phone, "picker_title")) && (await in_sight(phone, "wished_scene")),
+    (await in_sight(phone, "picker_title")) && (await in_sight(phone, "requested_scene")),
   );
   await set(phone, kSoft_Pa, "1e14");
   check("... and a refusal is in sight there", (await says(phone, "is out of range")) && (await in_sight(phone, "picker_words")));

@@ -177,13 +177,13 @@ def web_sockets(view):
     check("the page's WebSocket opens", wire is not None)
     for text in (b"{", b"\xff\xfe", b"[" * 900, b'{"seen":1e400}', b'{"seen":-1}', b'{"hand":{"x_m":1e999}}',
                  b'{"hand":{"x_m":"a","y_m":[],"z_m":{},"grip_ratio":null}}', b'{"force_N":[9,9,9]}',
-                 *(b'{"wish":{"scene":"%s}}' % a for a in (b'../x"', b'liver;ls"', b'liver","set":{"device.kind":1}'))):
+                 *(b'{"request":{"scene":"%s}}' % a for a in (b'../x"', b'liver;ls"', b'liver","set":{"device.kind":1}'))):
         view.live().sendall(text_frame(text))
     for _ in range(40):
         view.live().sendall(rng.randbytes(rng.randrange(2, 2000)))
     view.live().sendall(text_frame(b"a" * 60000))
     check("WebSockets that talk nonsense hold up nobody", view.status("scene.json", view.bearer) == 200)
-    check("... and who started tact-view hears of no wish", not select.select([view.program.stdout], [], [], 0.5)[0])
+    check("... and the program that started tact-view gets no request", not select.select([view.program.stdout], [], [], 0.5)[0])
 
 
 def as_stranger(action):

@@ -83,9 +83,9 @@ const connection = new Connection(token, {
 const stage = new Stage(canvas, draw);
 const operator = new Operator(stage, hud);
 const outside = new Outside(canvas, stage.camera);
-const timeline = new Timeline((wish) => connection.steer(wish));
+const timeline = new Timeline((request) => connection.steer(request));
 const picker = new ScenePicker(
-  (wish) => connection.choose(wish),
+  (request) => connection.choose(request),
   () => connection.offered(),
 );
 const hand = new HandControl(canvas, stage, may_move_hand, (position_m, rotation_rad, grip_ratio) =>

@@ -59,14 +59,14 @@ TEST(FalconPackets, AStrayLightBitAsksForNoHoming) {
   EXPECT_EQ(sent->lights, kFalconLights);
 }
 
-TEST(FalconPackets, WishesTooLargeKeepTheirDirection) {
+TEST(FalconPackets, RequestsTooLargeKeepTheirDirection) {
   // 8190 is twice the range: all are halved
   EXPECT_EQ(falcon_motor_words({8190.0, -4095.0, 100.0}), (FalconWords{4095, -2048, 50}));
   EXPECT_EQ(falcon_motor_words({4095.0, -4095.0, 0.4}), (FalconWords{4095, -4095, 0}));
   EXPECT_EQ(falcon_motor_words({1e300, -1e300, 0.0}), (FalconWords{4095, -4095, 0}));
 }
 
-TEST(FalconPackets, AWishThatIsNoNumberMovesNothing) {
+TEST(FalconPackets, ARequestThatIsNoNumberMovesNothing) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
   for (const double bad : {nan, inf, -inf}) {

@@ -53,12 +53,12 @@ class Picker : public ::testing::Test {
                                     [this](const std::string& line) { lines_.push_back(line); }};
 };
 
-TEST_F(Picker, SendsAGoodWishAndTellsWhenItRuns) {
+TEST_F(Picker, SendsAGoodRequestAndTellsWhenItRuns) {
   show("liver", true);
   EXPECT_EQ(reported()["scene"], "liver");
   ask(R"({"scene":"heart","set":{"disc_stack.layers":12,"disc_stack.poisson_ratio":1e-5}})");
   EXPECT_EQ(lines_, std::vector<std::string>{
-                        "wish heart disc_stack.layers=12 disc_stack.poisson_ratio=1e-05"});
+                        "request heart disc_stack.layers=12 disc_stack.poisson_ratio=1e-05"});
   EXPECT_EQ(reported()["asked"], "heart");
   EXPECT_EQ(reported()["scene"], "liver") << "it has not come yet";
   show("heart", true);
@@ -97,7 +97,7 @@ TEST_F(Picker, SendsNothingBeforeATactdIsThere) {
   EXPECT_TRUE(lines_.empty());
 }
 
-TEST_F(Picker, SendsOneWishAtATime) {
+TEST_F(Picker, SendsOneRequestAtATime) {
   show("liver", true);
   ask(R"({"scene":"heart"})");
   ask(R"({"scene":"liver"})");
@@ -105,7 +105,7 @@ TEST_F(Picker, SendsOneWishAtATime) {
   EXPECT_NE(answer().find("is being started"), std::string::npos);
 }
 
-TEST_F(Picker, TellsWhyAWishWasRefusedAndTakesTheNext) {
+TEST_F(Picker, TellsWhyARequestWasRefusedAndTakesTheNext) {
   show("liver", true);
   ask(R"({"scene":"heart"})");
   picker_.refuse("tactd: too stiff \xff");
@@ -137,7 +137,7 @@ TEST_F(Picker, LoadsOnlyParametersOfSimulatedScenes) {
 /// What a page asks over its WebSocket.
 class Chooser : public Viewer {
  protected:
-  /// Of a server that gives its pages this right over the hand: is a wish heard?
+  /// Of a server that gives its pages this right over the hand: is a request heard?
   bool is_heard(const host::server::MoveHand& move_hand) {
     host::server::ViewerServer server(io_, view_, move_hand);
     server.let_choose([this](const json&) { ++requests_; }, "[]");
@@ -154,7 +154,7 @@ class Chooser : public Viewer {
     socket.handshake("localhost:1", "/live", wrong);
     EXPECT_FALSE(wrong);
     socket.text(true);
-    socket.write(boost::asio::buffer(std::string_view(R"({"wish":{"scene":"heart"}})")));
+    socket.write(boost::asio::buffer(std::string_view(R"({"request":{"scene":"heart"}})")));
     socket.close(websocket::close_code::normal, wrong);  // answered after all before it was taken
     boost::asio::post(io_, [this] { io_.stop(); });      // before its server goes
     thread_.join();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // hand_control.ts - the mouse as the hand of a simulated device: drag moves it in the picture's
 // plane, the wheel or two fingers into the picture, Ctrl and drag turn the tool, G closes the grip.
-// Only a wish is sent; forces stay in tactd.
-// The wish is repeated until a few seconds after the last move, or as long as the mode is on.
+// Only a request is sent; forces stay in tactd.
+// The request is repeated until a few seconds after the last move, or as long as the mode is on.
 
 import * as THREE from "three";
 import type { Stage } from "../scene/stage";

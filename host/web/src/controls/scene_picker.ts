@@ -3,7 +3,7 @@
 // starts tactd again, or says why not. What is good is decided there, not here.
 
 import { by_id } from "../document/dom";
-import type { OfferedScene, Parameter, Picker, SceneWish } from "../link/protocol";
+import type { OfferedScene, Parameter, Picker, SceneRequest } from "../link/protocol";
 import { number_in, range_words, share_of, value_at, why_no_number } from "./parameter_scale";
 
 function element<K extends keyof HTMLElementTagNameMap>(
@@ -13,8 +13,8 @@ function element<K extends keyof HTMLElementTagNameMap>(
   return Object.assign(document.createElement(tag), set);
 }
 
-/** The same text for the same wish. */
-const text_of = ({ scene, set }: SceneWish): string => JSON.stringify([scene, Object.entries(set).sort()]);
+/** The same text for the same request. */
+const text_of = ({ scene, set }: SceneRequest): string => JSON.stringify([scene, Object.entries(set).sort()]);
 
 /** A slider and a field for one number. */
 class Row {
@@ -80,15 +80,15 @@ export class ScenePicker {
   private scenes: OfferedScene[] = [];
   private now: Picker | null = null;
   private shown = ""; // what runs, as it was put into the form
-  private wished = ""; // what this page asked for last
+  private requested = ""; // what this page asked for last
   private heard = ""; // the answer that is known already
-  private refusal = ""; // why the last wish came to nothing, until something is edited
+  private refusal = ""; // why the last request came to nothing, until something is edited
   private elsewhere = false; // another page chose what runs
   private rows: Row[] = [];
-  private readonly select = by_id<HTMLSelectElement>("wished_scene");
+  private readonly select = by_id<HTMLSelectElement>("requested_scene");
 
   constructor(
-    private readonly ask: (wish: SceneWish) => void,
+    private readonly ask: (request: SceneRequest) => void,
     private readonly offered: () => Promise<OfferedScene[]>,
   ) {
     this.select.addEventListener("change", () => {
@@ -96,7 +96,7 @@ export class ScenePicker {
       this.edited();
     });
     by_id("parameters").addEventListener("input", () => this.edited());
-    by_id("wish").addEventListener("submit", (event) => {
+    by_id("request").addEventListener("submit", (event) => {
       event.preventDefault();
       this.apply();
     });
@@ -127,7 +127,7 @@ export class ScenePicker {
     if (!picker || !this.there) return;
     const runs = text_of(picker);
     if (runs !== this.shown) {
-      this.elsewhere = this.shown !== "" && runs !== this.wished;
+      this.elsewhere = this.shown !== "" && runs !== this.requested;
       this.shown = runs;
       this.select.value = picker.scene;
       this.show(picker.set);
@@ -160,17 +160,17 @@ export class ScenePicker {
     const running = this.now?.scene === scene?.scene ? this.now?.set : {};
     this.rows = (scene?.parameters ?? []).map((of) => new Row(of, set[of.key] ?? of.value, running?.[of.key] ?? of.value));
     by_id("parameters").replaceChildren(...this.rows.map((row) => row.box));
-    by_id("wished_law").textContent = scene ? `law ${scene.law}` : "";
+    by_id("requested_law").textContent = scene ? `law ${scene.law}` : "";
   }
 
   private apply(): void {
     this.refusal = this.rows.find((row) => Number.isNaN(row.value))?.correct() ?? "";
     if (this.refusal) return this.tell();
     const changed = this.rows.filter((row) => row.value !== row.of.value);
-    const wish = { scene: this.select.value, set: Object.fromEntries(changed.map((row) => [row.of.key, row.value])) };
-    this.wished = text_of(wish);
+    const request = { scene: this.select.value, set: Object.fromEntries(changed.map((row) => [row.of.key, row.value])) };
+    this.requested = text_of(request);
     this.heard = ""; // the same answer again is another
-    this.ask(wish);
+    this.ask(request);
   }
 
   private say(words: string, tone = "plain"): void {

@@ -4,7 +4,7 @@
 
 import { describe } from "../panels/faults";
 import { by_id } from "../document/dom";
-import type { Replay, ReplayWish } from "../link/protocol";
+import type { Replay, ReplayRequest } from "../link/protocol";
 
 const kSpeeds = [0.1, 0.25, 0.5, 1, 2, 4, 8];
 const kBack_s = 1;
@@ -33,7 +33,7 @@ export class Timeline {
   private readonly speed = by_id<HTMLSelectElement>("speed");
   private held = false; // by a finger: frames do not move it
 
-  constructor(private readonly ask: (wish: ReplayWish) => void) {
+  constructor(private readonly ask: (request: ReplayRequest) => void) {
     for (const ratio of kSpeeds) this.speed.add(new Option(`${ratio} ×`, String(ratio)));
     this.seek.addEventListener("input", () => this.go(Number(this.seek.value)));
     this.seek.addEventListener("pointerdown", () => (this.held = true));

@@ -8,9 +8,9 @@ import {
   type Frame,
   type Mesh,
   type OfferedScene,
-  type ReplayWish,
+  type ReplayRequest,
   type Scene,
-  type SceneWish,
+  type SceneRequest,
   type Status,
   type Vec,
 } from "./protocol";
@@ -55,13 +55,13 @@ export class Connection {
   }
 
   /** To a tact-view that replays; another one hears nothing of it. */
-  steer(replay: ReplayWish): void {
+  steer(replay: ReplayRequest): void {
     this.send({ replay });
   }
 
   /** To who has started the simulation; a tact-view that offers no scenes hears nothing of it. */
-  choose(wish: SceneWish): void {
-    this.send({ wish });
+  choose(request: SceneRequest): void {
+    this.send({ request });
   }
 
   /** What may be chosen. */

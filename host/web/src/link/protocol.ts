@@ -131,7 +131,7 @@ export interface Replay {
 }
 
 /** What a page may ask of it; each may be missing. */
-export interface ReplayWish {
+export interface ReplayRequest {
   playing?: boolean;
   at_s?: number; // since the start
   step_frames?: number;
@@ -158,13 +158,13 @@ export interface OfferedScene {
 }
 
 /** What a page may ask for, in simulation: what `set` does not name is as shipped. */
-export interface SceneWish {
+export interface SceneRequest {
   scene: string;
   set: Record<string, number>;
 }
 
-/** What runs, what was asked for and has not come yet, why the last wish was refused. */
-export interface Picker extends SceneWish {
+/** What runs, what was asked for and has not come yet, why the last request was refused. */
+export interface Picker extends SceneRequest {
   asked: string;
   answer: string;
 }

@@ -62,7 +62,7 @@ void RunRecord::commanded(int axis, const Platform& platform, const Joints& tau_
       oldest_command_ns_ = std::max(oldest_command_ns_, now_ns - commanded_ns_[i]);
     commanded_ns_[i] = now_ns;
   }
-  // Between the first and the last torque of one tick the force is no one's wish.
+  // Between the first and the last torque of one tick no force was requested.
   const bool was_complete = answered_ == kAllAxes;
   answered_ |= mask;
   if (answered_ != kAllAxes) return;
