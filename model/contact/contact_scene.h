@@ -7,20 +7,13 @@
 
 #include "model/contact/blade.h"
 #include "model/contact/contact_law.h"
+#include "model/contact/contact_settings.h"
 #include "model/contact/sphere.h"
 #include "model/contact/triangle_tree.h"
 
 namespace tact::model::contact {
 
 struct BendingOrgan;  // moved_contact.h
-
-struct ContactParameters {
-  double friction_ratio = 0.0;             // mu, >= 0
-  double sliding_stiffness_N_per_m = 0.0;  // 1 / G, >= 0; 0: the tissue's own, by its law
-  double tear_force_N = 0.0;               // of one sphere, > 0
-  double grip_close_ratio = 0.7;           // closing above this holds
-  double grip_open_ratio = 0.5;            // opening below this lets go
-};
 
 /// Everything outlives the contact.
 struct ContactScene {

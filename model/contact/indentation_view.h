@@ -9,11 +9,10 @@
 #include <span>
 
 #include "model/contact/contact_point.h"
+#include "model/contact/contact_settings.h"
 #include "model/types.h"
 
 namespace tact::model::contact {
-
-inline constexpr std::size_t kMaxSpheres = 4;
 
 /// What one sphere does to the tissue.
 struct Indentation {

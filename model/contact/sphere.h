@@ -8,17 +8,13 @@
 #include <limits>
 
 #include "model/contact/contact_point.h"
+#include "model/contact/contact_settings.h"
 #include "model/law/law.h"
 #include "model/types.h"
 
 namespace tact::model::contact {
 
 inline constexpr double kAnywhere_m = std::numeric_limits<double>::infinity();
-
-struct ProbeSphere {
-  Vec3 offset_m;          // from the tool's origin, tool frame
-  double radius_m = 0.0;  // > 0
-};
 
 /// detect.h says what leads from one to another. kInside: found in the organ, without contact.
 enum class ContactState : std::uint8_t { kFree, kTouching, kHeld, kInside };

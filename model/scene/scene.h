@@ -9,7 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "model/contact/contact.h"
+#include "model/contact/blade.h"
+#include "model/contact/contact_settings.h"
 #include "model/device_settings.h"
 #include "model/hand_path.h"
 #include "model/limits.h"

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// contact_settings.h - what a scene says about contact: probe spheres of the tool, friction, grip.
+#pragma once
+
+#include <cstddef>
+
+#include "model/types.h"
+
+namespace tact::model::contact {
+
+inline constexpr std::size_t kMaxSpheres = 4;
+
+struct ProbeSphere {
+  Vec3 offset_m;          // from the tool's origin, tool frame
+  double radius_m = 0.0;  // > 0
+};
+
+struct ContactParameters {
+  double friction_ratio = 0.0;             // mu, >= 0
+  double sliding_stiffness_N_per_m = 0.0;  // 1 / G, >= 0; 0: the tissue's own, by its law
+  double tear_force_N = 0.0;               // of one sphere, > 0
+  double grip_close_ratio = 0.7;           // closing above this holds
+  double grip_open_ratio = 0.5;            // opening below this lets go
+};
+
+}  // namespace tact::model::contact
