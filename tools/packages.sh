@@ -119,10 +119,11 @@ build_programs() {
 }
 
 # build_page BUILD_DIR : the bundled page in BUILD_DIR/page with the fault words of BUILD_DIR/tactd,
-# which must be built, and npm packages by lock file; both only when changed.
+# which must be built, and npm packages by lock file; all only when changed. It appears whole: a test may serve it now.
 build_page() {
-  local page="$1/page" web="$root/host/web" log stamp
-  "$1/tactd" --faults --json "$web/src/panels/faults.json" >/dev/null || return 2
+  local page="$1/page" web="$root/host/web" log stamp faults="$1/faults.json"
+  "$1/tactd" --faults --json "$faults" >/dev/null || return 2
+  cmp -s "$faults" "$web/src/panels/faults.json" || cp "$faults" "$web/src/panels/faults.json" || return 2
   stamp=$(find "$web" -path "$web/node_modules" -prune -o -type f -print0 | sort -z | xargs -0 cat | sha256sum)
   [ -f "$page/index.html" ] && [ "$(cat "$page/.stamp" 2>/dev/null)" = "$stamp" ] && return 0
   log=$(mktemp)
@@ -132,9 +133,10 @@ build_page() {
     (cd "$web" && npm ci --no-fund --no-audit) >"$log" 2>&1 || { tail -n 20 "$log" >&2; return 2; }
     sha256sum <"$web/package-lock.json" >"$web/node_modules/.stamp"
   fi
-  (cd "$web" && npm run build -- --outDir "$page" --emptyOutDir) >"$log" 2>&1 ||
+  (cd "$web" && npm run build -- --outDir "$page.new" --emptyOutDir) >"$log" 2>&1 ||
     { tail -n 20 "$log" >&2; return 2; }
-  echo "$stamp" >"$page/.stamp"
+  echo "$stamp" >"$page.new/.stamp"
+  rm -rf "$page" && mv "$page.new" "$page" || return 2
   rm -f "$log"
 }
 

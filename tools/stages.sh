@@ -9,14 +9,14 @@ skipped_in() {
     -e 's/^\[  SKIPPED \] ([[:alnum:]_/]+\.[[:alnum:]_/]+)$/\1/p' "$1"
 }
 
-# once_more NAME COMMAND...: a test that waits for a real clock has failed. Does it pass alone? Then it is flaky. Not
-# with --long.
+# once_more NAME COMMAND...: a test that waits for a real clock has failed. Does it pass while no other stage runs? Then
+# it is flaky. Not with --long.
 once_more() {
   local name=$1
   shift
   [ "${long:-no}" = no ] || return 1
   echo "---- again, alone: $name"
-  "$@" 2>&1 | sed 's/ tests failed out of / failed of /'  # is counted once
+  alone "$@" 2>&1 | sed 's/ tests failed out of / failed of /'  # is counted once
   [ "${PIPESTATUS[0]}" -eq 0 ] && echo "flaky: $name"
 }
 
@@ -75,28 +75,68 @@ tell_stage() {
 # cpu_seconds FILE: of what `times` has written there, for a shell and what it waited for
 cpu_seconds() { tr ' ' '\n' <"$1" | awk -F '[ms]' '{sum += 60 * $1 + $2} END {printf "%d", sum}'; }
 
-# run_stage NAME: its function, its output to its log; then one line
+# run_stage NAME: its function, its output to its log; then one line. ${ended[NAME]} is its status.
+declare -A ended
 run_stage() {
   local start=$SECONDS status told
   [ -t 1 ] && [ -z "${is_beside:-}" ] && printf '%s ...\r' "$1"
   # shellcheck disable=SC2064  # that name, wherever the stage ends
-  (set -e; trap "times >'$logs/$1.times'" EXIT; "$1") >"$logs/$1.log" 2>&1 &
+  (set -e; trap "times >'$logs/$1.times'; flock --unlock 9" EXIT; one_of_many; "$1") >"$logs/$1.log" 2>&1 9>"$logs/alone.lock" &
   wait $!  # ends when the trap is called, too
   status=$?
+  ended[$1]=$status
   told=$(tell_stage "$1" $status $((SECONDS - start)))
   [ -t 1 ] && printf '\033[K'
   printf '%s\n' "$told"  # in one piece: a stage beside it may print now
 }
 
-# run_beside NAME...: these stages one after the other, with the CPU time that others leave. Returns at once; the
-# caller must wait.
+# after_build COMMAND...: what a stage builds where the stage build has not run; where that has failed, it fails
+after_build() {
+  case ${ended[build]:-} in
+    '') "$@" ;;
+    0) ;;
+    *) echo "the stage build has failed"; return 1 ;;
+  esac
+}
+
+# Stages that run at the same time share a lock, but for those that take the CPU time that others leave. Who has it
+# alone waits until the others have ended, or wait, too.
+one_of_many() { [ "${is_beside:-}" = idle ] || flock --shared 9; }
+alone() {
+  local status=0
+  flock --unlock 9 && flock --exclusive 9
+  "$@" || status=$?
+  one_of_many
+  return $status
+}
+
+# run_beside [--idle] NAME...: these stages one after the other, --idle with the CPU time that others leave. Returns at
+# once; the caller must wait for $!.
 run_beside() {
   local name is_beside=yes
+  [ "$1" != --idle ] || { is_beside=idle; shift; }
   {
-    trap 'kill $(jobs -p) 2>/dev/null; exit 143' TERM
-    chrt --idle --pid 0 "$BASHPID"
+    [ $is_beside = yes ] || chrt --idle --pid 0 "$BASHPID"
     for name in "$@"; do run_stage "$name"; done
   } &
+}
+
+# run_with STAGE NAME...: a stage, and at the same time these one after the other; ends when all have
+run_with() {
+  local others
+  run_beside "${@:2}"
+  others=$!
+  run_stage "$1"
+  wait $others
+}
+
+# descendants PID: the processes that it has started, and those that these have, one a line
+descendants() {
+  local child
+  for child in $(cat /proc/"$1"/task/*/children 2>/dev/null); do
+    echo "$child"
+    descendants "$child"
+  done
 }
 
 begin_counts() { counts=$(mktemp) && touch "$counts.flaky" && trap 'rm -f "$counts" "$counts.flaky"' EXIT; }

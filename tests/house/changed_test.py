@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""tools/changed.sh leaves out no test that something has changed for: on a scratch tree with programs that are empty files,
-each kind of change asks for the tests that it must. And no test reads a text that counts for none.
+"""tools/changed.sh leaves out no test that something has changed for: on a scratch tree with programs of one line, each kind
+of change asks for the tests that it must. A commit alone asks for none. And no test reads a text that counts for none.
 
 Prints every breach as file:line: sentence. Exit status 0 or 1.
 """
@@ -13,13 +13,12 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-# ninja's part, played: programs are their own objects; what is another configuration's is not told.
-ASK = """root=$PWD build=$PWD/build
+# ninja's part, played: what is another configuration's is not told.
+ASK = """root=$PWD build=$PWD/build again=yes
 tracked() { git -C "$root" "$@"; }
 . "$0"
 built_programs() { (cd build; find * -perm -u+x -type f ! -name 'tact-old*' | sort); }
-objects_of() { printf "$build/%s\\n" "$@"; }
-changed_tests"""
+"""
 LAW, GATE, SCRIPTS = "^(model_law)([+]|$)", "^(firmware_gate)([+]|$)", "[+]programs"
 # A file that is newer than the last pass, and what must be tried then.
 CHANGES = {
@@ -41,36 +40,69 @@ CHANGES = {
 UNREAD = re.compile(r"\b(?:README|CHANGELOG|CONTRIBUTING|decisions)\.md\"|host/web/")
 
 
-def asked(folder, newer, passed=True):
-    """What changed_tests tells of a tree where these files are newer than the last pass."""
-    for name in {name for names in CHANGES for name in names if not name.startswith("new_")} | set(newer):
-        file = folder / name
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text("")
-        file.chmod(0o755 if name.startswith("build/") and not name.endswith(".txt") else 0o644)
-        os.utime(file, (3000, 3000) if name in newer else (1000, 1000))
+def is_program(name):
+    return name.startswith("build/") and not name.endswith((".txt", ".ninja"))
+
+
+def write(folder, name, is_new=False, revision="1a2b3c"):
+    """A file as it was when the stage passed, or as it is since; a program tells the revision."""
+    file = folder / name
+    file.parent.mkdir(parents=True, exist_ok=True)
+    changed = "changed" if is_new else "as it was"
+    text = f'DEFINES = TACT_GIT_REVISION="\\"{revision}\\\\0"' if name.endswith(".ninja") else f"{changed} {revision:\0<20}"
+    file.write_text(text if is_program(name) or name.endswith(".ninja") else changed)
+    file.chmod(0o755 if is_program(name) else 0o644)
+    os.utime(file, (3000, 3000) if is_new else (1000, 1000))
+
+
+def ask(folder, command):
+    return subprocess.run(["bash", "-euc", ASK + command, ROOT / "tools/changed.sh"], cwd=folder, capture_output=True,
+                          text=True, check=True).stdout.strip()
+
+
+def scratch_tree(folder):
+    """Everything as it was when the stage passed: the names of its files."""
+    names = {name for names in CHANGES for name in names if not name.startswith("new_")} | {"build/build.ninja"}
+    for name in names:
+        write(folder, name)
+    (folder / "tools/program_digests.py").write_text((ROOT / "tools/program_digests.py").read_text())
     for room, programs in (("model_law", ""), ("firmware_gate", "tactd")):
         (folder / f"build/tests/{room}_test.programs").write_text(programs + "\n")
     (folder / ".gitignore").write_text("build/\n")
-    os.utime(folder / ".gitignore", (1000, 1000))
+    for name in (".gitignore", "tools/program_digests.py"):
+        os.utime(folder / name, (1000, 1000))
     subprocess.run(["git", "-C", folder, "init", "-q"], check=True)
     subprocess.run(["git", "-C", folder, "add", *(["model", "host", "tools"])], check=True)
-    if passed:
-        (folder / "build/passed.tests").write_text("")
-        os.utime(folder / "build/passed.tests", (2000, 2000))
-    return subprocess.run(["bash", "-euc", ASK, ROOT / "tools/changed.sh"], cwd=folder, capture_output=True, text=True,
-                          check=True).stdout.strip()
+    return names
 
 
 def breaches():
-    for newer, wanted in CHANGES.items():
-        with tempfile.TemporaryDirectory() as folder:
-            told = asked(pathlib.Path(folder), newer)
-            if told != wanted:
-                yield f"tools/changed.sh:1: {', '.join(newer) or 'nothing'} is newer: tries '{told}', not '{wanted}'"
-    with tempfile.TemporaryDirectory() as folder:
-        if (told := asked(pathlib.Path(folder), (), passed=False)) != ".":
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        names = scratch_tree(folder)
+        if (told := ask(folder, "changed_tests")) != ".":
             yield f"tools/changed.sh:1: nothing has passed yet: tries '{told}', not all"
+        ask(folder, "begin_stage tests \"$(program_digests)\"; pass_stage tests")
+        os.utime(folder / "build/passed.tests", (2000, 2000))
+        for newer, wanted in CHANGES.items():
+            for file in newer:
+                write(folder, file, is_new=True)
+            if (told := ask(folder, "changed_tests")) != wanted:
+                yield f"tools/changed.sh:1: {', '.join(newer) or 'nothing'} is newer: tries '{told}', not '{wanted}'"
+            for file in newer:
+                write(folder, file)
+            for file in set(newer) - names:
+                (folder / file).unlink()
+        for file in filter(lambda name: name.startswith("build/"), names):
+            write(folder, file, revision="1a2b3c-dirty")
+        if told := ask(folder, "changed_tests"):
+            yield f"tools/changed.sh:1: only the revision is another: tries '{told}', not nothing"
+        if ask(folder, "program_changed tests tactd && echo yes || echo no; newer_of tests model/law/law.h") != "no":
+            yield "tools/changed.sh:1: a program or a file counts as changed that is not"
+        for file in ("build/tactd", "model/law/law.h"):
+            write(folder, file, is_new=True)
+        if ask(folder, "program_changed tests tactd && newer_of tests model/law/law.h") != "model/law/law.h":
+            yield "tools/changed.sh:1: a program or a file that has changed does not count"
     for path in sorted([*ROOT.glob("tests/**/*.cc"), *ROOT.glob("tests/**/*.h"), *ROOT.glob("tests/tools/**/*.py")]):
         for number, line in enumerate(path.read_text().splitlines(), 1):
             if UNREAD.search(line.split("//")[0]):

@@ -1,13 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""tools/stages.sh gives a second try to tests that wait for a real clock, and to no other: each ends as it must.
+"""tools/stages.sh gives a second try to tests that wait for a real clock, and to no other: each ends as it must. Stages
+that run at the same time are each told and counted; a second try has no other stage beside it, and Ctrl-C ends all.
 
 Prints every breach as file:line: sentence. Exit status 0 or 1.
 """
 import pathlib
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 RUN = """logs=$PWD
@@ -33,8 +36,94 @@ ENDS = {
 }
 
 
-def main():
-    found = []
+# `tests` and `browser` meet, or nothing of it passes; what is told of them, in which order, and the sum.
+HEAD = """logs=$PWD long=no
+. "$0"
+meet() { touch "$1"; for i in {1..400}; do [ -e "$2" ] && return; sleep .05; done; return 1; }
+begin_counts
+"""
+BESIDE = {
+    """tests() { meet a b; }; browser() { meet b a; }; run_with tests browser; tell_counts tests browser""":
+        (0, "2 passed, 0 failed"),
+    """tests() { meet a b; }; browser() { meet b a; false; }; run_with tests browser; tell_counts tests browser""":
+        (1, "1 passed, 1 failed"),
+    """tests() { meet a b; false; }; browser() { meet b a; }; page() { :; }
+run_with tests page browser; tell_counts page tests browser""":
+        (1, "2 passed, 1 failed"),
+    """build() { false; }; format() { :; }; tests() { after_build true; touch tried; }; browser() { after_build true; }
+run_with build format; run_with tests browser; test ! -e tried && tell_counts build format tests browser""":
+        (1, "1 passed, 3 failed"),
+    # a stage that never ran
+    """tests() { :; }; run_with tests page; tell_counts tests page browser""": (1, "1 passed, 2 failed"),
+    # each tries once more, when the other has ended or waits, too
+    """try() { [ ! -e one ] || echo both >>broken; touch one; sleep .3; rm one; }
+tests() { meet a b; once_more tests try; }; browser() { meet b a; once_more browser try; sleep .3; touch ended; }
+other() { sleep .2; touch alone; }; tests2() { meet c d; once_more slow test -e ended2; }
+browser2() { meet d c; sleep .5; touch ended2; }
+run_with tests browser; run_with tests2 browser2; tell_counts tests browser tests2 browser2; test ! -e broken""":
+        (0, "4 passed, 0 failed"),
+    # what takes the time that others leave keeps nobody from a second try
+    """slow() { sleep 30; }; tests() { once_more quick true; }
+run_beside --idle slow; lane=$!; run_stage tests; kill $(descendants $lane) $lane; tell_counts tests""":
+        (0, "1 passed, 0 failed"),
+}
+INTERRUPTED = """trap 'kill $(descendants $$) 2>/dev/null; exit 130' INT TERM
+deep() { bash -c 'trap "" INT; (sleep 300.25 & wait) & wait'; }
+tests() { deep; }; page() { deep; }; browser() { :; }
+run_with tests page browser"""
+
+
+def play(command, folder):
+    return subprocess.Popen(["bash", "-c", HEAD + command, ROOT / "tools/stages.sh"], cwd=folder, text=True,
+                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+
+
+def beside_breaches():
+    for command, wanted in BESIDE.items():
+        with tempfile.TemporaryDirectory() as folder, play(command, folder) as bash:
+            told = bash.communicate(timeout=60)[0]
+        ended = (bash.returncode, next((line for line in reversed(told.splitlines()) if " passed, " in line), ""))
+        if ended != wanted:
+            yield f"tools/stages.sh:1: {command}: {ended}, not {wanted}\n{told}"
+
+
+def children(pid):
+    for file in pathlib.Path(f"/proc/{pid}/task").glob("*/children"):
+        for child in map(int, file.read_text().split()):
+            yield from (child, *children(child))
+
+
+def is_running(pid):
+    """Neither gone nor a zombie that nobody asks for."""
+    try:
+        return pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+def interrupt_breaches():
+    with tempfile.TemporaryDirectory() as folder, play(INTERRUPTED, folder) as bash:
+        for _ in range(400):
+            started = list(children(bash.pid))
+            if sum("sleep\x00300.25" in command_line(pid) for pid in started) == 2:
+                break
+            time.sleep(0.05)
+        bash.send_signal(signal.SIGTERM)
+        if bash.wait(timeout=60) != 130:
+            yield f"tools/stages.sh:1: interrupted, it ends with {bash.returncode}"
+    time.sleep(0.2)
+    if len(started) < 6 or any(map(is_running, started)):
+        yield f"tools/stages.sh:1: of {len(started)} processes some outlive an interrupt"
+
+
+def command_line(pid):
+    try:
+        return pathlib.Path(f"/proc/{pid}/cmdline").read_text()
+    except OSError:
+        return ""
+
+
+def try_breaches():
     for (fails, label, long, which), wanted in ENDS.items():
         with tempfile.TemporaryDirectory() as folder:
             (pathlib.Path(folder) / "CTestTestfile.cmake").write_text(COUNTS.format(fails=fails, label=label))
@@ -44,10 +133,14 @@ def main():
         lines = done.stdout.splitlines()
         ended = (done.returncode, lines[-1] if lines else "", 'flaky: Suite.Waits/"a"' in lines)
         if ended != wanted:
-            found.append(f"tools/stages.sh:1: fails {fails} times, label {label or 'none'}, long {long}: {ended}, not {wanted}"
-                         f"\n{done.stdout}{done.stderr}")
+            yield (f"tools/stages.sh:1: fails {fails} times, label {label or 'none'}, long {long}: {ended}, not {wanted}"
+                   f"\n{done.stdout}{done.stderr}")
+
+
+def main():
+    found = [*try_breaches(), *beside_breaches(), *interrupt_breaches()]
     print(*found, sep="\n", end="\n" if found else "")
-    print(f"stages: {len(ENDS)} ends of a test, {len(found)} breaches")
+    print(f"stages: {len(ENDS) + len(BESIDE)} ends, {len(found)} breaches")
     return 1 if found else 0
 
 
