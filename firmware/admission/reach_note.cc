@@ -58,7 +58,7 @@ std::string reach_note(const model::scene::Scene& scene) {
   const Vec3 extent_m = sum.high_m - sum.low_m;
   const double size_m = std::max({extent_m.x, extent_m.y, extent_m.z});
   const double ratio = size_m / (2.0 * scene.limits.workspace_radius_m);
-  const char* const remedy = "tact-mesh MESH --place SCENE finds what to write";
+  const char* const remedy = "tact-mesh MESH --align SCENE finds what to write";
   if (ratio < kMinOrgan_ratio || ratio > kMaxOrgan_ratio)
     return fmt::format(
         "{}: the organ is {:.3g} m long in a workspace {:.3g} m wide: is organ.mesh_unit_m the "

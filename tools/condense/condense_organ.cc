@@ -37,7 +37,7 @@ std::optional<Error> check_held(const CondenseInput& input) {
   return Error{fmt::format(
       "the held box, elastic.fixed_min_m = {} to elastic.fixed_max_m = {}, holds {} triangle of "
       "the "
-      "organ, which lies in {} to {} there; make it hold a part (tact-mesh --place proposes one)",
+      "organ, which lies in {} to {} there; make it hold a part (tact-mesh --align proposes one)",
       text_of(organ.fixed_min_m), text_of(organ.fixed_max_m), held == 0 ? "no" : "every",
       text_of(sum.low_m), text_of(sum.high_m))};
 }

@@ -35,7 +35,7 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--out", o.out, "folder of the report; made if need be");
   app.add_option("--tester", o.people.tester,
                  "who tests; without it the page has a line to fill in");
-  app.add_option("--place", o.people.place, "where");
+  app.add_option("--location", o.people.place, "where");
   app.add_option("--serial", o.people.serials,
                  "serial number of device, PC or tool, with its name; repeatable");
   app.add_option("--report-number", o.people.number,

@@ -67,16 +67,16 @@ void add_options(CLI::App& app, Options& o) {
     app.add_flag(kSteps[i].option, o.wanted[i], kSteps[i].what);
   app.add_option("--decimate", o.decimate, "leave about so many faces")
       ->check(tact::model::io::within(4, 20'000'000));
-  CLI::Option* place = app.add_option(
-      "--place", o.scene,
+  CLI::Option* align = app.add_option(
+      "--align", o.scene,
       "scene (TOML): print unit, orientation and position that put the organ under its tool");
   app.add_option("--point", o.point,
                  "the point that the tool shall touch, X Y Z in file units; its normal is turned "
                  "towards the tool (default: the top as the mesh lies, not turned)")
       ->expected(3)
       ->check(tact::model::io::within(-1e12, 1e12))
-      ->needs(place);
-  app.add_flag("--write", o.write, "write them into the scene; its other lines stay")->needs(place);
+      ->needs(align);
+  app.add_flag("--write", o.write, "write them into the scene; its other lines stay")->needs(align);
 }
 
 /// The organ, under the tool of the scene.

@@ -36,7 +36,7 @@ TEST(CondenseProgram, NamesTheKeysOfTheHeldBoxWhenItHoldsNothingOrEverything) {
   };
   const std::string organ =
       "of the organ, which lies in [-0.05008, -0.07497, -0.03007] to [0.05009, 0.07499, 0.02999] "
-      "there; make it hold a part (tact-mesh --place proposes one)";
+      "there; make it hold a part (tact-mesh --align proposes one)";
   expect_refusal(
       held("[5,5,5]", "[6,6,6]"),
       "the held box, elastic.fixed_min_m = [5, 5, 5] to elastic.fixed_max_m = [6, 6, 6], "

@@ -39,7 +39,7 @@ std::string page() {
 
 TEST(Evidence, SaysWhoWhereAndWithWhatTheReportWasMade) {
   const Outcome out =
-      run("--tester 'A. B.' --place 'room <1>' --serial 'delta 42' --serial 'PC 7'");
+      run("--tester 'A. B.' --location 'room <1>' --serial 'delta 42' --serial 'PC 7'");
   ASSERT_EQ(out.status, 0) << out.output;
   const json report = json::parse(out.output);
   const json& filed = report.at("report");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tact-mesh --place puts an organ from anywhere under the tool of a scene.
+// tact-mesh --align puts an organ from anywhere under the tool of a scene.
 #include "tools/mesh/place.h"
 
 #include <gtest/gtest.h>
@@ -70,7 +70,7 @@ class SurfacePoint : public testing::Test {
 };
 
 TEST_F(SurfacePoint, TheTopOfTheOrganComesToTheSiteAndIsNotTurned) {
-  const tests::Ran printed = run(organ_ + " --place " + scene_);
+  const tests::Ran printed = run(organ_ + " --align " + scene_);
   ASSERT_EQ(printed.status, 0) << printed.err;
   for (const std::string& part :
        {"[organ]\nmesh = \"" + fs::path(organ_).lexically_normal().string() +
@@ -80,7 +80,7 @@ TEST_F(SurfacePoint, TheTopOfTheOrganComesToTheSiteAndIsNotTurned) {
         std::string("[hand]\nsite_m = [0, 0, 0]\n")})
     EXPECT_NE(printed.out.find(part), std::string::npos) << part << printed.out;
   EXPECT_EQ(tests::read_text(scene_), before_) << "nothing is written without --write";
-  ASSERT_EQ(run(organ_ + " --write --place " + scene_).status, 0);
+  ASSERT_EQ(run(organ_ + " --write --align " + scene_).status, 0);
   expect_top_at_site(scene_);
 }
 
@@ -88,7 +88,7 @@ TEST_F(SurfacePoint, AChosenPointIsTurnedTowardsTheTool) {
   const auto liver = model::scene::load_scene(kScenes + "liver.toml", {});
   ASSERT_TRUE(liver);
   // What lies on top in the liver's own scene, in the scanner's frame.
-  ASSERT_EQ(run(organ_ + " --write --point -140.3 -205.1 -1310.7 --place " + scene_).status, 0);
+  ASSERT_EQ(run(organ_ + " --write --point -140.3 -205.1 -1310.7 --align " + scene_).status, 0);
   expect_top_at_site(scene_);
   const auto scene = model::scene::load_scene(scene_, {});
   ASSERT_TRUE(scene);
@@ -101,7 +101,7 @@ TEST_F(SurfacePoint, AChosenPointIsTurnedTowardsTheTool) {
 }
 
 TEST_F(SurfacePoint, WriteChangesItsOwnKeysAndNoOtherLine) {
-  ASSERT_EQ(run(organ_ + " --write --place " + scene_).status, 0);
+  ASSERT_EQ(run(organ_ + " --write --align " + scene_).status, 0);
   std::istringstream was(before_), is(tests::read_text(scene_));
   std::vector<std::string> gone, come;
   std::vector<std::string> old_lines, new_lines;
@@ -113,7 +113,7 @@ TEST_F(SurfacePoint, WriteChangesItsOwnKeysAndNoOtherLine) {
   EXPECT_EQ(new_lines.size(), old_lines.size());
   EXPECT_EQ(gone.size(), 4u) << "mesh, orientation_deg, position_m and site_m";
   const std::string once = tests::read_text(scene_);
-  ASSERT_EQ(run(organ_ + " --write --place " + scene_).status, 0);
+  ASSERT_EQ(run(organ_ + " --write --align " + scene_).status, 0);
   EXPECT_EQ(tests::read_text(scene_), once) << "the same again changes nothing";
 }
 
@@ -121,13 +121,13 @@ TEST_F(SurfacePoint, RefusesWhatItCannotWriteAndLeavesTheSceneAsItWas) {
   std::string text = before_;
   text.replace(text.find("position_m = ["), 14, "position_m = [\n ");
   const std::string split = temp_.write("split.toml", text);
-  tests::Ran ran = run(organ_ + " --write --place " + split);
+  tests::Ran ran = run(organ_ + " --write --align " + split);
   EXPECT_EQ(ran.status, 2);
   EXPECT_NE(ran.err.find("organ.position_m goes over several lines"), std::string::npos) << ran.err;
   EXPECT_EQ(tests::read_text(split), text);
   for (const std::string& arguments :
-       {organ_ + " --write", organ_ + " --point 1 2 3", organ_ + " --point 1 2 --place " + scene_,
-        organ_ + " --place " + temp_.path() + "/none.toml"})
+       {organ_ + " --write", organ_ + " --point 1 2 3", organ_ + " --point 1 2 --align " + scene_,
+        organ_ + " --align " + temp_.path() + "/none.toml"})
     EXPECT_EQ(run(arguments).status, 2) << arguments;
   EXPECT_EQ(tests::read_text(scene_), before_);
 }
@@ -136,7 +136,7 @@ TEST_F(SurfacePoint, APointFarFromTheOrganIsRefusedWithItsDistance) {
   const std::string cube =
       temp_.write("cube.obj", tests::kCubeVertices + tests::kCubeFaces);  // 10 units each way
   const auto point = [&](const std::string& xyz, const std::string& more = "") {
-    return run(cube + " --unit cm --place " + scene_ + " --point " + xyz + more);
+    return run(cube + " --unit cm --align " + scene_ + " --point " + xyz + more);
   };
   EXPECT_EQ(point("5 5 10").status, 0) << "the middle of a face, 7 units from the next vertex";
   const tests::Ran ran = point("5 5 100", " --write");
@@ -151,7 +151,7 @@ TEST_F(SurfacePoint, APointFarFromTheOrganIsRefusedWithItsDistance) {
 
 TEST_F(SurfacePoint, TellsWhatOfTheSceneWasMadeForAnotherOrgan) {
   const auto misfits = [&](const std::string& organ, const std::string& scene) {
-    const tests::Ran ran = run(organ + " --json --place " + scene);
+    const tests::Ran ran = run(organ + " --json --align " + scene);
     EXPECT_EQ(ran.status, 0) << ran.err;
     return json::parse(ran.out)["placement"]["misfits"];
   };
@@ -173,7 +173,7 @@ TEST_F(SurfacePoint, TellsWhatOfTheSceneWasMadeForAnotherOrgan) {
       << map;
 
   // What is told as a text is what must be written.
-  const tests::Ran written = run(organ_ + " --write --place " + scene_);
+  const tests::Ran written = run(organ_ + " --write --align " + scene_);
   EXPECT_NE(written.out.find("\nnote       elastic.fixed_min_m, elastic.fixed_max_m: " + held),
             written.out.npos)
       << written.out;
@@ -193,7 +193,7 @@ TEST_F(SurfacePoint, AFailureLeavesTheSceneUntouched) {
   const std::string odd = temp_.write("odd.toml", text);
   struct stat was{}, is{};
   ASSERT_EQ(stat(odd.c_str(), &was), 0);
-  const tests::Ran ran = run(organ_ + " --write --place " + odd);
+  const tests::Ran ran = run(organ_ + " --write --align " + odd);
   EXPECT_EQ(ran.status, 2);
   EXPECT_NE(ran.err.find("odd.toml: the keys of [organ] or [hand] stand in a form that is not "
                          "understood; run it without --write"),
@@ -202,12 +202,12 @@ TEST_F(SurfacePoint, AFailureLeavesTheSceneUntouched) {
   ASSERT_EQ(stat(odd.c_str(), &is), 0);
   EXPECT_EQ(is.st_ino, was.st_ino) << "was never written, not put back";
   EXPECT_EQ(tests::read_text(odd), text);
-  EXPECT_EQ(run(organ_ + " --place " + odd).status, 0) << "they are printed";
+  EXPECT_EQ(run(organ_ + " --align " + odd).status, 0) << "they are printed";
 }
 
 TEST_F(SurfacePoint, ANameThatIsNoTextIsRefused) {
   const std::string organ = temp_.write("b\xff.obj", tests::read_text(organ_));
-  const tests::Ran ran = run(organ + " --place " + scene_);
+  const tests::Ran ran = run(organ + " --align " + scene_);
   EXPECT_EQ(ran.status, 2);
   EXPECT_NE(ran.err.find("a scene is UTF-8, and this name is not; rename the file"), ran.err.npos)
       << ran.err;
@@ -232,13 +232,13 @@ TEST(HeldBox, IsTheTenthFarthestFromTheTool) {
 }
 
 TEST_F(SurfacePoint, TellsMachinesToo) {
-  const tests::Ran ran = run(organ_ + " --json --unit cm --place " + scene_);
+  const tests::Ran ran = run(organ_ + " --json --unit cm --align " + scene_);
   ASSERT_EQ(ran.status, 0) << ran.err;
   EXPECT_EQ(json::parse(ran.out)["unit_from"], "named");
   const json reported = json::parse(ran.out)["placement"];
   EXPECT_EQ(reported["mesh_unit_m"], 0.01) << "a unit that is named is not guessed";
   EXPECT_EQ(reported["orientation_deg"], json::array({0.0, 0.0, 0.0}));
-  const json guessed = json::parse(run(organ_ + " --json --place " + scene_).out);
+  const json guessed = json::parse(run(organ_ + " --json --align " + scene_).out);
   EXPECT_EQ(guessed["unit_from"], "size");
   EXPECT_EQ(guessed["unit_m"], guessed["placement"]["mesh_unit_m"]) << "one unit, told once";
 }

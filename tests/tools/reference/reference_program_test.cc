@@ -56,7 +56,7 @@ TEST_F(ReferenceProgramSolves, NoOrganThatNothingHolds) {
                      " --sites 1714 --set elastic.fixed_min_m=[5,5,5] --set "
                      "elastic.fixed_max_m=[6,6,6]",
                  "no triangle of the organ lies in the held box, so it would fly away; move "
-                 "elastic.fixed_min_m and elastic.fixed_max_m (tact-mesh --place proposes them)");
+                 "elastic.fixed_min_m and elastic.fixed_max_m (tact-mesh --align proposes them)");
 }
 
 TEST(ReferenceProgram, SaysWhatToInstallAndLeavesNoFile) {

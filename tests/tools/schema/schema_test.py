@@ -42,7 +42,7 @@ COMMANDS = {
                     f"tact-jitter {LIVER} --duration 0.3 --peer cyclictest --peer-gate 9 --json {{t}}/jitter.json"],
     "tact-jitter-compare": ["tact-jitter compare {t}/bare.json {t}/bare.json --json {t}/compared.json"],
     "tact-mesh": [f"tact-mesh --json --unit-m 0.01 {ROOT}/{{mesh}}",
-                  f"tact-mesh --json {ROOT}/{{mesh}} --weld --out {{t}}/welded.obj --place {LIVER}"],
+                  f"tact-mesh --json {ROOT}/{{mesh}} --weld --out {{t}}/welded.obj --align {LIVER}"],
     "tact-verify": [f"tact-verify {VECTORS}/{{vectors}} --json"],
     "tact-stability": ["tact-lab stability --out {t}/maps --quick --only loss --no-pictures --json"],
     "tact-sweep": [f"tact-lab sweep {ROOT}/tests/data/scenes/plain.toml --depth-m 0.002 --limit-N-per-m 1 --no-pictures "

@@ -66,7 +66,7 @@ model::Result<OrganBody> make_organ_body(const model::mesh::SurfaceMesh& surface
   return model::Error{
       "no triangle of the organ lies in the held box, so it would fly away; move "
       "elastic.fixed_min_m "
-      "and elastic.fixed_max_m (tact-mesh --place proposes them)"};
+      "and elastic.fixed_max_m (tact-mesh --align proposes them)"};
 }
 
 std::vector<std::uint32_t> nodes_of_faces(const OrganBody& body,
