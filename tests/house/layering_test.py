@@ -49,7 +49,7 @@ MAX_LINES, MAX_COLUMNS = 300, 100
 LICENCE = "SPDX-License-Identifier: Apache-2.0"
 SOURCES = (".h", ".cc", ".ts", ".mjs", ".py", ".sh", ".txt", ".cmake")
 # Sources in other words; scenes that only tests read say their error in their first line.
-CONFIGURATION = (".css", ".html", ".toml", ".proto", ".yml", ".rules", ".link", ".network", ".ifupdown", ".conf")
+CONFIGURATION = (".css", ".gp", ".html", ".toml", ".proto", ".yml", ".rules", ".link", ".network", ".ifupdown", ".conf")
 UNSIGNED = "tests/data/scenes/"
 OURS = re.compile(r'\s*#include "([^"]+)"')
 COMMENT = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"', re.S)

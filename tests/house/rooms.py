@@ -125,8 +125,7 @@ PARTS = {
         "sweep": [],
         "laws": [],
         "loop": ["sweep"],
-        "pictures": ["sweep", "laws"],
-        "maps": ["sweep", "laws", "loop", "pictures"],
+        "maps": ["sweep", "laws", "loop"],
     },
 }
 # The folders of the page, and what each may import of the others; what stands in src/ itself, as main.ts, imports all.

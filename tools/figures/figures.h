@@ -22,32 +22,30 @@ struct Printed {
 };
 
 struct Figure {
-  std::string name;  // of its files
-  std::string of;    // "[2] fig. 3"
+  std::string of;  // "[2] fig. 3"
   std::string shows;
-  std::vector<Printed> numbers;  // none: its document prints none
-  report::Table curves;          // what the picture plots, NAME.csv
   report::Picture picture;
+  report::Table curves;               // what the picture plots, of its name
+  std::vector<Printed> numbers = {};  // none: its document prints none
 };
 
-Figure rhombus_units();           // [1] figs. 5 to 7
-Figure disc_layers();             // [2] fig. 3 and its worked example
-Figure skin_rings();              // [3] fig. 5
-Figure near_field_indentation();  // [3] fig. 6
-Figure skin_press();              // [3] fig. 8
-Figure euler_methods();           // [4] fig. 2
-Figure alpha_search();            // [4] fig. 4
-Figure alpha_curves();            // [4] fig. 5
-Figure step_methods();            // [4] fig. 7
-Figure step_sizes();              // [4] fig. 8
-
 std::vector<Figure> all_figures();
-
 /// One row for each printed number of all figures.
 report::Table numbers_of(const std::vector<Figure>& figures);
 
-/// Columns of numbers, job by job.
-report::Table curves_of(const std::string& name, const std::vector<std::string>& columns,
-                        std::vector<report::Row> rows);
+// The curves of each figure, and what its document prints.
+using Rows = std::vector<report::Row>;
+Rows rhombus_units();
+Rows disc_layers();
+std::vector<Printed> disc_example();
+Rows skin_rings();
+Rows near_field_indentation();
+Rows skin_press();
+Rows euler_methods();
+Rows alpha_search();
+std::vector<Printed> best_alpha();
+Rows alpha_curves();
+Rows step_methods();
+Rows step_sizes();
 
 }  // namespace tact::tools::figures

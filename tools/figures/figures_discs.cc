@@ -25,7 +25,10 @@ constexpr indent::DiscStackParameters kExample{
 constexpr std::array kPrintedForce_N{0.846, 1.692, 2.538, 3.384, 4.23};
 constexpr std::array kPrintedDelay_us{10.0, 21.0, 33.1, 46.41};
 
-std::vector<Printed> example(const indent::DiscStack& stack) {
+}  // namespace
+
+std::vector<Printed> disc_example() {
+  const indent::DiscStack stack = *indent::make_disc_stack(kExample);
   const auto& d = kExample.disc;
   const double ratio = d.outer_diameter_m / d.inner_diameter_m;
   const auto at = stack.at_force(kContact_N);
@@ -44,46 +47,18 @@ std::vector<Printed> example(const indent::DiscStack& stack) {
   return out;
 }
 
-}  // namespace
-
-Figure disc_layers() {
-  const auto stack = indent::make_disc_stack(kExample);
+Rows disc_layers() {
+  const indent::DiscStack stack = *indent::make_disc_stack(kExample);
   const double none = std::numeric_limits<double>::quiet_NaN();
-  std::vector<report::Row> rows;
-  rows.reserve(6);
+  Rows rows;
   for (std::size_t i = 0; i < 6; ++i)
-    rows.push_back({static_cast<double>(i + 1),
-                    static_cast<double>(i + 1) * stack->disc().flat_force_N(),
-                    1e6 * indent::delay_through_layer_s(kExample.delays, i + 1),
-                    i < kPrintedForce_N.size() ? kPrintedForce_N[i] : none,
-                    i < kPrintedDelay_us.size() ? kPrintedDelay_us[i] : none});
-  return {.name = "disc_layers",
-          .of = "[2] fig. 3",
-          .shows = "force and delay of the layers, with the worked example",
-          .numbers = example(*stack),
-          .curves = curves_of(
-              "disc_layers",
-              {"layers", "force_N", "delay_us", "printed_force_N", "printed_delay_us"}, rows),
-          .picture = {.name = "disc_layers", .width_px = 900, .height_px = 600, .script = R"gp(
-f = 'disc_layers.csv'
-set title "[2] fig. 3: force and delay of layers that go flat one after the other\n\
-points: numbers of its worked example; lines: tact, unrounded"
-set xlabel "layers"
-set xrange [0.5:6.5]
-set xtics 1
-set ylabel "force of the layers, N"
-set y2label "delay of the layers, us"
-set ytics nomirror
-set y2tics
-set yrange [0:6]
-set y2range [0:100]
-set key top left
-plot 4.0 lc rgb '#999999' dt 3 title 'contact force, 4.0 N: five layers', \
-     f using 2:3 with lines lt 1 lw 2 title 'force', \
-     f using 2:5 with points lt 1 pt 6 ps 2 title 'force, printed', \
-     f using 2:4 axes x1y2 with lines lt 2 lw 2 title 'delay', \
-     f using 2:6 axes x1y2 with points lt 2 pt 4 ps 2 title 'delay, printed'
-)gp"}};
+    rows.push_back(
+        {{"layers", i + 1},
+         {"force_N", static_cast<double>(i + 1) * stack.disc().flat_force_N()},
+         {"delay_us", 1e6 * indent::delay_through_layer_s(kExample.delays, i + 1)},
+         {"printed_force_N", i < kPrintedForce_N.size() ? kPrintedForce_N[i] : none},
+         {"printed_delay_us", i < kPrintedDelay_us.size() ? kPrintedDelay_us[i] : none}});
+  return rows;
 }
 
 }  // namespace tact::tools::figures

@@ -39,37 +39,47 @@ double velocity_rms_mps(const Method& method, double step_s) {
   return std::sqrt(sum / static_cast<double>(steps));
 }
 
-/// The truth and what each method makes of it at the steps of the first 6 s; of(state) is drawn.
-template <std::size_t N, typename Of>
-std::vector<report::Row> runs(const std::array<Method, N>& methods, double step_s, Of of) {
-  std::vector<report::Row> rows;
-  std::array<OscillatorState, N> at;
-  at.fill(kKick);
-  const long steps = std::lround(6.0 / step_s);
-  for (long i = 0; i <= steps; ++i) {
-    const double time_s = step_s * static_cast<double>(i);
-    report::Row row{step_s, time_s, of(exact(kMass, kKick, time_s))};
-    for (std::size_t k = 0; k < N; ++k) {
-      row.emplace_back(of(at[k]));
-      at[k] = model::springs::step(kMass, at[k], methods[k], step_s);
+/// A method, and the column of what it gives.
+struct Curve {
+  const char* column;
+  Method method;
+};
+
+/// For each step the first 6 s: the truth, and what each method makes of it; of(state) is drawn.
+template <typename Of>
+Rows runs(std::initializer_list<double> steps_s, const char* truth,
+          const std::vector<Curve>& curves, Of of) {
+  Rows rows;
+  for (const double step_s : steps_s) {
+    std::vector<OscillatorState> at(curves.size(), kKick);
+    const long steps = std::lround(6.0 / step_s);
+    for (long i = 0; i <= steps; ++i) {
+      const double time_s = step_s * static_cast<double>(i);
+      report::Row row{
+          {"step_s", step_s}, {"time_s", time_s}, {truth, of(exact(kMass, kKick, time_s))}};
+      for (std::size_t k = 0; k < curves.size(); ++k) {
+        row.emplace_back(curves[k].column, of(at[k]));
+        at[k] = model::springs::step(kMass, at[k], curves[k].method, step_s);
+      }
+      rows.push_back(std::move(row));
     }
-    rows.push_back(std::move(row));
   }
   return rows;
 }
 
-void append(std::vector<report::Row>& rows, std::vector<report::Row> more) {
-  for (report::Row& row : more) rows.push_back(std::move(row));
-}
+const std::vector<Curve> kThreeMethods{
+    {"explicit_m", kExplicit}, {"improved_m", kImproved}, {"midpoint_m", midpoint(0.5)}};
+
+double position_m(const OscillatorState& at) { return at.position_m; }
 
 }  // namespace
 
-Figure euler_methods() {
+Rows euler_methods() {
   // The scalar equation of the figure is lost: y' = y - 2 x/y is ours, its step is as printed.
   constexpr double kStep = 0.05;
   const auto slope = [](double x, double y) { return y - 2.0 * x / y; };
   double forward = 1.0, backward = 1.0, rk4 = 1.0;
-  std::vector<report::Row> rows{{0.0, 0.0, 0.0, 0.0}};
+  Rows rows{{{"x", 0.0}, {"explicit", 0.0}, {"implicit", 0.0}, {"rk4", 0.0}}};
   for (int i = 0; i < 20; ++i) {
     const double x = kStep * i, next = kStep * (i + 1), truth = std::sqrt(1.0 + 2.0 * next);
     const double k1 = slope(x, rk4), k2 = slope(x + kStep / 2, rk4 + kStep / 2 * k1);
@@ -80,154 +90,54 @@ Figure euler_methods() {
     // with h the step: (1 - h) y+^2 - y y+ + 2 h x+ = 0
     backward = (backward + std::sqrt(backward * backward - 8.0 * kStep * (1.0 - kStep) * next)) /
                (2.0 * (1.0 - kStep));
-    rows.push_back({next, forward - truth, backward - truth, rk4 - truth});
+    rows.push_back({{"x", next},
+                    {"explicit", forward - truth},
+                    {"implicit", backward - truth},
+                    {"rk4", rk4 - truth}});
   }
-  return {.name = "euler_methods",
-          .of = "[4] fig. 2",
-          .shows = "errors of explicit Euler, implicit Euler and RK4 on one equation",
-          .numbers = {},
-          .curves = curves_of("euler_methods", {"x", "explicit", "implicit", "rk4"}, rows),
-          .picture = {.name = "euler_methods", .width_px = 900, .height_px = 600, .script = R"gp(
-f = 'euler_methods.csv'
-set title "[4] fig. 2: error of three methods, step 0.05, y' = y - 2x/y\n\
-its equation and its numbers are not in the copy: the equation is ours"
-set xlabel "x"
-set ylabel "y less the truth"
-set key top left
-plot 0 lc rgb '#444444' notitle, \
-     f using 2:3 with linespoints lt 1 pt 7 title 'explicit Euler', \
-     f using 2:4 with linespoints lt 2 pt 7 title 'implicit Euler', \
-     f using 2:5 with linespoints lt 3 pt 7 title 'RK4'
-)gp"}};
+  return rows;
 }
 
-Figure alpha_search() {
-  std::vector<report::Row> rows;
+Rows alpha_search() {
+  Rows rows;
   for (int i = 0; i <= 80; ++i) {
     const double alpha = 0.3 + 0.005 * i;
-    rows.push_back(
-        {alpha, velocity_rms_mps(midpoint(alpha), 0.1), velocity_rms_mps(midpoint(alpha), 0.4)});
+    rows.push_back({{"alpha", alpha},
+                    {"rms_h01_mps", velocity_rms_mps(midpoint(alpha), 0.1)},
+                    {"rms_h04_mps", velocity_rms_mps(midpoint(alpha), 0.4)}});
   }
+  return rows;
+}
+
+std::vector<Printed> best_alpha() {
   const auto best_of_three = [](double step_s) {
     return std::ranges::min(std::array{0.375, 0.5, 0.625}, {}, [step_s](double alpha) {
       return velocity_rms_mps(midpoint(alpha), step_s);
     });
   };
-  return {.name = "alpha_search",
-          .of = "[4] figs. 4 and 5",
-          .shows = "how the best alpha is found: the error of the velocity over alpha",
-          .numbers = {{"best of three alpha at 0.1 s", 0.5, best_of_three(0.1)},
-                      {"best of three alpha at 0.4 s", 0.375, best_of_three(0.4)}},
-          .curves = curves_of("alpha_search", {"alpha", "rms_h01_mps", "rms_h04_mps"}, rows),
-          .picture = {.name = "alpha_search", .width_px = 900, .height_px = 600, .script = R"gp(
-f = 'alpha_search.csv'
-set title "[4] fig. 4: RMS error of the velocity over alpha, 10 s after a kick of 1 m/s\n\
-printed: of 3/8, 1/2, 5/8 the best is 1/2 at 0.1 s and 3/8 at 0.4 s; the oscillator is ours"
-set xlabel "alpha"
-set xrange [0.3:0.7]
-set ylabel "RMS error, m/s"
-set logscale y
-set arrow from 0.5, graph 0 to 0.5, graph 1 nohead lc rgb '#999999' dt 3
-set arrow from 0.375, graph 0 to 0.375, graph 1 nohead lc rgb '#999999' dt 3
-plot f using 2:3 with lines lt 1 lw 2 title 'h = 0.1 s', \
-     f using 2:4 with lines lt 2 lw 2 title 'h = 0.4 s'
-)gp"}};
+  return {{"best of three alpha at 0.1 s", 0.5, best_of_three(0.1)},
+          {"best of three alpha at 0.4 s", 0.375, best_of_three(0.4)}};
 }
 
-Figure alpha_curves() {
-  const std::array methods{midpoint(0.5), midpoint(0.375), midpoint(0.625)};
-  const auto velocity = [](const OscillatorState& at) { return at.velocity_mps; };
-  std::vector<report::Row> rows = runs(methods, 0.1, velocity);
-  append(rows, runs(methods, 0.4, velocity));
-  return {.name = "alpha_curves",
-          .of = "[4] fig. 5",
-          .shows = "velocity for three alpha and two steps",
-          .numbers = {},
-          .curves = curves_of(
-              "alpha_curves",
-              {"step_s", "time_s", "truth_mps", "alpha_4_8_mps", "alpha_3_8_mps", "alpha_5_8_mps"},
-              rows),
-          .picture = {.name = "alpha_curves", .width_px = 1200, .height_px = 550, .script = R"gp(
-f = 'alpha_curves.csv'
-set multiplot layout 1,2 title "[4] fig. 5: velocity by midpoint-averaging. \
-No number of the curves is in the copy: all lines by tact, the oscillator is ours" font ',13'
-set xlabel "time, s"
-set ylabel "velocity, m/s"
-do for [h in "0.1 0.4"] {
-  set title 'h = '.h.' s'
-  plot f using ($2 == h ? $3 : NaN):4 with lines lt 7 lw 2 title 'truth', \
-       f using ($2 == h ? $3 : NaN):5 with points lt 1 pt 7 title '1/2', \
-       f using ($2 == h ? $3 : NaN):6 with points lt 2 pt 6 title '3/8', \
-       f using ($2 == h ? $3 : NaN):7 with points lt 3 pt 4 title '5/8'
-}
-unset multiplot
-)gp"}};
+Rows alpha_curves() {
+  return runs({0.1, 0.4}, "truth_mps",
+              {{"alpha_4_8_mps", midpoint(0.5)},
+               {"alpha_3_8_mps", midpoint(0.375)},
+               {"alpha_5_8_mps", midpoint(0.625)}},
+              [](const OscillatorState& at) { return at.velocity_mps; });
 }
 
-Figure step_methods() {
-  const std::array methods{kExplicit, kImproved, midpoint(0.5)};
-  std::vector<report::Row> rows =
-      runs(methods, 0.1, [](const OscillatorState& at) { return at.position_m; });
-  const std::vector<report::Row> force = runs(methods, 0.1, spring_and_damper_N);
+Rows step_methods() {
+  Rows rows = runs({0.1}, "truth_m", kThreeMethods, position_m);
+  const Rows force =
+      runs({0.1}, "truth_N",
+           {{"explicit_N", kExplicit}, {"improved_N", kImproved}, {"midpoint_N", midpoint(0.5)}},
+           spring_and_damper_N);
   for (std::size_t i = 0; i < rows.size(); ++i)
-    for (std::size_t k = 2; k < force[i].size(); ++k) rows[i].push_back(force[i][k]);
-  return {.name = "step_methods",
-          .of = "[4] fig. 7",
-          .shows = "displacement and force of one mass by three methods",
-          .numbers = {},
-          .curves = curves_of("step_methods",
-                              {"step_s", "time_s", "truth_m", "explicit_m", "improved_m",
-                               "midpoint_m", "truth_N", "explicit_N", "improved_N", "midpoint_N"},
-                              rows),
-          .picture = {.name = "step_methods", .width_px = 1200, .height_px = 550, .script = R"gp(
-f = 'step_methods.csv'
-set multiplot layout 1,2 title "[4] fig. 7: one mass by three methods, h = 0.1 s. \
-No number of the curves is in the copy: all lines by tact, the oscillator is ours" font ',13'
-set xlabel "time, s"
-set ylabel "displacement, m"
-set yrange [-0.25:0.45]
-plot f using 3:4 with lines lt 7 lw 2 title 'truth', \
-     f using 3:5 with lines lt 2 title 'explicit Euler', \
-     f using 3:6 with lines lt 3 title 'improved Euler', \
-     f using 3:7 with points lt 1 pt 7 title 'midpoint-averaging'
-set ylabel "force on the mass, N"
-set yrange [*:*]
-plot f using 3:8 with lines lt 7 lw 2 title 'truth', \
-     f using 3:9 with lines lt 2 title 'explicit Euler', \
-     f using 3:10 with lines lt 3 title 'improved Euler', \
-     f using 3:11 with points lt 1 pt 7 title 'midpoint-averaging'
-unset multiplot
-)gp"}};
+    rows[i].insert(rows[i].end(), force[i].begin() + 2, force[i].end());
+  return rows;
 }
 
-Figure step_sizes() {
-  const std::array methods{kExplicit, kImproved, midpoint(0.5)};
-  const auto position = [](const OscillatorState& at) { return at.position_m; };
-  std::vector<report::Row> rows;
-  for (const double step_s : {0.02, 0.1, 0.4}) append(rows, runs(methods, step_s, position));
-  return {.name = "step_sizes",
-          .of = "[4] fig. 8",
-          .shows = "displacement by three methods at three steps",
-          .numbers = {},
-          .curves = curves_of(
-              "step_sizes",
-              {"step_s", "time_s", "truth_m", "explicit_m", "improved_m", "midpoint_m"}, rows),
-          .picture = {.name = "step_sizes", .width_px = 1500, .height_px = 550, .script = R"gp(
-f = 'step_sizes.csv'
-set multiplot layout 1,3 title "[4] fig. 8: one mass by three methods at three steps. \
-No number of the curves is in the copy: all lines by tact, the oscillator is ours" font ',13'
-set xlabel "time, s"
-set ylabel "displacement, m"
-set yrange [-0.5:0.8]
-do for [k=1:3] {
-  set title (k == 1 ? '(a) explicit Euler' : k == 2 ? '(b) improved Euler' : '(c) midpoint-averaging')
-  plot f using ($2 == 0.02 ? $3 : NaN):4 with lines lt 7 lw 2 title 'truth', \
-       f using ($2 == 0.02 ? $3 : NaN):(column(4+k)) with lines lt 1 title 'h = 0.02 s', \
-       f using ($2 == 0.1 ? $3 : NaN):(column(4+k)) with points lt 3 pt 7 title '0.1 s', \
-       f using ($2 == 0.4 ? $3 : NaN):(column(4+k)) with linespoints lt 2 pt 6 title '0.4 s'
-}
-unset multiplot
-)gp"}};
-}
+Rows step_sizes() { return runs({0.02, 0.1, 0.4}, "truth_m", kThreeMethods, position_m); }
 
 }  // namespace tact::tools::figures

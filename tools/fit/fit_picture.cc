@@ -7,6 +7,7 @@
 
 #include "model/io/file_writer.h"
 #include "tools/fit/fit_report.h"
+#include "tools/fit/scripts.h"
 #include "tools/report/picture.h"
 
 namespace tact::tools::fit {
@@ -39,21 +40,13 @@ std::string rows_of(const FitReport& report) {
   return out;
 }
 
-std::string script_of(const FitReport& report, const std::string& csv) {
-  constexpr std::size_t kColours = std::size(report::kInk);
-  std::string plots = fmt::format(
-      "'{0}' using 3:($2==0?$4:NaN) with points pt 7 ps 0.8 lc rgb '#000000' title 'data', "
-      "'{0}' using 3:($2==1?$4:NaN) with points pt 6 ps 0.9 lc rgb '#000000' title "
-      "'data, held out'",
-      csv);
-  for (std::size_t k = 0; k < report.laws.size(); ++k)
-    plots += fmt::format(", '{}' using 3:{} with lines lw 1.5 lc rgb '{}' title '{} ({:.1f} %)'",
-                         csv, k + 5, report::kInk[k % kColours], report.laws[k].title,
-                         100.0 * report.laws[k].checked.fitted.rms_ratio());
-  return "set xlabel 'depth, mm (pull below 0)'\n"
-         "set ylabel 'force, N'\nset key top left\nset grid lc rgb '#dddddd'\n"
-         "plot " +
-         plots + "\n";
+/// "rhombus (1.2 %)"
+std::vector<std::string> titles_of(const FitReport& report) {
+  std::vector<std::string> titles;
+  for (const FittedLaw& law : report.laws)
+    titles.push_back(
+        fmt::format("{} ({:.1f} %)", law.title, 100.0 * law.checked.fitted.rms_ratio()));
+  return titles;
 }
 
 }  // namespace
@@ -65,10 +58,12 @@ model::Result<std::vector<std::string>> draw_fit(const FitReport& report, const 
         "no law was fitted, so there is nothing to draw; give --data or --reference"};
   const fs::path path(file);
   const std::string folder = path.has_parent_path() ? path.parent_path().string() : ".";
-  const std::string csv = path.stem().string() + ".points.csv";
-  if (auto error = model::io::write_file((fs::path(folder) / csv).string(), rows_of(report)))
+  const std::string name = path.stem().string();
+  if (auto error = model::io::write_file((fs::path(folder) / (name + ".points.csv")).string(),
+                                         rows_of(report)))
     return *error;
-  return report::draw({.name = path.stem().string(), .script = script_of(report, csv)}, folder);
+  return report::draw(
+      {.name = name, .script = kFitScript, .variables = {{"laws", titles_of(report)}}}, folder);
 }
 
 }  // namespace tact::tools::fit

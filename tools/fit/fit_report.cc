@@ -100,11 +100,6 @@ ordered_json json_of(const Residual& r) {
           {"peak_N", r.peak_N},   {"rms_ratio", r.rms_ratio()}, {"worst_ratio", r.worst_ratio()}};
 }
 
-ordered_json json_of(double value) {
-  // JSON has no NaN.
-  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
-}
-
 ordered_json json_of(const FittedLaw& law) {
   const Evaluation& j = law.checked;
   ordered_json sites = ordered_json::array(), keys = ordered_json::array();
@@ -114,7 +109,7 @@ ordered_json json_of(const FittedLaw& law) {
                      {"force", json_of(s.force)},
                      {"scale", s.scale},
                      {"best_scale", s.best_scale},
-                     {"shape_rms_ratio", json_of(s.shape_rms_ratio)}});
+                     {"shape_rms_ratio", s.shape_rms_ratio}});
   for (const FittedKey& k : law.keys)
     keys.push_back(
         {{"section", k.section}, {"key", k.key}, {"value", k.value}, {"at_bound", k.at_bound}});
@@ -127,8 +122,8 @@ ordered_json json_of(const FittedLaw& law) {
           {"held_out", json_of(j.held_out)},
           {"press", json_of(j.press)},
           {"pull", json_of(j.pull)},
-          {"shape_rms_ratio", json_of(j.shape_rms_ratio)},
-          {"held_out_shape_rms_ratio", json_of(j.held_out_shape_rms_ratio)},
+          {"shape_rms_ratio", j.shape_rms_ratio},
+          {"held_out_shape_rms_ratio", j.held_out_shape_rms_ratio},
           {"sites", sites},
           {"evaluations", law.evaluations}};
 }

@@ -12,7 +12,6 @@
 #include "model/io/file_writer.h"
 #include "model/io/input_file.h"
 #include "model/reader/scene_text.h"
-#include "tools/chart/report/pictures.h"
 #include "tools/chart/report/report.h"
 #include "tools/chart/report/tool_report.h"
 #include "tools/lab/commands.h"
@@ -126,7 +125,7 @@ Result<report::Table> table_of(const Options& o, const Scene& scene,
   // One message instead of a table of failures.
   if (std::ranges::none_of(*rows, &std::string::empty, &ChartRow::failure))
     return Error{rows->front().failure};
-  report::Table table = empty_chart();
+  report::Table table("chart");
   for (const ChartRow& row : *rows) table.add(table_row(row, provenance));
   return table;
 }
@@ -141,7 +140,7 @@ Result<int> make_chart(const program::Program& program, const Options& o, const 
     return with_peers(laws, o.peers, hash_of_files({o.reference}));
   };
   // Before the work, which a file that does not fit would make vain.
-  if (const auto peers = add_peers(empty_chart()); !peers) return peers.error();
+  if (const auto peers = add_peers(report::Table("chart")); !peers) return peers.error();
   auto table = table_of(o, scene, *reference, provenance);
   if (!table) return table.error();
   table = add_peers(*table);
@@ -167,7 +166,7 @@ Result<int> make_chart(const program::Program& program, const Options& o, const 
   for (const std::size_t i : ahead)
     fmt::print(stderr,
                "tact-lab chart: the peer {} {} is both faster and nearer than tact's front\n",
-               table->word(table->rows()[i], "family"), table->word(table->rows()[i], "size"));
+               word(table->rows()[i], "family"), word(table->rows()[i], "size"));
   return ahead.empty() ? 0 : 1;
 }
 

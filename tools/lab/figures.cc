@@ -35,14 +35,14 @@ model::Result<int> run(const program::Program& program, Options& o) {
       return program.fail(files.error(), kept);
   }
   for (const figures::Figure& figure : all)
-    fmt::print("{:16} {:18} {}{}\n", figure.name, figure.of, figure.shows,
+    fmt::print("{:16} {:18} {}{}\n", figure.picture.name, figure.of, figure.shows,
                figure.numbers.empty() ? "; no printed number: tact's alone" : "");
   fmt::print("\n{:18} {:28} {:>10} {:>10} {:>9}\n", "figure", "quantity", "printed", "tact",
              "differs");
   for (const auto& row : numbers.rows())
-    fmt::print("{:18} {:28} {:>10.6g} {:>10.6g} {:>7.2f} %\n", numbers.word(row, "figure"),
-               numbers.word(row, "quantity"), numbers.number(row, "printed"),
-               numbers.number(row, "tact"), numbers.number(row, "difference_percent"));
+    fmt::print("{:18} {:28} {:>10.6g} {:>10.6g} {:>7.2f} %\n", word(row, "figure"),
+               word(row, "quantity"), number(row, "printed"), number(row, "tact"),
+               number(row, "difference_percent"));
   return 0;
 }
 

@@ -57,7 +57,7 @@ Result<std::vector<Candidate>> measure(const Options& o, const Scene& scene) {
   options.timing = {.ticks = 20000, .rounds = 2, .limit_s = 2.0, .instructions = false};
   const auto rows = measure_chart(scene, *reference, options);
   if (!rows) return rows.error();
-  report::Table table = chart::empty_chart();
+  report::Table table("chart");
   for (const chart::ChartRow& row : *rows) table.add(table_row(row, {}));
   return candidates_of(table);
 }

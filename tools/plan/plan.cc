@@ -23,9 +23,9 @@ std::vector<Candidate> candidates_of(const report::Table& table) {
   std::vector<Candidate> out;
   for (const report::Row& row : table.rows()) {
     // Peers of a chart are measured for comparison; tactd has none of them.
-    if (table.word(row, "kind") != "tact" || table.word(row, "failure") != "-") continue;
+    if (word(row, "kind") != "tact" || word(row, "failure") != "-") continue;
     const auto count = [&](const char* column) {
-      return static_cast<std::size_t>(table.number(row, column));
+      return static_cast<std::size_t>(number(row, column));
     };
     model::scene::LawSizes sizes{.table_knots = count("table_knots"),
                                  .layers = count("layers"),
@@ -33,22 +33,22 @@ std::vector<Candidate> candidates_of(const report::Table& table) {
                                  .nodes = count("nodes"),
                                  .curves = count("curves")};
     for (const model::scene::LawName& name : model::scene::kLawNames)
-      if (name.name == table.word(row, "family")) sizes.law = name.kind;
-    const std::string& form = table.word(row, "form");
+      if (name.name == word(row, "family")) sizes.law = name.kind;
+    const std::string& form = word(row, "form");
     if (form != "-")
       sizes.disc_form = form == "linear" ? model::indent::DiscForm::kLinear
                                          : model::indent::DiscForm::kAlmenLaszlo;
     // A chart made without --tool-reference has no numbers of the whole tool.
-    const bool whole_tool = std::isfinite(table.number(row, "tool_rms_ratio"));
+    const bool whole_tool = std::isfinite(number(row, "tool_rms_ratio"));
     out.push_back(
         {.sizes = sizes,
-         .force_error_ratio = table.number(row, whole_tool ? "tool_rms_ratio" : "force_rms_ratio"),
+         .force_error_ratio = number(row, whole_tool ? "tool_rms_ratio" : "force_rms_ratio"),
          .own_error_ratio =
-             whole_tool ? std::optional(table.number(row, "tool_own_worst_ratio")) : std::nullopt,
-         .shape_error_ratio = table.number(row, "shape_rms_ratio"),
-         .tick_median_us = table.number(row, "tick_median_us"),
-         .tick_p999_us = table.number(row, "tick_p999_us"),
-         .memory_bytes = table.number(row, "memory_bytes")});
+             whole_tool ? std::optional(number(row, "tool_own_worst_ratio")) : std::nullopt,
+         .shape_error_ratio = number(row, "shape_rms_ratio"),
+         .tick_median_us = number(row, "tick_median_us"),
+         .tick_p999_us = number(row, "tick_p999_us"),
+         .memory_bytes = number(row, "memory_bytes")});
   }
   return out;
 }
@@ -64,18 +64,18 @@ std::optional<Error> check_chart_fits(const report::Table& table, const model::s
   const std::string machine = as_word(model::scene::machine_name());
   for (const report::Row& row : table.rows()) {
     // Peers are not chosen, and were measured elsewhere.
-    if (table.word(row, "kind") == "peer") continue;
+    if (word(row, "kind") == "peer") continue;
     // Before the machine: a changed scene is the likelier slip, and its remedy the same.
-    if (table.word(row, "scene_hash") != scene.hash)
+    if (word(row, "scene_hash") != scene.hash)
       return Error{fmt::format(
           "{}: the chart of another scene, or of this one before a change; chart it again: "
           "tact-lab chart {} --reference FILE --out DIR",
           path, scene.path)};
-    if (table.word(row, "machine") != machine)
+    if (word(row, "machine") != machine)
       return Error{
           fmt::format("{}: measured on another machine, {}; chart it here: tact-lab chart {} "
                       "--reference FILE --out DIR",
-                      path, table.word(row, "machine"), scene.path)};
+                      path, word(row, "machine"), scene.path)};
   }
   return std::nullopt;
 }

@@ -7,6 +7,7 @@
 
 #include "model/io/file_writer.h"
 #include "tools/program/run_program.h"
+#include "tools/report/scripts.h"
 
 namespace tact::tools::report {
 namespace {
@@ -17,25 +18,31 @@ using model::Result;
 
 constexpr double kTimeLimit_s = 120.0;
 
-std::string head(const Picture& p) {
+std::string gnuplot_text(const std::string& text) {
+  std::string out = "'";
+  for (const char c : text) out.append(c == '\'' ? 2 : 1, c);
+  return out + "'";
+}
+
+std::string line_of(const std::string& name, const Value& value) {
+  if (const auto* number = std::get_if<double>(&value))
+    return fmt::format("{} = {}\n", name, *number);
+  if (const auto* text = std::get_if<std::string>(&value))
+    return name[0] == '$' ? fmt::format("{} << EOD\n{}EOD\n", name, *text)
+                          : fmt::format("{} = {}\n", name, gnuplot_text(*text));
+  std::string list;
+  for (const std::string& word : std::get<std::vector<std::string>>(value))
+    list += '"' + word + "\" ";
+  return fmt::format("{} = {}\n", name, gnuplot_text(list));
+}
+
+std::string whole_script(const Picture& p) {
   std::string out = fmt::format(
-      "# Draw again, in this folder: gnuplot -e \"kind='png'\" {0}.gp\n"
-      "if (!exists('kind')) kind = 'svg'\n"
-      "if (kind eq 'png') {{ set terminal pngcairo size {1},{2} font 'DejaVu Sans,11' }}\n"
-      "if (kind eq 'svg') {{ set terminal svg size {1},{2} font 'DejaVu Sans,Arial,14' "
-      "background '#ffffff' }}\n"
-      "set output '{0}.'.kind\n"
-      "set datafile separator ','\n"
-      "set datafile columnheaders\n"
-      "set encoding utf8\n"
-      "set border lc rgb '#444444'\n"
-      "set grid lc rgb '#dddddd'\n"
-      "set key font ',10' opaque\n"
-      "set style textbox opaque noborder fillcolor rgb '#ffffff'\n",
-      p.name, p.width_px, p.height_px);
-  int i = 0;
-  for (const char* ink : kInk) out += fmt::format("set linetype {} lc rgb '{}'\n", ++i, ink);
-  return out;
+      "# Draw again, in this folder: gnuplot -e \"kind='png'\" {}.gp\nname = {}\nwidth_px = {}\n"
+      "height_px = {}\n{}",
+      p.name, gnuplot_text(p.name), p.width_px, p.height_px, kPictureScript);
+  for (const auto& [name, value] : p.variables) out += line_of(name, value);
+  return out + p.script;
 }
 
 }  // namespace
@@ -44,7 +51,7 @@ Result<std::vector<std::string>> draw(const Picture& picture, const std::string&
   std::error_code error;
   const fs::path folder = fs::absolute(directory, error);
   const std::string script = (folder / (picture.name + ".gp")).string();
-  if (auto failed = model::io::write_file(script, head(picture) + picture.script)) return *failed;
+  if (auto failed = model::io::write_file(script, whole_script(picture))) return *failed;
   std::vector<std::string> files;
   for (const std::string kind : {"svg", "png"}) {
     const std::string log = (folder / (picture.name + ".gnuplot.txt")).string();

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <cstdio>
@@ -29,30 +29,30 @@ std::string text_of(const Cell& cell) {
   return fmt::format("{:.6g}", number + 0.0);
 }
 
+const Cell& cell_of(const Row& row, const std::string& column) {
+  const auto at = std::ranges::find(row, column, [](const auto& cell) { return cell.first; });
+  assert(at != row.end() && "no such column");
+  return at->second;
+}
+
 }  // namespace
 
-std::size_t Table::column(const std::string& name) const {
-  for (std::size_t i = 0; i < columns_.size(); ++i)
-    if (columns_[i].name == name) return i;
-  assert(false && "no such column");
-  return 0;
+double number(const Row& row, const std::string& column) {
+  return std::get<double>(cell_of(row, column));
 }
 
-double Table::number(const Row& row, const std::string& column_name) const {
-  return std::get<double>(row[column(column_name)]);
-}
-
-const std::string& Table::word(const Row& row, const std::string& column_name) const {
-  return std::get<std::string>(row[column(column_name)]);
+const std::string& word(const Row& row, const std::string& column) {
+  return std::get<std::string>(cell_of(row, column));
 }
 
 std::string Table::to_csv() const {
   std::string out = "job";
-  for (const Column& column : columns_) out += "," + column.name;
+  if (!rows_.empty())
+    for (const auto& [column, cell] : rows_.front()) out += std::string(",") + column;
   out += "\n";
   for (std::size_t k = 0; k < rows_.size(); ++k) {
     out += std::to_string(k);
-    for (const Cell& cell : rows_[k]) out += "," + text_of(cell);
+    for (const auto& [column, cell] : rows_[k]) out += "," + text_of(cell);
     out += "\n";
   }
   return out;
@@ -62,14 +62,12 @@ std::string Table::to_json() const {
   ordered_json rows = ordered_json::array();
   for (std::size_t k = 0; k < rows_.size(); ++k) {
     ordered_json row{{"job", k}};
-    for (std::size_t i = 0; i < columns_.size(); ++i) {
-      const std::string text = text_of(rows_[k][i]);
-      if (columns_[i].kind == CellKind::kWord) {
-        row[columns_[i].name] = text;
-      } else {
-        const double number = *number_in(text);  // of the text: CSV and JSON agree
-        row[columns_[i].name] = std::isfinite(number) ? ordered_json(number) : ordered_json(text);
-      }
+    for (const auto& [column, cell] : rows_[k]) {
+      const std::string text = text_of(cell);
+      row[column] = text;
+      if (std::holds_alternative<std::string>(cell)) continue;
+      const double number = *number_in(text);  // of the text: CSV and JSON agree
+      if (std::isfinite(number)) row[column] = number;
     }
     rows.push_back(std::move(row));
   }

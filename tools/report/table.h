@@ -6,6 +6,8 @@
 #pragma once
 
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -13,30 +15,31 @@
 
 namespace tact::tools::report {
 
-enum class CellKind { kNumber, kWord };
-
-struct Column {
-  std::string name;  // ends in its unit, as everywhere
-  CellKind kind = CellKind::kNumber;
+/// A number or a word; a truth is 1 or 0.
+struct Cell : std::variant<double, std::string> {
+  template <typename T>
+    requires std::is_arithmetic_v<T>
+  Cell(T number) : variant(static_cast<double>(number)) {}
+  Cell(std::string word) : variant(std::move(word)) {}
+  Cell(const char* word) : variant(std::string(word)) {}
 };
+/// Without the job. Each cell with the name of its column, which ends in its unit, as everywhere.
+using Row = std::vector<std::pair<const char*, Cell>>;
 
-using Cell = std::variant<double, std::string>;
-using Row = std::vector<Cell>;  // without the job
+/// What stands in this column; an assert if there is no such number, or word.
+double number(const Row& row, const std::string& column);
+const std::string& word(const Row& row, const std::string& column);
 
 class Table {
  public:
-  Table(std::string name, std::vector<Column> columns)
-      : name_(std::move(name)), columns_(std::move(columns)) {}
+  explicit Table(std::string name, std::vector<Row> rows = {})
+      : name_(std::move(name)), rows_(std::move(rows)) {}
 
+  /// With the columns of the first row, in their order.
   void add(Row row) { rows_.push_back(std::move(row)); }
 
   const std::string& name() const { return name_; }
-  const std::vector<Column>& columns() const { return columns_; }
   const std::vector<Row>& rows() const { return rows_; }
-  /// Where this column stands in a row; an assert if there is none.
-  std::size_t column(const std::string& name) const;
-  double number(const Row& row, const std::string& column_name) const;
-  const std::string& word(const Row& row, const std::string& column_name) const;
 
   std::string to_csv() const;
   std::string to_json() const;
@@ -45,7 +48,6 @@ class Table {
 
  private:
   std::string name_;
-  std::vector<Column> columns_;
   std::vector<Row> rows_;
 };
 

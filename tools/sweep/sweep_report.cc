@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "model/io/json.h"
+#include "tools/sweep/scripts.h"
 
 namespace tact::tools::sweep {
 namespace {
@@ -57,30 +58,26 @@ nlohmann::json to_json(const PressResult& r) {
 }  // namespace
 
 report::Table presses_table(const model::scene::Scene& scene, const PressSweep& sweep) {
-  constexpr auto kWord = report::CellKind::kWord;
-  report::Table table("presses", {{"vertex"},
-                                  {"way", kWord},
-                                  {"x_m"},
-                                  {"y_m"},
-                                  {"z_m"},
-                                  {"state", kWord},
-                                  {"flaws", kWord},
-                                  {"deepest_m"},
-                                  {"force_N"},
-                                  {"slope_N_per_m"},
-                                  {"slope_at_m"},
-                                  {"change_N"},
-                                  {"change_at_m"},
-                                  {"least_N"},
-                                  {"least_at_m"},
-                                  {"energy_ratio"},
-                                  {"energy_at_m"}});
+  report::Table table("presses");
   for (const PressResult& r : sweep.results) {
     const model::Vec3& at_m = scene.organ_mesh.vertex_m[r.place.vertex];
-    table.add({static_cast<double>(r.place.vertex), word_of(r.place.way), at_m.x, at_m.y, at_m.z,
-               word_of(r.state), flaw_text(r, sweep), r.deepest_m, r.force_N, r.slope_N_per_m.value,
-               r.slope_N_per_m.depth_m, r.change_N.value, r.change_N.depth_m, r.least_N.value,
-               r.least_N.depth_m, r.energy_ratio.value, r.energy_ratio.depth_m});
+    table.add({{"vertex", r.place.vertex},
+               {"way", word_of(r.place.way)},
+               {"x_m", at_m.x},
+               {"y_m", at_m.y},
+               {"z_m", at_m.z},
+               {"state", word_of(r.state)},
+               {"flaws", flaw_text(r, sweep)},
+               {"deepest_m", r.deepest_m},
+               {"force_N", r.force_N},
+               {"slope_N_per_m", r.slope_N_per_m.value},
+               {"slope_at_m", r.slope_N_per_m.depth_m},
+               {"change_N", r.change_N.value},
+               {"change_at_m", r.change_N.depth_m},
+               {"least_N", r.least_N.value},
+               {"least_at_m", r.least_N.depth_m},
+               {"energy_ratio", r.energy_ratio.value},
+               {"energy_at_m", r.energy_ratio.depth_m}});
   }
   return table;
 }
@@ -97,35 +94,10 @@ report::Picture presses_picture(const PressSweep& sweep) {
   return {.name = "presses",
           .width_px = 1400,
           .height_px = 700,
-          .script = fmt::format("w = {:.6g}\nxmost = {:.6g}\nymost = {:.6g}\n",
-                                most_N_per_m / kBins, 1.05 * most_N_per_m,
-                                1.05 * static_cast<double>(1 + *std::ranges::max_element(count))) +
-                    R"gp(
-f = 'presses.csv'
-pressed(v) = strcol('state') eq 'pressed' ? v : NaN
-flawed(v) = strcol('flaws') ne 'none' ? v : NaN
-set multiplot layout 1,2 title "The whole tool pressed at vertices of the organ"
-set title "largest slope dF/dd, seen from above; circles: a check fails"
-set xlabel "x, mm"
-set ylabel "y, mm"
-set cblabel "N/m"
-set size ratio -1
-set key off
-set palette defined (0 '#0072B2', 0.5 '#E69F00', 1 '#D55E00')
-plot f using (1e3*column('x_m')):(1e3*column('y_m')):(pressed(column('slope_N_per_m'))) \
-  with points pt 7 ps 0.6 lc palette, \
-  f using (1e3*column('x_m')):(flawed(1e3*column('y_m'))) with points pt 6 ps 1.6 lw 1.5 lc rgb '#000000'
-set title "how often which largest slope occurs"
-set size noratio
-set xlabel "largest slope dF/dd of a press, N/m"
-set ylabel "presses"
-set xrange [0:xmost]
-set yrange [0:ymost]
-set style fill solid 0.6
-bin(x) = w * (floor(x / w) + 0.5)
-plot f using (bin(pressed(column('slope_N_per_m')))):(1.0) smooth frequency with boxes lc rgb '#0072B2'
-unset multiplot
-)gp"};
+          .script = kPressesScript,
+          .variables = {{"bin_N_per_m", most_N_per_m / kBins},
+                        {"largest_N_per_m", most_N_per_m},
+                        {"most", static_cast<double>(*std::ranges::max_element(count))}}};
 }
 
 std::string command_to_repeat(const std::string& command, const PressPoint& place) {

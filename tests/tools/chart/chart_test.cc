@@ -76,7 +76,7 @@ report::Table chart_of(const model::scene::Scene& scene,
                        const ground_truth::ReferenceData& reference, const ChartOptions& options) {
   const auto rows = measure_chart(scene, reference, options);
   EXPECT_TRUE(rows) << (rows ? "" : rows.error().message);
-  report::Table table = empty_chart();
+  report::Table table("chart");
   for (const ChartRow& row : *rows) table.add(table_row(row, {"scene", "truth", "r1", "here"}));
   return table;
 }
@@ -170,16 +170,16 @@ TEST(Chart, GivesEveryLawARowWithTheErrorWorkedByHand) {
   const report::Table table = chart_of(scene, linear_truth(1.25 * k), quick());
   std::vector<std::string> families;
   for (const report::Row& row : table.rows()) {
-    EXPECT_EQ(table.word(row, "failure"), "-") << table.word(row, "family");
-    EXPECT_GT(table.number(row, "memory_bytes"), 0.0);
-    EXPECT_GT(table.number(row, "ticks"), 0.0);
-    families.push_back(table.word(row, "family"));
-    if (table.word(row, "form") == "linear") {
-      EXPECT_NEAR(table.number(row, "force_rms_ratio"), 0.1 * std::sqrt(2.5), 1e-9);
-      EXPECT_NEAR(table.number(row, "force_worst_ratio"), 0.2, 1e-9);
-      EXPECT_NEAR(table.number(row, "own_worst_1mm_ratio"), -0.2, 1e-9);
-      EXPECT_NEAR(table.number(row, "own_worst_ratio"), 0.2, 1e-9);
-      EXPECT_TRUE(std::isnan(table.number(row, "pull_rms_ratio")));
+    EXPECT_EQ(word(row, "failure"), "-") << word(row, "family");
+    EXPECT_GT(number(row, "memory_bytes"), 0.0);
+    EXPECT_GT(number(row, "ticks"), 0.0);
+    families.push_back(word(row, "family"));
+    if (word(row, "form") == "linear") {
+      EXPECT_NEAR(number(row, "force_rms_ratio"), 0.1 * std::sqrt(2.5), 1e-9);
+      EXPECT_NEAR(number(row, "force_worst_ratio"), 0.2, 1e-9);
+      EXPECT_NEAR(number(row, "own_worst_1mm_ratio"), -0.2, 1e-9);
+      EXPECT_NEAR(number(row, "own_worst_ratio"), 0.2, 1e-9);
+      EXPECT_TRUE(std::isnan(number(row, "pull_rms_ratio")));
     }
   }
   for (const char* law : {"rhombus", "disc_stack", "hex_sheet", "spring_patch", "hunt_crossley"})
@@ -196,8 +196,7 @@ TEST(Chart, ALinearReferenceJudgesTheComplianceLawAtSmallStrain) {
   options.request.laws = {"compliance"};
   const report::Table table = chart_of(*liver, *truth, options);
   double best = 1.0;
-  for (const report::Row& row : table.rows())
-    best = std::min(best, table.number(row, "force_rms_ratio"));
+  for (const report::Row& row : table.rows()) best = std::min(best, number(row, "force_rms_ratio"));
   EXPECT_LT(best, 0.005);
 }
 
@@ -208,10 +207,10 @@ TEST(Chart, SaysWhenAPeerIsAhead) {
     r.timing.median_us = tick_us;
     r.errors.force_rms_ratio = error;
     report::Row out = table_row(r, {"s", "t", "r", "m"});
-    if (peer) out[empty_chart().column("kind")] = "peer";
+    if (peer) out.front().second = "peer";  // the kind
     return out;
   };
-  report::Table table = empty_chart();
+  report::Table table("chart");
   table.add(row(false, 1.0, 0.1));
   table.add(row(false, 2.0, 0.05));
   table.add(row(true, 3.0, 0.01));  // slower, more accurate: not ahead
@@ -220,7 +219,7 @@ TEST(Chart, SaysWhenAPeerIsAhead) {
   EXPECT_EQ(peers_ahead(table), std::vector<std::size_t>{3});
   EXPECT_EQ(front_rows(table), (std::vector<std::size_t>{0, 1}));
   // Within 10 % is the same time, but not by a chain of such steps.
-  report::Table slope = empty_chart();
+  report::Table slope("chart");
   for (const auto& [tick_us, error] : {std::pair{1.0, 0.4}, {1.09, 0.3}, {1.18, 0.2}, {1.28, 0.1}})
     slope.add(row(false, tick_us, error));
   EXPECT_EQ(front_rows(slope), (std::vector<std::size_t>{1, 3}));

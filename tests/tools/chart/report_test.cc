@@ -16,8 +16,8 @@ TEST(ChartReport, ShowsThePeersThatWereMeasuredBefore) {
   const std::string file = TACT_SOURCE_DIR "/tools/results/peers.json";
   const auto peers = read_chart(file);
   ASSERT_TRUE(peers) << peers.error().message;
-  const std::string truth = peers->word(peers->rows()[0], "reference_hash");
-  report::Table laws = empty_chart();
+  const std::string truth = word(peers->rows()[0], "reference_hash");
+  report::Table laws("chart");
   ChartRow law;
   law.timing.median_us = 2.0;
   law.errors.force_rms_ratio = 0.003;
@@ -41,7 +41,7 @@ TEST(ChartReport, IsReadBackAsItWasWritten) {
   const std::string folder = testing::TempDir() + "chart_json_" + std::to_string(getpid());
   std::filesystem::create_directories(folder);
   const Provenance provenance{"scene", "truth", "r1", "here, now"};
-  report::Table table = empty_chart();
+  report::Table table("chart");
   ChartRow row;
   row.variant.sizes = {
       .law = LawKind::kDiscStack, .layers = 7, .disc_form = model::indent::DiscForm::kLinear};

@@ -115,7 +115,7 @@ TEST(Plan, OfABladeTakesWhatCanBeCutAlone) {
 }
 
 TEST(Plan, GoesByTheWholeToolWhereTheChartHasIt) {
-  report::Table table = chart::empty_chart();
+  report::Table table("chart");
   chart::ChartRow one, whole;
   one.variant.sizes.law = whole.variant.sizes.law = LawKind::kRhombus;
   one.errors.force_rms_ratio = whole.errors.force_rms_ratio = 0.003;  // one sphere
@@ -132,7 +132,7 @@ TEST(Plan, GoesByTheWholeToolWhereTheChartHasIt) {
 }
 
 TEST(Plan, ReadsTactsRowsOfAChart) {
-  report::Table table = chart::empty_chart();
+  report::Table table("chart");
   const chart::Provenance here{"0123456789abcdef", "truth", "r1", model::scene::machine_name()};
   chart::ChartRow law, failed;
   law.variant.sizes = {
@@ -140,9 +140,8 @@ TEST(Plan, ReadsTactsRowsOfAChart) {
   law.errors.force_rms_ratio = 0.125;
   failed.variant.sizes.law = LawKind::kRhombus;
   failed.failure = "no meaning";
-  report::Row peer = table_row(law, here);
-  peer[table.column("kind")] = "peer";
-  peer[table.column("machine")] = "another";
+  report::Row peer = table_row(law, {here.scene_hash, here.reference_hash, "r1", "another"});
+  peer.front().second = "peer";  // the kind
   table.add(table_row(law, here));
   table.add(std::move(peer));
   table.add(table_row(failed, here));

@@ -21,8 +21,8 @@ class PictureFiles : public testing::Test {
   PictureFiles() : folder_(testing::TempDir() + "tact's pictures " + std::to_string(getpid())) {
     fs::remove_all(folder_);
     fs::create_directories(folder_);
-    Table table("curve", {{"x_m"}, {"force_N"}});
-    for (int i = 0; i < 5; ++i) table.add({0.1 * i, 0.3 * i * i});
+    Table table("curve");
+    for (int i = 0; i < 5; ++i) table.add({{"x_m", 0.1 * i}, {"force_N", 0.3 * i * i}});
     EXPECT_TRUE(table.write(folder_));
   }
   ~PictureFiles() override { fs::remove_all(folder_); }
@@ -41,6 +41,22 @@ TEST_F(PictureFiles, DrawsSvgAndPngFromATable) {
   EXPECT_EQ(content((*files)[1]).substr(1, 3), "PNG");
   EXPECT_TRUE(fs::exists(folder_ + "/curve.gp")) << "anyone can draw it again";
   EXPECT_FALSE(fs::exists(folder_ + "/curve.gnuplot.txt"));
+}
+
+TEST_F(PictureFiles, AScriptReadsWhatStandsInFrontOfIt) {
+  const auto files =
+      draw({.name = "tact's",
+            .script = "set xlabel caption\nplot for [i=1:words(list)] $block using 1:($2*factor) "
+                      "with lines title word(list, i)\n",
+            .variables = {{"caption", "50 N/m, the liver's"},
+                          {"factor", 0.5},
+                          {"list", std::vector<std::string>{"two words", "gum's"}},
+                          {"$block", "x,y\n0,1\n1,2\n"}}},
+           folder_);
+  ASSERT_TRUE(files) << files.error().message;
+  const std::string svg = content((*files)[0]);
+  for (const char* said : {"50 N/m, the liver's", ">two words<", ">gum's<"})
+    EXPECT_NE(svg.find(said), std::string::npos) << said;
 }
 
 TEST_F(PictureFiles, TheSameScriptGivesTheSameBytes) {

@@ -60,15 +60,15 @@ std::vector<SpeedAndError> points_of(const report::Table& table,
   std::vector<SpeedAndError> out;
   out.reserve(rows.size());
   for (const std::size_t i : rows)
-    out.push_back({.tick_us = table.number(table.rows()[i], "tick_median_us"),
-                   .error_ratio = table.number(table.rows()[i], "force_rms_ratio")});
+    out.push_back({.tick_us = number(table.rows()[i], "tick_median_us"),
+                   .error_ratio = number(table.rows()[i], "force_rms_ratio")});
   return out;
 }
 
 std::vector<std::size_t> rows_of(const report::Table& table, const std::string& kind) {
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < table.rows().size(); ++i)
-    if (table.word(table.rows()[i], "kind") == kind) out.push_back(i);
+    if (word(table.rows()[i], "kind") == kind) out.push_back(i);
   return out;
 }
 
@@ -114,108 +114,58 @@ Result<std::vector<ChartRow>> measure_chart(const Scene& scene,
 }
 
 // NOLINTNEXTLINE(readability-function-size): a table of columns
-report::Table empty_chart() {
-  const auto word = [](const char* name) { return report::Column{name, report::CellKind::kWord}; };
-  const auto number = [](const char* name) {
-    return report::Column{name, report::CellKind::kNumber};
-  };
-  return {"chart",
-          {word("kind"),
-           word("family"),
-           word("size"),
-           word("form"),
-           number("table_knots"),
-           number("layers"),
-           number("rings"),
-           number("nodes"),
-           number("curves"),
-           number("force_rms_ratio"),
-           number("force_worst_ratio"),
-           number("press_rms_ratio"),
-           number("pull_rms_ratio"),
-           number("held_out_rms_ratio"),
-           number("worst_site_rms_ratio"),
-           number("own_worst_1mm_ratio"),
-           number("own_worst_2mm_ratio"),
-           number("own_worst_5mm_ratio"),
-           number("own_worst_10mm_ratio"),
-           number("own_worst_ratio"),
-           number("within_jnd_ratio"),
-           number("tool_rms_ratio"),
-           number("tool_own_worst_ratio"),
-           number("shape_rms_ratio"),
-           number("shape_worst_ratio"),
-           number("cases"),
-           number("settle_ticks"),
-           number("memory_bytes"),
-           word("given"),
-           word("failure"),
-           word("scene_hash"),
-           word("reference_hash"),
-           word("revision"),
-           word("machine"),
-           number("tick_median_us"),
-           number("tick_p999_us"),
-           number("instructions"),
-           number("ticks"),
-           number("paused")}};
-}
-
-// NOLINTNEXTLINE(readability-function-size): a table of columns
 report::Row table_row(const ChartRow& row, const Provenance& provenance) {
   const model::scene::LawSizes& sizes = row.variant.sizes;
-  const bool measured = row.failure.empty();
   // A row that failed has NaN: a zero would look like the best of all.
-  const auto number = [&](auto value) {
-    return report::Cell(measured ? static_cast<double>(value) : kNotMeasured);
+  const auto measured = [&](auto value) {
+    return row.failure.empty() ? static_cast<double>(value) : kNotMeasured;
   };
-  const auto count = [](std::size_t value) { return report::Cell(static_cast<double>(value)); };
   const ErrorSummary& e = row.errors;
   const char* form = !sizes.disc_form                                       ? "-"
                      : *sizes.disc_form == model::indent::DiscForm::kLinear ? "linear"
                                                                             : "almen-laszlo";
   const auto or_dash = [](const std::string& text) {
-    return report::Cell(text.empty() ? "-" : without_commas(text));
+    return text.empty() ? "-" : without_commas(text);
   };
-  return {report::Cell("tact"),
-          report::Cell(row.variant.family()),
-          report::Cell(row.variant.size()),
-          report::Cell(form),
-          count(sizes.table_knots),
-          count(sizes.layers),
-          count(sizes.rings),
-          count(sizes.nodes),
-          count(sizes.curves),
-          number(e.force_rms_ratio),
-          number(e.force_worst_ratio),
-          number(e.press_rms_ratio),
-          number(e.pull_rms_ratio),
-          number(e.held_out_rms_ratio),
-          number(e.worst_site_rms_ratio),
-          number(e.own_worst_ratio[0]),
-          number(e.own_worst_ratio[1]),
-          number(e.own_worst_ratio[2]),
-          number(e.own_worst_ratio[3]),
-          number(e.own_largest_ratio),
-          number(e.within_jnd_ratio),
-          number(row.tool ? row.tool->rms_ratio : kNotMeasured),
-          number(row.tool ? row.tool->own_largest_ratio : kNotMeasured),
-          number(e.shape_rms_ratio),
-          number(e.shape_worst_ratio),
-          number(e.cases),
-          number(row.settle_ticks),
-          number(row.memory_bytes),
-          report::Cell("parameters of the scene"),
-          or_dash(row.failure),
-          report::Cell(provenance.scene_hash),
-          report::Cell(provenance.reference_hash),
-          or_dash(provenance.revision),
-          or_dash(provenance.machine),
-          number(row.timing.median_us),
-          number(row.timing.p999_us),
-          number(row.timing.instructions),
-          number(row.timing.ticks),
-          number(row.timing.paused)};
+  return {{"kind", "tact"},
+          {"family", row.variant.family()},
+          {"size", row.variant.size()},
+          {"form", form},
+          {"table_knots", sizes.table_knots},
+          {"layers", sizes.layers},
+          {"rings", sizes.rings},
+          {"nodes", sizes.nodes},
+          {"curves", sizes.curves},
+          {"force_rms_ratio", measured(e.force_rms_ratio)},
+          {"force_worst_ratio", measured(e.force_worst_ratio)},
+          {"press_rms_ratio", measured(e.press_rms_ratio)},
+          {"pull_rms_ratio", measured(e.pull_rms_ratio)},
+          {"held_out_rms_ratio", measured(e.held_out_rms_ratio)},
+          {"worst_site_rms_ratio", measured(e.worst_site_rms_ratio)},
+          {"own_worst_1mm_ratio", measured(e.own_worst_ratio[0])},
+          {"own_worst_2mm_ratio", measured(e.own_worst_ratio[1])},
+          {"own_worst_5mm_ratio", measured(e.own_worst_ratio[2])},
+          {"own_worst_10mm_ratio", measured(e.own_worst_ratio[3])},
+          {"own_worst_ratio", measured(e.own_largest_ratio)},
+          {"within_jnd_ratio", measured(e.within_jnd_ratio)},
+          {"tool_rms_ratio", measured(row.tool ? row.tool->rms_ratio : kNotMeasured)},
+          {"tool_own_worst_ratio", measured(row.tool ? row.tool->own_largest_ratio : kNotMeasured)},
+          {"shape_rms_ratio", measured(e.shape_rms_ratio)},
+          {"shape_worst_ratio", measured(e.shape_worst_ratio)},
+          {"cases", measured(e.cases)},
+          {"settle_ticks", measured(row.settle_ticks)},
+          {"memory_bytes", measured(row.memory_bytes)},
+          {"given", "parameters of the scene"},
+          {"failure", or_dash(row.failure)},
+          {"scene_hash", provenance.scene_hash},
+          {"reference_hash", provenance.reference_hash},
+          {"revision", or_dash(provenance.revision)},
+          {"machine", or_dash(provenance.machine)},
+          {"tick_median_us", measured(row.timing.median_us)},
+          {"tick_p999_us", measured(row.timing.p999_us)},
+          {"instructions", measured(row.timing.instructions)},
+          {"ticks", measured(row.timing.ticks)},
+          {"paused", measured(row.timing.paused)}};
 }
 
 std::vector<std::size_t> front_rows(const report::Table& table) {

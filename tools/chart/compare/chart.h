@@ -49,8 +49,7 @@ model::Result<std::vector<ChartRow>> measure_chart(const model::scene::Scene& sc
                                                    const ground_truth::ReferenceData& reference,
                                                    const ChartOptions& options);
 
-/// A table without rows.
-report::Table empty_chart();
+/// A row of the table "chart".
 report::Row table_row(const ChartRow& row, const Provenance& provenance);
 /// The rows on the front of tact's laws, fastest first. Times within 10 % are the
 /// same time: of two such laws the nearer one stays.

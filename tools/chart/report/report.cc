@@ -23,8 +23,8 @@ constexpr const char* kFormat = "tact-chart";
 constexpr int kVersion = 3;
 
 /// Numbers as Table::to_json writes them: those that are not finite are words.
-report::Cell cell_of(const nlohmann::json& value, report::CellKind kind) {
-  if (kind == report::CellKind::kWord) return value.get<std::string>();
+report::Cell cell_of(const nlohmann::json& value, bool is_word) {
+  if (is_word) return value.get<std::string>();
   // Infinity becomes NaN, too: both mean "not measured" to any user chooses by it.
   return value.is_number() ? value.get<double>() : std::nan("");
 }
@@ -80,12 +80,12 @@ Result<report::Table> read_chart(const std::string& path) {
                       "--reference FILE --out DIR",
                       path)};
     const auto& rows = document.at("rows");
-    report::Table table = empty_chart();
+    report::Table table("chart");
     for (const auto& row : rows) {
-      report::Row cells;
+      report::Row cells = table_row({}, {});
       // By name: the order in the file does not matter.
-      for (const report::Column& column : table.columns())
-        cells.push_back(cell_of(row.at(column.name), column.kind));
+      for (auto& [column, cell] : cells)
+        cell = cell_of(row.at(column), std::holds_alternative<std::string>(cell));
       table.add(std::move(cells));
     }
     return table;
@@ -99,14 +99,13 @@ Result<report::Table> with_peers(const report::Table& laws, const std::string& p
                                  const std::string& reference_hash) {
   const auto peers = read_chart(path);
   if (!peers) return peers.error();
-  report::Table out = empty_chart();
-  for (const report::Row& row : laws.rows()) out.add(row);
+  report::Table out = laws;
   for (const report::Row& row : peers->rows()) {
-    if (peers->word(row, "kind") != "peer" || peers->word(row, "reference_hash") != reference_hash)
+    if (word(row, "kind") != "peer" || word(row, "reference_hash") != reference_hash)
       return Error{
           fmt::format("{}: the row {} {} is no peer that was measured against this --reference; "
                       "leave out --peers",
-                      path, peers->word(row, "family"), peers->word(row, "size"))};
+                      path, word(row, "family"), word(row, "size"))};
     out.add(row);
   }
   return out;
@@ -114,9 +113,9 @@ Result<report::Table> with_peers(const report::Table& laws, const std::string& p
 
 std::string source_of_peers(const report::Table& table) {
   for (const report::Row& row : table.rows())
-    if (table.word(row, "kind") == "peer")
-      return fmt::format("peers: measured before, by revision {}, on {}",
-                         table.word(row, "revision"), table.word(row, "machine"));
+    if (word(row, "kind") == "peer")
+      return fmt::format("peers: measured before, by revision {}, on {}", word(row, "revision"),
+                         word(row, "machine"));
   return {};
 }
 
@@ -125,31 +124,30 @@ namespace {
 constexpr char kLine[] =
     "{:<40} {:>8} {:>8} {:>8} {:>7} {:>7} {:>7} {:>7} {:>7} {:>8} {:>8} {:>9} {:>9} {:>8} {:>9}\n";
 
-std::string row_text(const report::Table& table, const report::Row& row, bool on_front) {
-  const auto number = [&](const char* column) { return table.number(row, column); };
-  const bool is_peer = table.word(row, "kind") == "peer";
+std::string row_text(const report::Row& row, bool on_front) {
+  const bool is_peer = word(row, "kind") == "peer";
   const std::string name = fmt::format("{}{} {}",
                                        is_peer    ? "peer "
                                        : on_front ? "* "
                                                   : "  ",
-                                       table.word(row, "family"), table.word(row, "size"));
-  if (table.word(row, "failure") != "-")
-    return fmt::format("{:<40} not measured: {}\n", name, table.word(row, "failure"));
-  const double instructions = number("instructions");
-  return fmt::format(kLine, name, text_or_dash(number("force_rms_ratio"), 100.0, 2),
-                     text_or_dash(number("force_worst_ratio"), 100.0, 2),
-                     text_or_dash(number("held_out_rms_ratio"), 100.0, 2),
-                     text_or_dash(number("own_worst_1mm_ratio"), 100.0, 1),
-                     text_or_dash(number("own_worst_2mm_ratio"), 100.0, 1),
-                     text_or_dash(number("own_worst_5mm_ratio"), 100.0, 1),
-                     text_or_dash(number("own_worst_10mm_ratio"), 100.0, 1),
-                     text_or_dash(number("within_jnd_ratio"), 100.0, 0) + " %",
-                     text_or_dash(number("shape_rms_ratio"), 100.0, 2),
-                     text_or_dash(number("tool_rms_ratio"), 100.0, 2),
-                     text_or_dash(number("tick_median_us"), 1.0, 3),
-                     text_or_dash(number("tick_p999_us"), 1.0, 3),
+                                       word(row, "family"), word(row, "size"));
+  if (word(row, "failure") != "-")
+    return fmt::format("{:<40} not measured: {}\n", name, word(row, "failure"));
+  const double instructions = number(row, "instructions");
+  return fmt::format(kLine, name, text_or_dash(number(row, "force_rms_ratio"), 100.0, 2),
+                     text_or_dash(number(row, "force_worst_ratio"), 100.0, 2),
+                     text_or_dash(number(row, "held_out_rms_ratio"), 100.0, 2),
+                     text_or_dash(number(row, "own_worst_1mm_ratio"), 100.0, 1),
+                     text_or_dash(number(row, "own_worst_2mm_ratio"), 100.0, 1),
+                     text_or_dash(number(row, "own_worst_5mm_ratio"), 100.0, 1),
+                     text_or_dash(number(row, "own_worst_10mm_ratio"), 100.0, 1),
+                     text_or_dash(number(row, "within_jnd_ratio"), 100.0, 0) + " %",
+                     text_or_dash(number(row, "shape_rms_ratio"), 100.0, 2),
+                     text_or_dash(number(row, "tool_rms_ratio"), 100.0, 2),
+                     text_or_dash(number(row, "tick_median_us"), 1.0, 3),
+                     text_or_dash(number(row, "tick_p999_us"), 1.0, 3),
                      std::isfinite(instructions) ? fmt::format("{:.0f}", instructions) : "n/a",
-                     text_or_dash(number("memory_bytes"), 1e-3, 1));
+                     text_or_dash(number(row, "memory_bytes"), 1e-3, 1));
 }
 
 }  // namespace
@@ -161,7 +159,7 @@ std::string chart_text(const report::Table& table) {
   const auto front = front_rows(table);
   for (std::size_t i = 0; i < table.rows().size(); ++i) {
     const bool on_front = std::find(front.begin(), front.end(), i) != front.end();
-    out += row_text(table, table.rows()[i], on_front);
+    out += row_text(table.rows()[i], on_front);
   }
   if (const std::string peers = source_of_peers(table); !peers.empty()) out += peers + "\n";
   return out +

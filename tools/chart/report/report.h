@@ -31,6 +31,11 @@ model::Result<report::Table> with_peers(const report::Table& laws, const std::st
 /// Where and when the peers were measured, for text and picture; empty without peers.
 std::string source_of_peers(const report::Table& table);
 
+/// Draws chart.svg and chart.png of a whole table; returns their paths.
+model::Result<std::vector<std::string>> draw_chart(const report::Table& table,
+                                                   const std::string& title,
+                                                   const std::string& directory);
+
 /// For a terminal; the front is marked.
 std::string chart_text(const report::Table& table);
 

@@ -18,11 +18,6 @@ using nlohmann::ordered_json;
 
 std::string mm_text(double depth_m) { return fmt::format("{:g}", depth_m * 1e3); }
 
-// JSON has no NaN.
-ordered_json number_or_null(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json();
-}
-
 ordered_json summary_of(const ToolRow& row, const ToolReference& reference) {
   ordered_json out{{"law", std::string(name_of(row.law))}};
   if (!row.failure.empty()) {
@@ -31,35 +26,34 @@ ordered_json summary_of(const ToolRow& row, const ToolReference& reference) {
   }
   out["force_rms_ratio"] = row.errors.rms_ratio;
   out["force_worst_ratio"] = row.errors.worst_ratio;
-  // NaN where the reference has no unseen place.
-  out["unseen_rms_ratio"] = number_or_null(row.errors.unseen_rms_ratio);
+  // NaN where the reference has no unseen place; null in the text.
+  out["unseen_rms_ratio"] = row.errors.unseen_rms_ratio;
   out["within_jnd_ratio"] = row.errors.within_jnd_ratio;
   for (std::size_t k = 0; k < row.errors.own_worst_ratio.size(); ++k)
     out["own_worst_ratio_at_mm"][mm_text(reference.places.front().cases[k].depth_m)] =
         row.errors.own_worst_ratio[k];
   for (std::size_t i = 0; i < reference.places.size(); ++i)
     out["place_rms_ratio"][name_of(reference.places[i])] = row.errors.place_rms_ratio[i];
-  out["tick_median_us"] = number_or_null(row.timing.median_us);
-  out["tick_p999_us"] = number_or_null(row.timing.p999_us);
-  out["instructions"] = number_or_null(row.timing.instructions);
+  out["tick_median_us"] = row.timing.median_us;
+  out["tick_p999_us"] = row.timing.p999_us;
+  out["instructions"] = row.timing.instructions;
   return out;
 }
 
 }  // namespace
 
 report::Table tool_table(const std::vector<ToolRow>& rows, const ToolReference& reference) {
-  report::Table table("tool", {{"law", report::CellKind::kWord},
-                               {"place", report::CellKind::kWord},
-                               {"depth_m"},
-                               {"force_N"},
-                               {"reference_N"},
-                               {"own_error_ratio"},
-                               {"reference_error_ratio"}});
+  report::Table table("tool");
   for (const ToolRow& row : rows)
     for (const ToolSample& s : row.samples) {
       const auto& place = reference.places[s.place];
-      table.add({std::string(name_of(row.law)), name_of(place), place.cases[s.depth].depth_m,
-                 s.force_N, s.reference_N, s.own_ratio(), place.cases[s.depth].force_error_ratio});
+      table.add({{"law", std::string(name_of(row.law))},
+                 {"place", name_of(place)},
+                 {"depth_m", place.cases[s.depth].depth_m},
+                 {"force_N", s.force_N},
+                 {"reference_N", s.reference_N},
+                 {"own_error_ratio", s.own_ratio()},
+                 {"reference_error_ratio", place.cases[s.depth].force_error_ratio}});
     }
   return table;
 }

@@ -7,6 +7,7 @@
 
 #include "model/io/file_writer.h"
 #include "tools/jitter/report/jitter_report.h"
+#include "tools/jitter/report/scripts.h"
 #include "tools/report/picture.h"
 
 namespace tact::tools::jitter {
@@ -61,23 +62,22 @@ model::Result<std::vector<std::string>> draw_histogram(const JitterResult& resul
   const auto drawn = drawn_series(result);
   if (auto error = model::io::write_file(directory + "/histogram.csv", make_histogram_csv(result)))
     return *error;
-  std::string script = fmt::format(
-      "set logscale xy\nset xlabel 'us, from this value on'\nset ylabel 'samples in a bucket of a "
-      "twentieth decade'\nset yrange [0.5:*]\nset format y '10^{{%L}}'\nset key top right\n"
-      "set title \"{} ticks at {:g} Hz, {}\" noenhanced\nplot ",
-      result.sink->ticks(), result.rate_Hz,
-      result.load.empty() ? std::string("idle") : "load " + result.load);
-  for (std::size_t i = 0; i < drawn.size(); ++i) {
-    // A step is drawn down to half a sample where a bucket is empty: zero has no logarithm. The
-    // peer tells whole microseconds, which leaves gaps: points.
-    const bool of_peer = drawn[i].key == "peer_wake";
-    script += fmt::format(
-        "{0}'histogram.csv' using 1:(${1} > 0 ? ${1} : {2}) with {3} lw 2 lt {4} title '{5}'",
-        i == 0 ? "" : ", ", i + 2, of_peer ? "1/0" : "0.5",
-        of_peer ? "points pt 7 ps 0.5" : "steps", i + 1, drawn[i].title);
+  std::vector<std::string> titles;
+  double peer = 0.0;
+  for (const NamedSeries& named : drawn) {
+    titles.push_back(named.title);
+    if (named.key == "peer_wake") peer = static_cast<double>(titles.size());
   }
   return report::draw(
-      {.name = "histogram", .width_px = 1000, .height_px = 520, .script = script + "\n"},
+      {.name = "histogram",
+       .width_px = 1000,
+       .height_px = 520,
+       .script = kHistogramScript,
+       .variables = {{"run",
+                      fmt::format("{} ticks at {:g} Hz, {}", result.sink->ticks(), result.rate_Hz,
+                                  result.load.empty() ? "idle" : "load " + result.load)},
+                     {"series", titles},
+                     {"peer", peer}}},
       directory);
 }
 

@@ -63,7 +63,6 @@ std::string in_us(std::optional<std::uint64_t> duration_ns);
 
 std::string make_summary(const JitterResult& result);
 nlohmann::json to_json(const JitterResult& result, const std::string& command);
-
 /// One HTML file that needs nothing else: no network, no script.
 /// `histogram_svg`: the picture itself; empty where none was drawn.
 std::string make_page(const JitterResult& result, const std::string& command,

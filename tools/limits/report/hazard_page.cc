@@ -83,14 +83,12 @@ json requirement_json(const Requirement& requirement, const LimitsReport& report
           {"in_this_run", here}};
 }
 
-}  // namespace
-
-json matrix_data(const LimitsReport& report) {
+/// The table, each requirement as `of` writes it.
+json hazards_with(const LimitsReport& report, json (*of)(const Requirement&, const LimitsReport&)) {
   json out = json::array();
   for (const Hazard& hazard : hazard_table()) {
     json requirements = json::array();
-    for (const Requirement& one : hazard.requirements)
-      requirements.push_back(requirement_data(one, report));
+    for (const Requirement& one : hazard.requirements) requirements.push_back(of(one, report));
     out.push_back({{"id", hazard.id},
                    {"hazard", hazard.hazard},
                    {"cause", hazard.cause},
@@ -99,6 +97,10 @@ json matrix_data(const LimitsReport& report) {
   }
   return out;
 }
+
+}  // namespace
+
+json matrix_data(const LimitsReport& report) { return hazards_with(report, requirement_data); }
 
 json tests_data() {
   json out = json::array();
@@ -110,20 +112,10 @@ json tests_data() {
 }
 
 json hazards_json(const LimitsReport& report) {
-  json hazards = json::array(), tests = json::array();
-  for (const Hazard& hazard : hazard_table()) {
-    json requirements = json::array();
-    for (const Requirement& one : hazard.requirements)
-      requirements.push_back(requirement_json(one, report));
-    hazards.push_back({{"id", hazard.id},
-                       {"hazard", hazard.hazard},
-                       {"cause", hazard.cause},
-                       {"remains", hazard.remains},
-                       {"requirements", requirements}});
-  }
+  json tests = json::array();
   for (const HazardTest& test : hazard_tests())
     tests.push_back({{"id", test.id}, {"by", test.by}, {"names", test.names}});
-  return {{"hazards", hazards}, {"tests", tests}};
+  return {{"hazards", hazards_with(report, requirement_json)}, {"tests", tests}};
 }
 
 }  // namespace tact::tools::limits

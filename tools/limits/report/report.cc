@@ -27,113 +27,76 @@ std::string word_of(std::string text) {  // a word of a table has no comma
   return text;
 }
 
-report::Table case_table(const LimitsReport& report) {
-  report::Table table("cases", {{"case", report::CellKind::kWord},
-                                {"passed"},
-                                {"force_limit_N"},
-                                {"largest_commanded_N"},
-                                {"largest_written_N"},
-                                {"overshoot_N"},
-                                {"largest_torque_Nm"},
-                                {"largest_step_N"},
-                                {"largest_step_Nm"},
-                                {"largest_power_W"},
-                                {"given_energy_J"},
-                                {"largest_rms_N"},
-                                {"largest_rms_Nm"},
-                                {"time_to_zero_s"},
-                                {"allowed_zero_s"},
-                                {"stages", report::CellKind::kWord},
-                                {"fault"}});
-  for (const CaseResult& result : report.cases) {
-    const CaseVerdict& v = result.verdict;
-    table.add({std::string(v.subject.name), v.passed() ? 1.0 : 0.0, v.limits.force_N,
-               v.worst.commanded_N, v.worst.force_N, v.overshoot_N, v.worst.torque_Nm,
-               v.worst.step_N, v.worst.step_Nm, v.worst.power_W, v.worst.given_J, v.worst.rms_N,
-               // NaN: never, or not asked for.
-               v.worst.rms_Nm, v.worst.zero_s.value_or(std::nan("")),
-               v.subject.expected.zero_within_s.value_or(std::nan("")), word_of(v.acted_text()),
-               static_cast<double>(v.fault)});
-  }
-  return table;
-}
-
-// NOLINTNEXTLINE(readability-function-size): a table of columns
 report::Table trace_table(const CaseResult& result) {
-  report::Table table(std::string("trace_") + result.verdict.subject.name,
-                      {{"t_s"},
-                       {"commanded_N"},
-                       {"gated_N"},
-                       {"written_N"},
-                       {"commanded_Nm"},
-                       {"gated_Nm"},
-                       {"written_Nm"},
-                       {"written_x_N"},
-                       {"written_y_N"},
-                       {"written_z_N"},
-                       {"position_x_m"},
-                       {"position_y_m"},
-                       {"position_z_m"},
-                       {"speed_mps"},
-                       {"power_W"},
-                       {"given_energy_J"},
-                       {"rms_N"},
-                       {"fresh"},
-                       {"armed"},
-                       {"skipped_periods"},
-                       {"stages", report::CellKind::kWord},
-                       {"limit"},
-                       {"fault"}});
+  report::Table table(std::string("trace_") + result.verdict.subject.name);
   for (const TickRow& r : result.rows) {
     CaseVerdict stages;
     stages.acted = r.acted;
-    table.add({r.t_s,
-               along_z(r.commanded_N),
-               along_z(r.gated_N),
-               along_z(r.written_N),
-               norm(r.commanded_Nm),
-               norm(r.gated_Nm),
-               norm(r.written_Nm),
-               r.written_N.x,
-               r.written_N.y,
-               r.written_N.z,
-               r.tool.position_m.x,
-               r.tool.position_m.y,
-               r.tool.position_m.z,
-               norm(r.tool.velocity_mps),
-               model::given_power_W({r.written_N, r.written_Nm}, r.tool),
-               r.given_J,
-               r.rms_N,
-               r.fresh ? 1.0 : 0.0,
-               r.armed ? 1.0 : 0.0,
-               static_cast<double>(r.skipped_periods),
-               word_of(stages.acted_text()),
-               static_cast<double>(r.limit),
-               static_cast<double>(r.fault)});
+    table.add({{"t_s", r.t_s},
+               {"commanded_N", along_z(r.commanded_N)},
+               {"gated_N", along_z(r.gated_N)},
+               {"written_N", along_z(r.written_N)},
+               {"commanded_Nm", norm(r.commanded_Nm)},
+               {"gated_Nm", norm(r.gated_Nm)},
+               {"written_Nm", norm(r.written_Nm)},
+               {"written_x_N", r.written_N.x},
+               {"written_y_N", r.written_N.y},
+               {"written_z_N", r.written_N.z},
+               {"position_x_m", r.tool.position_m.x},
+               {"position_y_m", r.tool.position_m.y},
+               {"position_z_m", r.tool.position_m.z},
+               {"speed_mps", norm(r.tool.velocity_mps)},
+               {"power_W", model::given_power_W({r.written_N, r.written_Nm}, r.tool)},
+               {"given_energy_J", r.given_J},
+               {"rms_N", r.rms_N},
+               {"fresh", r.fresh},
+               {"armed", r.armed},
+               {"skipped_periods", r.skipped_periods},
+               {"stages", word_of(stages.acted_text())},
+               {"limit", static_cast<int>(r.limit)},
+               {"fault", static_cast<int>(r.fault)}});
   }
   return table;
 }
 
 report::Table wall_table(const WallVerdict& wall) {
-  report::Table table("wall", {{"stiffness_N_per_m"},
-                               {"without_early_swing_m"},
-                               {"without_last_swing_m"},
-                               {"without_grows"},
-                               {"without_given_J"},
-                               {"with_early_swing_m"},
-                               {"with_last_swing_m"},
-                               {"with_grows"},
-                               {"with_given_J"},
-                               {"in_bounds"}});
+  report::Table table("wall");
   for (const WallPoint& p : wall.points)
-    table.add({p.stiffness_N_per_m, p.without.early_swing_m, p.without.last_swing_m,
-               p.without.grows ? 1.0 : 0.0, p.without.given_J, p.with.early_swing_m,
-               p.with.last_swing_m, p.with.grows ? 1.0 : 0.0, p.with.given_J,
-               p.without.in_bounds && p.with.in_bounds ? 1.0 : 0.0});
+    table.add({{"stiffness_N_per_m", p.stiffness_N_per_m},
+               {"without_early_swing_m", p.without.early_swing_m},
+               {"without_last_swing_m", p.without.last_swing_m},
+               {"without_grows", p.without.grows},
+               {"without_given_J", p.without.given_J},
+               {"with_early_swing_m", p.with.early_swing_m},
+               {"with_last_swing_m", p.with.last_swing_m},
+               {"with_grows", p.with.grows},
+               {"with_given_J", p.with.given_J},
+               {"in_bounds", p.without.in_bounds && p.with.in_bounds}});
   return table;
 }
 
 }  // namespace
+
+report::Row case_row(const CaseVerdict& v) {
+  return {{"case", v.subject.name},
+          {"passed", v.passed()},
+          {"force_limit_N", v.limits.force_N},
+          {"largest_commanded_N", v.worst.commanded_N},
+          {"largest_written_N", v.worst.force_N},
+          {"overshoot_N", v.overshoot_N},
+          {"largest_torque_Nm", v.worst.torque_Nm},
+          {"largest_step_N", v.worst.step_N},
+          {"largest_step_Nm", v.worst.step_Nm},
+          {"largest_power_W", v.worst.power_W},
+          {"given_energy_J", v.worst.given_J},
+          {"largest_rms_N", v.worst.rms_N},
+          {"largest_rms_Nm", v.worst.rms_Nm},
+          // NaN: never, or not asked for.
+          {"time_to_zero_s", v.worst.zero_s.value_or(std::nan(""))},
+          {"allowed_zero_s", v.subject.expected.zero_within_s.value_or(std::nan(""))},
+          {"stages", word_of(v.acted_text())},
+          {"fault", static_cast<int>(v.fault)}};
+}
 
 bool LimitsReport::passed() const {
   // A run that played nothing has not passed.
@@ -190,13 +153,18 @@ Result<std::vector<std::string>> write_report(const LimitsReport& report,
     files.push_back((fs::path(directory) / name).string());
     return model::io::write_file(files.back(), content);
   };
-  std::vector<report::Table> tables;
-  if (!report.cases.empty()) tables.push_back(case_table(report));
+  const auto write_table = [&](const report::Table& table) {
+    return write(table.name() + ".csv", table.to_csv());
+  };
+  report::Table cases("cases");
+  for (const CaseResult& result : report.cases) cases.add(case_row(result.verdict));
+  if (!report.cases.empty())
+    if (auto error = write_table(cases)) return *error;
   // Every tick: the verdict can be checked without this program.
-  for (const CaseResult& result : report.cases) tables.push_back(trace_table(result));
-  if (report.wall) tables.push_back(wall_table(*report.wall));
-  for (const report::Table& table : tables)
-    if (auto error = write(table.name() + ".csv", table.to_csv())) return *error;
+  for (const CaseResult& result : report.cases)
+    if (auto error = write_table(trace_table(result))) return *error;
+  if (report.wall)
+    if (auto error = write_table(wall_table(*report.wall))) return *error;
   if (auto error = write("limits.json", model::io::text_of(to_json(report), 2) + "\n"))
     return *error;
   std::vector<std::string> drawings;

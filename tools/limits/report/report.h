@@ -13,6 +13,7 @@
 #include "model/result.h"
 #include "tools/limits/evidence/evidence.h"
 #include "tools/limits/verdict/wall.h"
+#include "tools/report/table.h"
 
 namespace tact::tools::limits {
 
@@ -49,6 +50,8 @@ struct LimitsReport {
   std::vector<std::pair<std::string, std::string>> left_out_by_why() const;
 };
 
+/// Of cases.csv, and the numbers of limits.json.
+report::Row case_row(const CaseVerdict& v);
 nlohmann::json to_json(const LimitsReport& report);
 /// A line for each case, on a terminal.
 std::string to_text(const LimitsReport& report);

@@ -9,6 +9,7 @@
 
 #include "firmware/gate/gate.h"
 #include "model/limit_witness.h"
+#include "tools/stability/loop/haptic_loop.h"
 #include "tools/stability/sweep/map.h"
 
 namespace tact::tools::stability {
@@ -78,14 +79,24 @@ class GateMonitor {
   double written_N_ = 0.0;
 };
 
+/// A wall of this stiffness, pressed with 2 N, every force through the gate.
+inline LoopRun run_gated_wall(LoopCase loop, double stiffness_N_per_m, GateMonitor& gate) {
+  // A quarter of the gate's limit: the swing has room before it is clipped.
+  constexpr double kPush_N = 2.0;
+  loop.balance_m = kPush_N / stiffness_N_per_m;
+  gate.open(kPush_N);
+  return run_loop(
+      loop, [&](double depth_m) { return stiffness_N_per_m * depth_m; },
+      [&](double wanted_N, bool fresh) { return gate.step(wanted_N, fresh); });
+}
+
 /// Of a table with the column beyond_the_line: the gate held, and how many cells put it to the
 /// test.
 inline Finding check_gate(const report::Table& table) {
   std::size_t held = 0, fought = 0;
   for (const report::Row& row : table.rows()) {
-    const std::string& word = table.word(row, "beyond_the_line");
-    held += word == kOutOfBounds ? 0 : 1;
-    fought += word == kFought ? 1 : 0;
+    held += word(row, "beyond_the_line") != kOutOfBounds;
+    fought += word(row, "beyond_the_line") == kFought;
   }
   const std::size_t all = table.rows().size();
   return {held == all && fought > 0,

@@ -57,21 +57,6 @@ Axes<3> axes(const Settings& s) {
   return {{s.rate_Hz.size(), s.delay_s.size(), s.damping_Nms_per_rad.size()}};
 }
 
-std::vector<report::Column> columns() {
-  return {{"rate_Hz"},
-          {"delay_s"},
-          {"joint_damping_Nms_per_rad"},
-          {"damping_at_tool_Ns_per_m"},
-          {"mass_at_tool_kg"},
-          {"theory_grow_N_per_m"},
-          {"one_degree_N_per_m"},
-          {"controller_N_per_m"},
-          {"controller_over_theory"},
-          {"max_force_N"},
-          {"max_step_N"},
-          {"beyond_the_line", report::CellKind::kWord}};
-}
-
 /// A square plate in z = 0 that faces up.
 model::mesh::SurfaceMesh make_plate() {
   constexpr double kHalf_m = 0.1;
@@ -211,44 +196,40 @@ report::Row run(std::size_t job, Grid grid) {
   const double step_limit_N = kSceneLimits.slew_N_per_s / loop.rate_Hz + 1e-12;
   const bool bounded =
       beyond.max_force_N <= kSceneLimits.force_N && beyond.max_step_N <= step_limit_N;
-  return {loop.rate_Hz,
-          loop.device.delay_s,
-          device.joint_damping_Nms_per_rad,
-          tool.damping_Ns_per_m,
-          tool.mass_kg,
-          theory,
-          largest_wall_N_per_m(loop, Verdict::kGrow),
-          measured,
-          measured / theory,
-          beyond.max_force_N,
-          beyond.max_step_N,
-          std::string(!bounded       ? kOutOfBounds
-                      : beyond.grows ? kBounces
-                                     : "comes to rest")};
+  return {{"rate_Hz", loop.rate_Hz},
+          {"delay_s", loop.device.delay_s},
+          {"joint_damping_Nms_per_rad", device.joint_damping_Nms_per_rad},
+          {"damping_at_tool_Ns_per_m", tool.damping_Ns_per_m},
+          {"mass_at_tool_kg", tool.mass_kg},
+          {"theory_grow_N_per_m", theory},
+          {"one_degree_N_per_m", largest_wall_N_per_m(loop, Verdict::kGrow)},
+          {"controller_N_per_m", measured},
+          {"controller_over_theory", measured / theory},
+          {"max_force_N", beyond.max_force_N},
+          {"max_step_N", beyond.max_step_N},
+          {"beyond_the_line", !bounded       ? kOutOfBounds
+                              : beyond.grows ? kBounces
+                                             : "comes to rest"}};
 }
 
 std::vector<Finding> check(const report::Table& t) {
-  double low = 1e9, high = 0.0, alike_low = 1e9, alike_high = 0.0;
+  Spread ratio, alike;
   std::size_t in_bounds = 0, bounced = 0;
   for (const report::Row& row : t.rows()) {
-    in_bounds += t.word(row, "beyond_the_line") != kOutOfBounds;
-    bounced += t.word(row, "beyond_the_line") == kBounces;
-    const double ratio = t.number(row, "controller_over_theory");
-    low = std::min(low, ratio);
-    high = std::max(high, ratio);
-    const double alike = t.number(row, "controller_N_per_m") / t.number(row, "one_degree_N_per_m");
-    alike_low = std::min(alike_low, alike);
-    alike_high = std::max(alike_high, alike);
+    in_bounds += word(row, "beyond_the_line") != kOutOfBounds;
+    bounced += word(row, "beyond_the_line") == kBounces;
+    ratio.add(number(row, "controller_over_theory"));
+    alike.add(number(row, "controller_N_per_m") / number(row, "one_degree_N_per_m"));
   }
-  return {{low > 0.85 && high < 1.3,
+  return {{ratio.low > 0.85 && ratio.high < 1.3,
            fmt::format("the whole controller with the simulated Delta loses stability at {:.2f} to "
                        "{:.2f} of b / (T/2 + t_d)",
-                       low, high),
-           {{"least_ratio", low}, {"largest_ratio", high}}},
-          {alike_low > 0.8 && alike_high < 1.25,
+                       ratio.low, ratio.high),
+           {{"least_ratio", ratio.low}, {"largest_ratio", ratio.high}}},
+          {alike.low > 0.8 && alike.high < 1.25,
            fmt::format("and at {:.2f} to {:.2f} of what the independent loop of one degree of "
                        "freedom gives",
-                       alike_low, alike_high)},
+                       alike.low, alike.high)},
           {in_bounds == t.rows().size() && bounced > 0,
            fmt::format("three times beyond it |F| and |dF| stay in bounds in {} of {} cells; {} of "
                        "them bounce on the surface",
@@ -261,11 +242,9 @@ Map delta_loop_map() {
   return {.letter = 'c',
           .name = "loop_delta",
           .purpose = "spot checks: the real controller with the simulated Delta and its hand",
-          .columns = columns,
           .jobs = [](Grid grid) { return axes(settings(grid)).jobs(); },
           .run = run,
-          .check = check,
-          .pictures = nullptr};
+          .check = check};
 }
 
 }  // namespace tact::tools::stability

@@ -10,13 +10,31 @@
 #include <cmath>
 
 #include "model/springs/integrator_stability.h"
-#include "tools/stability/laws/probed_methods.h"
-#include "tools/stability/pictures/pictures.h"
+#include "model/springs/integrators.h"
+#include "tools/stability/maps/scripts.h"
 #include "tools/stability/sweep/axes.h"
 #include "tools/stability/sweep/map.h"
 
 namespace tact::tools::stability {
 namespace {
+
+using model::springs::Integrator;
+
+struct ProbedMethod {
+  const char* name;
+  model::springs::Method method;
+};
+
+constexpr ProbedMethod kProbedMethods[] = {
+    {"explicit Euler", {Integrator::kExplicitEuler}},
+    {"improved Euler", {Integrator::kImprovedEuler}},
+    {"midpoint-averaging 3/8", {Integrator::kMidpointAveraging, 0.375}},
+    {"midpoint-averaging 1/2", {Integrator::kMidpointAveraging, 0.5}},
+    {"midpoint-averaging 5/8", {Integrator::kMidpointAveraging, 0.625}},
+    {"RK2", {Integrator::kRk2}},
+    {"RK4", {Integrator::kRk4}},
+    {"implicit Euler", {Integrator::kImplicitEuler}},
+};
 
 constexpr int kSteps = 20'000;
 constexpr int kChunk = 50;          // between two normalisations: 15^50 is still a number
@@ -33,16 +51,6 @@ double z_of(std::size_t i, Grid grid) {
 }
 double zeta_of(std::size_t i, Grid grid) {
   return 2.0 * static_cast<double>(i) / static_cast<double>(cells(grid).zeta - 1);
-}
-
-std::vector<report::Column> columns() {
-  return {{"method", report::CellKind::kWord},
-          {"zeta"},
-          {"z"},
-          {"theory_growth_per_step"},
-          {"measured_growth_per_step"},
-          {"theory", report::CellKind::kWord},
-          {"measured", report::CellKind::kWord}};
 }
 
 /// ln of the growth a step, over the second half of the run.
@@ -83,13 +91,13 @@ report::Row run(std::size_t job, Grid grid) {
   const double radius =
       model::springs::spectral_radius(model::springs::amplification(probed.method, z, zeta));
   const double growth = measured_log_growth(probed.method, z, zeta);
-  return {std::string(probed.name),
-          zeta,
-          z,
-          radius,
-          std::exp(growth),
-          std::string(radius > 1.0 + kRounding ? "grows" : "bounded"),
-          std::string(growth > kGrows ? "grows" : "bounded")};
+  return {{"method", probed.name},
+          {"zeta", zeta},
+          {"z", z},
+          {"theory_growth_per_step", radius},
+          {"measured_growth_per_step", std::exp(growth)},
+          {"theory", radius > 1.0 + kRounding ? "grows" : "bounded"},
+          {"measured", growth > kGrows ? "grows" : "bounded"}};
 }
 
 std::vector<Finding> check(const report::Table& t) {
@@ -97,16 +105,16 @@ std::vector<Finding> check(const report::Table& t) {
   double worst = 0.0;
   std::string rest;
   for (const report::Row& row : t.rows()) {
-    const double theory = t.number(row, "theory_growth_per_step");
+    const double theory = number(row, "theory_growth_per_step");
     // What shrinks faster is gone before it can be measured.
     if (theory > 0.5)
-      worst = std::max(worst, std::abs(t.number(row, "measured_growth_per_step") / theory - 1.0));
-    if (t.word(row, "theory") == t.word(row, "measured")) {
+      worst = std::max(worst, std::abs(number(row, "measured_growth_per_step") / theory - 1.0));
+    if (word(row, "theory") == word(row, "measured")) {
       ++agree;
       continue;
     }
-    rest += fmt::format("\n        {} z {:.4g} zeta {:.3g}: radius {:.6f}", t.word(row, "method"),
-                        t.number(row, "z"), t.number(row, "zeta"), theory);
+    rest += fmt::format("\n        {} z {:.4g} zeta {:.3g}: radius {:.6f}", word(row, "method"),
+                        number(row, "z"), number(row, "zeta"), theory);
   }
   const double share = static_cast<double>(agree) / static_cast<double>(t.rows().size());
   // Right on the line a growth below kGrows cannot be told from none.
@@ -120,6 +128,26 @@ std::vector<Finding> check(const report::Table& t) {
            fmt::format("growth a step agrees within {:.1e}, where it is above 1/2", worst)}};
 }
 
+/// The methods, z_max over zeta of each, and the size of a cell.
+report::Variables variables(Grid grid) {
+  constexpr int kPoints = 200;
+  std::vector<std::string> names;
+  std::string theory = "method,z_max,zeta\n";
+  for (const auto& [name, method] : kProbedMethods) {
+    names.emplace_back(name);
+    for (int i = 0; i <= kPoints; ++i) {
+      const double zeta = 2.0 * i / kPoints;
+      // Infinity is no number for gnuplot: just beyond what is shown.
+      const double z_max = std::fmin(model::springs::largest_stable_z(method, zeta), 5.0);
+      theory += fmt::format("{},{:.5g},{:.5g}\n", name, z_max, zeta);
+    }
+  }
+  return {{"methods", names},
+          {"$theory", theory},
+          {"cell_z", z_of(0, grid)},
+          {"cell_zeta", zeta_of(1, grid)}};
+}
+
 }  // namespace
 
 Map integrator_map() {
@@ -127,12 +155,12 @@ Map integrator_map() {
       .letter = 'a',
       .name = "integrators",
       .purpose = "growth of the oscillator over step and damping, every integrator",
-      .columns = columns,
       .jobs =
           [](Grid grid) { return std::size(kProbedMethods) * cells(grid).zeta * cells(grid).z; },
       .run = run,
       .check = check,
-      .pictures = integrator_pictures};
+      .picture = {.width_px = 1600, .height_px = 850, .script = kIntegratorsScript},
+      .variables = variables};
 }
 
 }  // namespace tact::tools::stability

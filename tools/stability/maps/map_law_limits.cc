@@ -11,7 +11,7 @@
 
 #include "tools/stability/laws/laws.h"
 #include "tools/stability/loop/gate_monitor.h"
-#include "tools/stability/pictures/pictures.h"
+#include "tools/stability/maps/scripts.h"
 #include "tools/stability/sweep/axes.h"
 #include "tools/stability/sweep/map.h"
 
@@ -27,21 +27,6 @@ std::size_t depths(Grid grid) { return grid == Grid::kQuick ? 9 : 401; }
 /// -1.5 .. 2.5 times the range.
 double depth_share(std::size_t i, Grid grid) {
   return -1.5 + 4.0 * static_cast<double>(i) / static_cast<double>(depths(grid) - 1);
-}
-
-std::vector<report::Column> columns() {
-  return {{"law", report::CellKind::kWord},
-          {"depth_ratio"},
-          {"depth_m"},
-          {"force_N"},
-          {"force_ratio"},
-          {"tangent_over_mean_ratio"},
-          {"status", report::CellKind::kWord},
-          {"gate_force_N"},
-          {"gate_max_force_N"},
-          {"gate_max_step_N"},
-          {"gate", report::CellKind::kWord},
-          {"beyond_the_line", report::CellKind::kWord}};
 }
 
 const char* word(model::law::LawStatus status) {
@@ -77,29 +62,29 @@ report::Row run(std::size_t job, Grid grid) {
   // At the end of the range: forces and tangents of all laws come on one scale.
   const double edge_N = named.remembers() ? named.fresh().settle(range_m).force_N
                                           : named.law->respond(range_m).force_N;
-  return {named.name,
-          share,
-          depth_m,
-          at.force_N,
-          at.force_N / edge_N,
-          at.stiffness_N_per_m * range_m / edge_N,
-          std::string(word(at.status)),
-          gate.written_N(),
-          gate.max_force_N(),
-          gate.max_step_N(),
-          std::string(gate.kept_bounds() ? "in bounds" : "OUT OF BOUNDS"),
-          named.beyond};
+  return {{"law", named.name},
+          {"depth_ratio", share},
+          {"depth_m", depth_m},
+          {"force_N", at.force_N},
+          {"force_ratio", at.force_N / edge_N},
+          {"tangent_over_mean_ratio", at.stiffness_N_per_m * range_m / edge_N},
+          {"status", word(at.status)},
+          {"gate_force_N", gate.written_N()},
+          {"gate_max_force_N", gate.max_force_N()},
+          {"gate_max_step_N", gate.max_step_N()},
+          {"gate", gate.kept_bounds() ? "in bounds" : "OUT OF BOUNDS"},
+          {"beyond_the_line", named.beyond}};
 }
 
 std::vector<Finding> check(const report::Table& t) {
   std::size_t in_bounds = 0, reported = 0, beyond = 0, finite = 0;
   for (const report::Row& row : t.rows()) {
-    in_bounds += t.word(row, "gate") == "in bounds";
-    finite += std::isfinite(t.number(row, "force_N"));
+    in_bounds += word(row, "gate") == "in bounds";
+    finite += std::isfinite(number(row, "force_N"));
     // Only beyond the range a law has to say that it is.
-    if (t.number(row, "depth_ratio") <= 1.0) continue;
+    if (number(row, "depth_ratio") <= 1.0) continue;
     ++beyond;
-    reported += t.word(row, "status") == "saturated";
+    reported += word(row, "status") == "saturated";
   }
   return {{finite == t.rows().size(), "no law gives a force that is not a number"},
           {reported == beyond,
@@ -115,11 +100,11 @@ Map law_limit_map() {
   return {.letter = 'b',
           .name = "law_limits",
           .purpose = "every law pressed and pulled beyond its range, through the gate",
-          .columns = columns,
           .jobs = [](Grid grid) { return probed_laws().size() * depths(grid); },
           .run = run,
           .check = check,
-          .pictures = law_limit_pictures};
+          .picture = {.width_px = 1600, .height_px = 800, .script = kLawLimitsScript},
+          .variables = [](Grid) { return report::Variables{{"laws", names_of_laws()}}; }};
 }
 
 }  // namespace tact::tools::stability

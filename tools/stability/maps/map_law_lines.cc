@@ -16,7 +16,7 @@
 #include "model/indent/hex_sheet.h"
 #include "model/indent/rhombus_unit.h"
 #include "tools/printed/hex_paper.h"
-#include "tools/stability/pictures/pictures.h"
+#include "tools/stability/maps/scripts.h"
 #include "tools/stability/sweep/map.h"
 
 namespace tact::tools::stability {
@@ -26,14 +26,6 @@ constexpr const char* kStudies[] = {"disc_cone", "disc_rate", "rhombus_snap",
                                     "hex_ring",  "hex_node",  "hex_sheet"};
 
 std::size_t points(Grid grid) { return grid == Grid::kQuick ? 9 : 41; }
-
-std::vector<report::Column> columns() {
-  return {{"study", report::CellKind::kWord},
-          {"parameter"},
-          {"measured"},
-          {"theory"},
-          {"what_happens", report::CellKind::kWord}};
-}
 
 struct Point {
   double parameter = 0.0, measured = 0.0, theory = 0.0;
@@ -124,34 +116,38 @@ report::Row run(std::size_t job, Grid grid) {
                   : study == 1 ? disc_rate(t)
                   : study == 2 ? rhombus_snap(t)
                                : hex(t, static_cast<int>(study) - 3);
-  return {std::string(kStudies[study]), p.parameter, p.measured, p.theory, std::string(p.what)};
+  return {{"study", kStudies[study]},
+          {"parameter", p.parameter},
+          {"measured", p.measured},
+          {"theory", p.theory},
+          {"what_happens", p.what}};
 }
 
 /// Rows of one study, in order.
 std::vector<const report::Row*> rows_of(const report::Table& t, const char* study) {
   std::vector<const report::Row*> out;
   for (const report::Row& row : t.rows())
-    if (t.word(row, "study") == study) out.push_back(&row);
+    if (word(row, "study") == study) out.push_back(&row);
   return out;
 }
 
 double worst_error(const report::Table& t, const char* study) {
   double worst = 0.0;
   for (const report::Row* row : rows_of(t, study))
-    worst = std::max(worst, std::abs(t.number(*row, "measured") - t.number(*row, "theory")));
+    worst = std::max(worst, std::abs(number(*row, "measured") - number(*row, "theory")));
   return worst;
 }
 
 double last_over_middle(const report::Table& t, const char* study) {
   const auto rows = rows_of(t, study);
-  return t.number(*rows.back(), "measured") / t.number(*rows[rows.size() / 2], "measured");
+  return number(*rows.back(), "measured") / number(*rows[rows.size() / 2], "measured");
 }
 
 std::vector<Finding> check(const report::Table& t) {
   bool refused_beyond = true;
   for (const report::Row* row : rows_of(t, "disc_cone"))
     refused_beyond &=
-        (t.word(*row, "what_happens") == "grows to flat") == (t.number(*row, "measured") >= -1e-9);
+        (word(*row, "what_happens") == "grows to flat") == (number(*row, "measured") >= -1e-9);
   const double ring = last_over_middle(t, "hex_ring"), node = last_over_middle(t, "hex_node"),
                sheet = last_over_middle(t, "hex_sheet");
   return {{worst_error(t, "disc_cone") < 1e-3 && refused_beyond,
@@ -174,11 +170,10 @@ Map law_line_map() {
   return {.letter = 'b',
           .name = "law_lines",
           .purpose = "parameters beyond which a law snaps, ends early or has no limit",
-          .columns = columns,
           .jobs = [](Grid grid) { return std::size(kStudies) * points(grid); },
           .run = run,
           .check = check,
-          .pictures = law_line_pictures};
+          .picture = {.width_px = 1400, .height_px = 1000, .script = kLawLinesScript}};
 }
 
 }  // namespace tact::tools::stability

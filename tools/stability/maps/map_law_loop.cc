@@ -15,7 +15,7 @@
 #include "tools/stability/laws/laws.h"
 #include "tools/stability/loop/gate_monitor.h"
 #include "tools/stability/loop/haptic_loop.h"
-#include "tools/stability/pictures/pictures.h"
+#include "tools/stability/maps/scripts.h"
 #include "tools/stability/sweep/axes.h"
 #include "tools/stability/sweep/map.h"
 
@@ -38,21 +38,6 @@ Axes<4> axes(Grid grid) {
   const Settings s = settings(grid);
   return {
       {probed_laws().size(), s.delay_s.size(), s.damping_Ns_per_m.size(), s.depth_ratio.size()}};
-}
-
-std::vector<report::Column> columns() {
-  return {{"law", report::CellKind::kWord},
-          {"delay_s"},
-          {"damping_Ns_per_m"},
-          {"depth_m"},
-          {"tangent_N_per_m"},
-          {"theory_grow_N_per_m"},
-          {"largest_tangent_N_per_m"},
-          {"measured_over_theory"},
-          {"damping_needed_Ns_per_m"},
-          {"gate_max_force_N"},
-          {"gate_max_step_N"},
-          {"beyond_the_line", report::CellKind::kWord}};
 }
 
 /// New, and settled at the depth of balance.
@@ -97,18 +82,18 @@ report::Row run(std::size_t job, Grid grid) {
   run_gated(loop, [&](double depth_m) { return 3.0 * factor * tissue(depth_m); }, gate);
   // what the law as it is asks of the device at its steepest point
   const double needed = steepest_N_per_m(named) * (0.5 / loop.rate_Hz + loop.device.delay_s);
-  return {named.name,
-          loop.device.delay_s,
-          loop.device.damping_Ns_per_m,
-          loop.balance_m,
-          tangent,
-          theory,
-          factor * tangent,
-          factor * tangent / theory,
-          needed,
-          gate.max_force_N(),
-          gate.max_step_N(),
-          std::string(gate.beyond_the_line())};
+  return {{"law", named.name},
+          {"delay_s", loop.device.delay_s},
+          {"damping_Ns_per_m", loop.device.damping_Ns_per_m},
+          {"depth_m", loop.balance_m},
+          {"tangent_N_per_m", tangent},
+          {"theory_grow_N_per_m", theory},
+          {"largest_tangent_N_per_m", factor * tangent},
+          {"measured_over_theory", factor * tangent / theory},
+          {"damping_needed_Ns_per_m", needed},
+          {"gate_max_force_N", gate.max_force_N()},
+          {"gate_max_step_N", gate.max_step_N()},
+          {"beyond_the_line", gate.beyond_the_line()}};
 }
 
 bool remembers(const std::string& law) {
@@ -117,20 +102,13 @@ bool remembers(const std::string& law) {
 }
 
 std::vector<Finding> check(const report::Table& t) {
-  struct Spread {
-    double low = 1e9, high = 0.0;
-  } closed, memory;
-  for (const report::Row& row : t.rows()) {
-    const double ratio = t.number(row, "measured_over_theory");
-    Spread& spread = remembers(t.word(row, "law")) ? memory : closed;
-    spread.low = std::min(spread.low, ratio);
-    spread.high = std::max(spread.high, ratio);
-  }
+  Spread closed, memory;
+  for (const report::Row& row : t.rows())
+    (remembers(word(row, "law")) ? memory : closed).add(number(row, "measured_over_theory"));
   return {
-      {closed.low > 0.9 && closed.high < 1.2,
-       fmt::format("every closed-form law at every depth loses stability where its tangent "
-                   "passes b / (T/2 + t_d): measured {:.3f} to {:.3f} of it",
-                   closed.low, closed.high)},
+      closed.within(0.9, 1.2,
+                    "every closed-form law at every depth loses stability where its tangent "
+                    "passes b / (T/2 + t_d)"),
       // Memory only helps, so its spread has no upper end.
       {memory.low > 0.9,
        fmt::format("laws with memory are stable at least as far, with the tangent that one tick "
@@ -145,11 +123,11 @@ Map law_loop_map() {
   return {.letter = 'c',
           .name = "loop_laws",
           .purpose = "largest stable tangent of every law, at depths of its range",
-          .columns = columns,
           .jobs = [](Grid grid) { return axes(grid).jobs(); },
           .run = run,
           .check = check,
-          .pictures = law_loop_pictures};
+          .picture = {.width_px = 1200, .height_px = 800, .script = kLoopLawsScript},
+          .variables = [](Grid) { return report::Variables{{"laws", names_of_laws()}}; }};
 }
 
 }  // namespace tact::tools::stability

@@ -11,7 +11,7 @@
 #include "model/law/haptic_limit.h"
 #include "tools/stability/loop/gate_monitor.h"
 #include "tools/stability/loop/haptic_loop.h"
-#include "tools/stability/pictures/pictures.h"
+#include "tools/stability/maps/scripts.h"
 #include "tools/stability/sweep/axes.h"
 #include "tools/stability/sweep/map.h"
 
@@ -57,34 +57,6 @@ Axes<6> axes(const Settings& s) {
            s.damping_Ns_per_m.size()}};
 }
 
-std::vector<report::Column> columns() {
-  return {{"rate_Hz"},
-          {"delay_s"},
-          {"friction_N"},
-          {"hand", report::CellKind::kWord},
-          {"position_step_m"},
-          {"damping_Ns_per_m"},
-          {"theory_grow_N_per_m"},
-          {"theory_safe_N_per_m"},
-          {"largest_without_growth_N_per_m"},
-          {"largest_at_rest_N_per_m"},
-          {"gate_max_force_N"},
-          {"gate_max_step_N"},
-          {"gate_swing_m"},
-          {"beyond_the_line", report::CellKind::kWord}};
-}
-
-/// Three times too stiff, pressed with 2 N, every force through the gate.
-LoopRun run_gated(LoopCase loop, double stiffness_N_per_m, GateMonitor& gate) {
-  // A quarter of the gate's limit: the swing has room before it is clipped.
-  constexpr double kPush_N = 2.0;
-  loop.balance_m = kPush_N / stiffness_N_per_m;
-  gate.open(kPush_N);
-  return run_loop(
-      loop, [&](double depth_m) { return stiffness_N_per_m * depth_m; },
-      [&](double wanted_N, bool fresh) { return gate.step(wanted_N, fresh); });
-}
-
 report::Row run(std::size_t job, Grid grid) {
   const Settings s = settings(grid);
   const auto [rate, delay, friction, hand, step, damping] = axes(s).at(job);
@@ -102,58 +74,58 @@ report::Row run(std::size_t job, Grid grid) {
   const double rest_N_per_m = largest_wall_N_per_m(patient, Verdict::kBuzz);
   GateMonitor gate(loop.rate_Hz);
   // A cell may have no limit above zero; the gate still has to be tested there.
-  const LoopRun gated = run_gated(loop, 3.0 * std::max(grow_N_per_m, 1.0), gate);
-  return {loop.rate_Hz,
-          loop.device.delay_s,
-          loop.device.friction_N,
-          std::string(s.hands[hand].name),
-          loop.device.position_step_m,
-          loop.device.damping_Ns_per_m,
-          theory.grow_N_per_m,
-          theory.safe_N_per_m(),
-          grow_N_per_m,
-          rest_N_per_m,
-          gate.max_force_N(),
-          gate.max_step_N(),
-          gated.last_swing_m,
-          std::string(gate.beyond_the_line())};
+  const LoopRun gated = run_gated_wall(loop, 3.0 * std::max(grow_N_per_m, 1.0), gate);
+  return {{"rate_Hz", loop.rate_Hz},
+          {"delay_s", loop.device.delay_s},
+          {"friction_N", loop.device.friction_N},
+          {"hand", s.hands[hand].name},
+          {"position_step_m", loop.device.position_step_m},
+          {"damping_Ns_per_m", loop.device.damping_Ns_per_m},
+          {"theory_grow_N_per_m", theory.grow_N_per_m},
+          {"theory_safe_N_per_m", theory.safe_N_per_m()},
+          {"largest_without_growth_N_per_m", grow_N_per_m},
+          {"largest_at_rest_N_per_m", rest_N_per_m},
+          {"gate_max_force_N", gate.max_force_N()},
+          {"gate_max_step_N", gate.max_step_N()},
+          {"gate_swing_m", gated.last_swing_m},
+          {"beyond_the_line", gate.beyond_the_line()}};
 }
 
 std::vector<Finding> check(const report::Table& t) {
-  double least_grow = 1e9, least_rest = 1e9, low = 1e9, high = 0.0;
+  Spread grow, rest, bare_grow;
   std::size_t below = 0, bare = 0;
   for (const report::Row& row : t.rows()) {
-    const double theory = t.number(row, "theory_grow_N_per_m");
-    const double safe = t.number(row, "theory_safe_N_per_m");
-    const double ratio = t.number(row, "largest_without_growth_N_per_m") / theory;
-    least_grow = std::min(least_grow, ratio);
+    const double theory = number(row, "theory_grow_N_per_m");
+    const double safe = number(row, "theory_safe_N_per_m");
+    const double ratio = number(row, "largest_without_growth_N_per_m") / theory;
+    grow.add(ratio);
     below += ratio < 1.0 ? 1 : 0;
     // HL-2 is zero without friction: nothing to compare.
-    if (safe > 0.0)
-      least_rest = std::min(least_rest, t.number(row, "largest_at_rest_N_per_m") / safe);
+    if (safe > 0.0) rest.add(number(row, "largest_at_rest_N_per_m") / safe);
     // Here the formula is the limit itself, not only a bound.
-    if (t.word(row, "hand") == "bare" && !(t.number(row, "friction_N") > 0.0)) {
+    if (word(row, "hand") == "bare" && !(number(row, "friction_N") > 0.0)) {
       ++bare;
-      low = std::min(low, ratio);
-      high = std::max(high, ratio);
+      bare_grow.add(ratio);
     }
   }
   return {
-      {least_grow > kAccepted,
+      {grow.low > kAccepted,
        fmt::format(
            "no cell grows below {} K, K = b / (T/2 + t_d): {} of {} grow below K, the least "
            "measured limit is {:.3f} K",
-           kAccepted, below, t.rows().size(), least_grow),
-       {{"below", below}, {"least_ratio", least_grow}}},
-      {least_rest > kAccepted,
+           kAccepted, below, t.rows().size(), grow.low),
+       {{"below", below}, {"least_ratio", grow.low}}},
+      {rest.low > kAccepted,
        fmt::format("every cell below {} min(K, 2 c / D) comes to rest: the least measured limit is "
                    "{:.3f} of min(K, 2 c / D)",
-                   kAccepted, least_rest)},
-      {low > kAccepted && high < 1.25,
+                   kAccepted, rest.low)},
+      {bare_grow.low > kAccepted && bare_grow.high < 1.25,
        fmt::format("in the {} cells without hand and friction the measured limit is {:.3f} to "
                    "{:.3f} K",
-                   bare, low, high),
-       {{"bare", bare}, {"bare_least_ratio", low}, {"bare_largest_ratio", high}}},
+                   bare, bare_grow.low, bare_grow.high),
+       {{"bare", bare},
+        {"bare_least_ratio", bare_grow.low},
+        {"bare_largest_ratio", bare_grow.high}}},
       check_gate(t),
   };
 }
@@ -164,11 +136,10 @@ Map loop_map() {
   return {.letter = 'c',
           .name = "loop",
           .purpose = "largest stable wall over damping, rate, delay, encoder, friction, hand",
-          .columns = columns,
           .jobs = [](Grid grid) { return axes(settings(grid)).jobs(); },
           .run = run,
           .check = check,
-          .pictures = loop_pictures};
+          .picture = {.width_px = 1400, .height_px = 1050, .script = kLoopScript}};
 }
 
 }  // namespace tact::tools::stability

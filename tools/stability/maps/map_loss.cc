@@ -13,7 +13,7 @@
 #include <cmath>
 
 #include "tools/stability/loop/gate_monitor.h"
-#include "tools/stability/pictures/pictures.h"
+#include "tools/stability/maps/scripts.h"
 #include "tools/stability/sweep/axes.h"
 #include "tools/stability/sweep/map.h"
 
@@ -28,12 +28,6 @@ constexpr double kPush_N = 2.0;
 constexpr std::size_t kLongest = 41;  // 0 .. 40 ticks
 
 Axes<2> axes(Grid grid) { return {{grid == Grid::kQuick ? 1 : std::size(kRates_Hz), kLongest}}; }
-
-std::vector<report::Column> columns() {
-  return {{"rate_Hz"},         {"lost_in_a_row"},    {"hold_force_N"},
-          {"gate_force_N"},    {"hold_gift_J"},      {"gate_gift_J"},
-          {"gate_max_step_N"}, {"gate_max_force_N"}, {"state", report::CellKind::kWord}};
-}
 
 report::Row run(std::size_t job, Grid grid) {
   const auto [rate, lost] = axes(grid).at(job);
@@ -57,30 +51,30 @@ report::Row run(std::size_t job, Grid grid) {
                       : gate.is_latched()      ? "latched"
                       : gate.written_N() > 0.0 ? "fading"
                                                : "zero";
-  return {kRates_Hz[rate],
-          static_cast<double>(lost),
-          kPush_N,
-          gate.written_N(),
-          hold_J,
-          gate_J,
-          gate.max_step_N(),
-          gate.max_force_N(),
-          std::string(state)};
+  return {{"rate_Hz", kRates_Hz[rate]},
+          {"lost_in_a_row", lost},
+          {"hold_force_N", kPush_N},
+          {"gate_force_N", gate.written_N()},
+          {"hold_gift_J", hold_J},
+          {"gate_gift_J", gate_J},
+          {"gate_max_step_N", gate.max_step_N()},
+          {"gate_max_force_N", gate.max_force_N()},
+          {"state", state}};
 }
 
 std::vector<Finding> check(const report::Table& t) {
   double worst_hold_J = 0.0, worst_gate_J = 0.0, worst_step = 0.0;
   bool ends_at_zero = true, latches = true;
   for (const report::Row& row : t.rows()) {
-    worst_hold_J = std::max(worst_hold_J, t.number(row, "hold_gift_J"));
-    worst_gate_J = std::max(worst_gate_J, t.number(row, "gate_gift_J"));
-    const double rate_Hz = t.number(row, "rate_Hz"), lost = t.number(row, "lost_in_a_row");
+    worst_hold_J = std::max(worst_hold_J, number(row, "hold_gift_J"));
+    worst_gate_J = std::max(worst_gate_J, number(row, "gate_gift_J"));
+    const double rate_Hz = number(row, "rate_Hz"), lost = number(row, "lost_in_a_row");
     // As a share of the slew limit: what a tick may do depends on the rate.
-    worst_step = std::max(worst_step,
-                          t.number(row, "gate_max_step_N") * rate_Hz / kSceneLimits.slew_N_per_s);
-    if ((lost - 2.0) / rate_Hz >= 0.010) ends_at_zero &= t.number(row, "gate_force_N") == 0.0;
+    worst_step =
+        std::max(worst_step, number(row, "gate_max_step_N") * rate_Hz / kSceneLimits.slew_N_per_s);
+    if ((lost - 2.0) / rate_Hz >= 0.010) ends_at_zero &= number(row, "gate_force_N") == 0.0;
     // Counted in samples, whatever the rate.
-    latches &= (t.word(row, "state") == "latched") == (lost >= 20.0);
+    latches &= (word(row, "state") == "latched") == (lost >= 20.0);
   }
   return {{ends_at_zero, "10 ms after the second lost sample the force is zero, or latched at 20"},
           {latches, "20 lost in a row latch, 19 do not"},
@@ -99,11 +93,10 @@ Map loss_map() {
   return {.letter = 'd',
           .name = "loss",
           .purpose = "a burst of lost samples: hold, fade, latch, and what the hand gets",
-          .columns = columns,
           .jobs = [](Grid grid) { return axes(grid).jobs(); },
           .run = run,
           .check = check,
-          .pictures = loss_pictures};
+          .picture = {.width_px = 1200, .height_px = 800, .script = kLossScript}};
 }
 
 }  // namespace tact::tools::stability

@@ -16,7 +16,7 @@
 #include <numbers>
 
 #include "tools/printed/rhombus_paper.h"
-#include "tools/stability/pictures/pictures.h"
+#include "tools/stability/maps/scripts.h"
 #include "tools/stability/sweep/axes.h"
 #include "tools/stability/sweep/map.h"
 
@@ -41,17 +41,6 @@ double angle_deg(std::size_t i, Grid grid) {
 double spring_ratio(std::size_t i, Grid grid) {
   return std::pow(
       10.0, -1.0 + 2.0 * (static_cast<double>(i) + 0.5) / static_cast<double>(cells(grid).ratios));
-}
-
-std::vector<report::Column> columns() {
-  return {{"angle_deg"},
-          {"kT_over_kN"},
-          {"first_failing_unit"},
-          {"theory_first_failing_unit"},
-          {"printed_stiffness_ratio"},
-          {"energy_stiffness_ratio"},
-          {"printed_force_12_ratio"},
-          {"what_happens", report::CellKind::kWord}};
 }
 
 model::indent::RhombusUnit unit_of(double angle_rad, double ratio, int i) {
@@ -92,25 +81,26 @@ report::Row run(std::size_t job, Grid grid) {
   const char* what = first > kUnits ? "softer than the springs"
                      : first == 1   ? "the surface pulls the tool in"
                                     : "deeper units get longer while pressed";
-  return {angle_deg(angle, grid),
-          kT_over_kN,
-          static_cast<double>(first),
-          static_cast<double>(theory_first_failing(angle_rad, kT_over_kN)),
-          small.force_N / small.shortening_m / unit.normal_stiffness_N_per_m,
-          model::indent::respond(unit, 0.0).stiffness_N_per_m / unit.normal_stiffness_N_per_m,
-          pressed.energy_J / -pressed.shortening_m / energy.force_N,
-          std::string(what)};
+  return {{"angle_deg", angle_deg(angle, grid)},
+          {"kT_over_kN", kT_over_kN},
+          {"first_failing_unit", first},
+          {"theory_first_failing_unit", theory_first_failing(angle_rad, kT_over_kN)},
+          {"printed_stiffness_ratio",
+           small.force_N / small.shortening_m / unit.normal_stiffness_N_per_m},
+          {"energy_stiffness_ratio",
+           model::indent::respond(unit, 0.0).stiffness_N_per_m / unit.normal_stiffness_N_per_m},
+          {"printed_force_12_ratio", pressed.energy_J / -pressed.shortening_m / energy.force_N},
+          {"what_happens", what}};
 }
 
 std::vector<Finding> check(const report::Table& t) {
   std::size_t agree = 0, energy_resists = 0;
-  double low = 1e9, high = 0.0;
+  Spread ratio;
   for (const report::Row& row : t.rows()) {
-    agree += t.number(row, "first_failing_unit") == t.number(row, "theory_first_failing_unit");
+    agree += number(row, "first_failing_unit") == number(row, "theory_first_failing_unit");
     // RC-5 at rest: kN + kT tan^2(theta0).
-    energy_resists += t.number(row, "energy_stiffness_ratio") >= 1.0;
-    low = std::min(low, t.number(row, "printed_force_12_ratio"));
-    high = std::max(high, t.number(row, "printed_force_12_ratio"));
+    energy_resists += number(row, "energy_stiffness_ratio") >= 1.0;
+    ratio.add(number(row, "printed_force_12_ratio"));
   }
   const double share = static_cast<double>(agree) / static_cast<double>(t.rows().size());
   // X2, with the springs that the paper prints for liver: kN 1.5, kT1 1.8.
@@ -120,8 +110,14 @@ std::vector<Finding> check(const report::Table& t) {
                                        100.0 * share, line_deg)},
           {energy_resists == t.rows().size(), "the energy form resists in every cell"},
           // X4: one half for small presses, more as they grow.
-          {low > 0.499 && high < 0.53,
-           fmt::format("(12) is {:.4f} to {:.4f} of the force of the stored energy", low, high)}};
+          {ratio.low > 0.499 && ratio.high < 0.53,
+           fmt::format("(12) is {:.4f} to {:.4f} of the force of the stored energy", ratio.low,
+                       ratio.high)}};
+}
+
+report::Variables variables(Grid grid) {
+  return {{"cell_deg", angle_deg(1, grid) - angle_deg(0, grid)},
+          {"cell_decades", std::log10(spring_ratio(1, grid) / spring_ratio(0, grid))}};
 }
 
 }  // namespace
@@ -130,11 +126,11 @@ Map printed_rhombus_map() {
   return {.letter = 'b',
           .name = "printed_rhombus",
           .purpose = "where the printed rhombus law turns its sign, by angle, springs and unit",
-          .columns = columns,
           .jobs = [](Grid grid) { return cells(grid).angles * cells(grid).ratios; },
           .run = run,
           .check = check,
-          .pictures = printed_rhombus_pictures};
+          .picture = {.width_px = 1200, .height_px = 800, .script = kPrintedRhombusScript},
+          .variables = variables};
 }
 
 }  // namespace tact::tools::stability

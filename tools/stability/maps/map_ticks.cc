@@ -7,14 +7,10 @@
 //
 //     K < 2 b / T  E[n] / E[n^2]      lost: E[n]/E[n^2] = (1 - p) / (1 + p)
 //                                     late: ((1-p) + p (1+n)) / ((1-p) + p (1+n)^2)
-#include <fmt/format.h>
-
-#include <algorithm>
-
 #include "model/law/haptic_limit.h"
 #include "tools/stability/loop/gate_monitor.h"
 #include "tools/stability/loop/haptic_loop.h"
-#include "tools/stability/pictures/pictures.h"
+#include "tools/stability/maps/scripts.h"
 #include "tools/stability/sweep/axes.h"
 #include "tools/stability/sweep/map.h"
 
@@ -35,19 +31,6 @@ std::vector<double> shares(Grid grid) {
 
 Axes<3> axes(Grid grid) {
   return {{std::size(kEaten), dampings_Ns_per_m(grid).size(), shares(grid).size()}};
-}
-
-std::vector<report::Column> columns() {
-  return {{"event", report::CellKind::kWord},
-          {"periods_held"},
-          {"damping_Ns_per_m"},
-          {"share"},
-          {"theory_N_per_m"},
-          {"largest_without_growth_N_per_m"},
-          {"measured_over_theory"},
-          {"gate_max_force_N"},
-          {"gate_max_step_N"},
-          {"beyond_the_line", report::CellKind::kWord}};
 }
 
 double theory_N_per_m(const LoopCase& loop) {
@@ -71,40 +54,26 @@ report::Row run(std::size_t job, Grid grid) {
   loop.seed = 17;
   const double theory = theory_N_per_m(loop);
   const double measured = largest_wall_N_per_m(loop, Verdict::kGrow);
-  constexpr double kPush_N = 2.0;
-  const double stiffness = 3.0 * measured;
   GateMonitor gate(loop.rate_Hz);
-  gate.open(kPush_N);
-  loop.balance_m = kPush_N / stiffness;
-  run_loop(
-      loop, [&](double depth_m) { return stiffness * depth_m; },
-      [&](double wanted_N, bool fresh) { return gate.step(wanted_N, fresh); });
-  return {std::string(loop.late_periods == 0 ? "lost" : "late"),
-          1.0 + loop.late_periods,
-          loop.device.damping_Ns_per_m,
-          shares(grid)[share],
-          theory,
-          measured,
-          measured / theory,
-          gate.max_force_N(),
-          gate.max_step_N(),
-          std::string(gate.beyond_the_line())};
+  run_gated_wall(loop, 3.0 * measured, gate);
+  return {{"event", loop.late_periods == 0 ? "lost" : "late"},
+          {"periods_held", 1.0 + loop.late_periods},
+          {"damping_Ns_per_m", loop.device.damping_Ns_per_m},
+          {"share", shares(grid)[share]},
+          {"theory_N_per_m", theory},
+          {"largest_without_growth_N_per_m", measured},
+          {"measured_over_theory", measured / theory},
+          {"gate_max_force_N", gate.max_force_N()},
+          {"gate_max_step_N", gate.max_step_N()},
+          {"beyond_the_line", gate.beyond_the_line()}};
 }
 
 std::vector<Finding> check(const report::Table& t) {
-  double low = 1e9, high = 0.0;
-  for (const report::Row& row : t.rows()) {
-    const double ratio = t.number(row, "measured_over_theory");
-    low = std::min(low, ratio);
-    high = std::max(high, ratio);
-  }
-  return {
-      // Wide: the theory is about the mean, and a run is one draw.
-      {low > 0.7 && high < 1.5,
-       fmt::format("held forces cost stiffness as (2 b / T) E[n] / E[n^2] says: measured {:.3f} "
-                   "to {:.3f} of it",
-                   low, high)},
-      check_gate(t)};
+  Spread ratio;
+  for (const report::Row& row : t.rows()) ratio.add(number(row, "measured_over_theory"));
+  // Wide: the theory is about the mean, and a run is one draw.
+  return {ratio.within(0.7, 1.5, "held forces cost stiffness as (2 b / T) E[n] / E[n^2] says"),
+          check_gate(t)};
 }
 
 }  // namespace
@@ -113,11 +82,10 @@ Map tick_map() {
   return {.letter = 'd',
           .name = "ticks",
           .purpose = "largest stable wall over the share of lost and of late ticks",
-          .columns = columns,
           .jobs = [](Grid grid) { return axes(grid).jobs(); },
           .run = run,
           .check = check,
-          .pictures = tick_pictures};
+          .picture = {.width_px = 1200, .height_px = 700, .script = kTicksScript}};
 }
 
 }  // namespace tact::tools::stability

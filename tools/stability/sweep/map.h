@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// map.h - one map of tact-lab stability: a table of independent cells, what it shows, its pictures.
+// map.h - one map of tact-lab stability: a table of independent cells, what it shows, its picture.
 #pragma once
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <map>
 #include <span>
 #include <string>
@@ -19,17 +22,28 @@ struct Finding {
   std::map<std::string, double> numbers = {};
 };
 
+/// The least and the largest of some ratios.
+struct Spread {
+  double low = 1e9, high = 0.0;
+  void add(double ratio) { low = std::min(low, ratio), high = std::max(high, ratio); }
+  /// "claim: measured 0.953 to 1.021 of it"
+  Finding within(double least, double most, const std::string& claim) const {
+    return {low > least && high < most,
+            fmt::format("{}: measured {:.3f} to {:.3f} of it", claim, low, high)};
+  }
+};
+
 enum class Grid { kFull, kQuick };
 
 struct Map {
   char letter = '?';  // of --map
   const char* name = "";
   const char* purpose = "";  // for --help
-  std::vector<report::Column> (*columns)() = nullptr;
   std::size_t (*jobs)(Grid grid) = nullptr;
   report::Row (*run)(std::size_t job, Grid grid) = nullptr;
   std::vector<Finding> (*check)(const report::Table& table) = nullptr;
-  std::vector<report::Picture> (*pictures)(Grid grid) = nullptr;
+  report::Picture picture{};  // of the map's name; none without a script
+  report::Variables (*variables)(Grid grid) = nullptr;
 };
 
 /// All maps, in the order of their letters.

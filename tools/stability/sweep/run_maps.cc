@@ -16,17 +16,15 @@ using model::Error;
 using model::Result;
 
 Result<report::Table> computed(const Map& map, const StabilityOptions& options) {
-  report::Table table(map.name, map.columns());
   // In the order of the jobs, any user was first: a second run gives the same bytes.
-  const auto rows =
+  auto rows =
       program::sweep<report::Row>(map.jobs(options.grid), {.label = map.name},
                                   [&](std::size_t job) { return map.run(job, options.grid); });
   if (!rows) return program::interruption();
-  for (const report::Row& row : *rows) table.add(row);
-  return table;
+  return report::Table(map.name, std::move(*rows));
 }
 
-/// Table, verdict and pictures of a map.
+/// Table, verdict and picture of a map.
 Result<MapReport> finished(const Map& map, const report::Table& table,
                            const StabilityOptions& options) {
   MapReport report{.name = map.name, .rows = table.rows().size(), .findings = {}, .files = {}};
@@ -35,12 +33,13 @@ Result<MapReport> finished(const Map& map, const report::Table& table,
   if (!files) return files.error();
   report.files = std::move(*files);
   report.findings = map.check(table);
-  if (!options.draw_pictures || map.pictures == nullptr) return report;
-  for (const report::Picture& picture : map.pictures(options.grid)) {
-    const auto drawn = draw(picture, options.out);
-    if (!drawn) return drawn.error();
-    report.files.insert(report.files.end(), drawn->begin(), drawn->end());
-  }
+  if (!options.draw_pictures || map.picture.script.empty()) return report;
+  report::Picture picture = map.picture;
+  picture.name = map.name;
+  if (map.variables != nullptr) picture.variables = map.variables(options.grid);
+  const auto drawn = draw(picture, options.out);
+  if (!drawn) return drawn.error();
+  report.files.insert(report.files.end(), drawn->begin(), drawn->end());
   return report;
 }
 
@@ -51,6 +50,11 @@ bool is_chosen(const Map& map, const StabilityOptions& options) {
 }
 
 }  // namespace
+
+std::vector<Map> all_maps() {
+  return {integrator_map(), printed_rhombus_map(), law_limit_map(), law_line_map(), loop_map(),
+          law_loop_map(),   delta_loop_map(),      tick_map(),      loss_map()};
+}
 
 MapsRun run_maps(const StabilityOptions& options) {
   MapsRun run;

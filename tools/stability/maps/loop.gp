@@ -1,10 +1,4 @@
-// SPDX-License-Identifier: Apache-2.0
-#include "tools/stability/pictures/pictures.h"
-
-namespace tact::tools::stability {
-namespace {
-
-constexpr char kLoop[] = R"gp(
+# SPDX-License-Identifier: Apache-2.0
 f = 'loop.csv'
 near(a, b) = abs(a - b) <= 1e-6 * (abs(a) + abs(b)) + 1e-12
 # cells of one rate, delay, friction, hand
@@ -77,12 +71,3 @@ plot for [i=1:3] f using (cell(1000, 0.5e-3, 0, word(hands, i)) && $6 == 0 ? $7 
        with points pt 7 ps 1.1 lc i+4 title word(what, i), \
      x/1e-3 lc 'black' dt 2 title "K = b / (T/2 + t_d)"
 unset multiplot
-)gp";
-
-}  // namespace
-
-std::vector<report::Picture> loop_pictures(Grid) {
-  return {{.name = "loop", .width_px = 1400, .height_px = 1050, .script = kLoop}};
-}
-
-}  // namespace tact::tools::stability
