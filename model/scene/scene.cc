@@ -69,19 +69,18 @@ void put_origin_at(const Vec3& handle_m, Scene& scene) {
 
 /// Would another map give other forces?
 bool needs_compliance(const Scene& scene) {
-  return scene.varies_over_surface || scene.law == LawKind::kCompliance ||
-         scene.law == LawKind::kAuto;
+  return scene.varies_by_place || scene.law == LawKind::kCompliance || scene.law == LawKind::kAuto;
 }
 
 /// A map is of one organ: on another mesh the law is felt as it is at every place. A map that
 /// cannot be read stays an error of the law.
 void vary_on_the_own_organ_only(Scene& scene) {
-  if (!scene.varies_over_surface) return;
+  if (!scene.varies_by_place) return;
   const auto map = read_compliance_map(scene.compliance.map_path);
   if (!map || map->mesh_hash == surface_hash(scene.organ_mesh.view())) return;
-  scene.varies_over_surface = false;
+  scene.varies_by_place = false;
   scene.note = fmt::format(
-      "{}: {} is of another organ than {}, so varies_over_surface is off: every place feels as a "
+      "{}: {} is of another organ than {}, so varies_by_place is off: every place feels as a "
       "half-space of this tissue; make a map: tact-lab condense {} --out FILE",
       scene.path, scene.compliance.map_path, scene.organ.mesh_path, scene.path);
 }

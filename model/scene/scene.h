@@ -56,7 +56,7 @@ struct Scene {
   springs::SpringPatchParameters spring_patch;
   ComplianceSettings compliance;
   std::size_t table_knots = 65;
-  bool varies_over_surface = false;  // by [compliance]: closed-form laws in series, anchors
+  bool varies_by_place = false;  // by [compliance]: closed-form laws in series, anchors
   std::optional<law::LinearPullParameters> pull;
   std::vector<law::PronyTerm> relaxation;
   std::optional<ElasticSettings> elastic;

@@ -167,8 +167,8 @@ void visit_laws(reader::Keys& k, SceneText& out) {
   std::size_t law = 0;
   k.count("table_knots", {kMinKnots, law::kMaxKnots}, "of the loop's look-up table, each side",
           scene.table_knots, reader::Need::kOptional);
-  k.flag("varies_over_surface", "closed-form laws in series with [compliance], spring_patch by it",
-         scene.varies_over_surface, reader::Need::kOptional);
+  k.flag("varies_by_place", "closed-form laws in series with [compliance], spring_patch by it",
+         scene.varies_by_place, reader::Need::kOptional);
   k.choice("law", kLaws, "of the tissue", law);
   scene.law = kLawNames[law].kind;
   const auto section = [&](LawKind kind, std::string_view meaning,
@@ -190,10 +190,9 @@ void visit_laws(reader::Keys& k, SceneText& out) {
           [&](reader::Keys& compliance) { visit_compliance(compliance, out); });
 
   // After all sections: which of them are there is known only now.
-  if (scene.varies_over_surface && !scene.describes(LawKind::kCompliance))
-    k.refuse(
-        {"varies_over_surface"},
-        "varies_over_surface = true needs a section [compliance]; write it or leave the key out");
+  if (scene.varies_by_place && !scene.describes(LawKind::kCompliance))
+    k.refuse({"varies_by_place"},
+             "varies_by_place = true needs a section [compliance]; write it or leave the key out");
   if (scene.law == LawKind::kAuto || scene.describes(scene.law)) return;
   k.refuse({"law"}, fmt::format("law = \"{}\" has no section [{}]; write it or choose another law",
                                 name_of(scene.law), name_of(scene.law)));

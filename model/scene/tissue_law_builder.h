@@ -33,7 +33,7 @@ class TissueLawBuilder {
   Step add_table(const law::Law& direct);
   Result<const law::Law*> with_pull(const law::Law& press);
   Step finish_curve(const law::Law& curve);
-  Step vary_over_surface(const law::Law& curve);
+  Step vary_by_place(const law::Law& curve);
   Step bend(const law::Law& curve);
   Step finish_field(const law::Law* shape = nullptr);
   tissue::ElasticNeighbours neighbours();

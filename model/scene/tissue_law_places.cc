@@ -27,8 +27,8 @@ double stiffer_N_per_m(double a, double b) { return a >= b || std::isnan(a) ? a 
 
 /// One law everywhere, or in series with the give of each place.
 TissueLawBuilder::Step TissueLawBuilder::finish_curve(const law::Law& curve) {
-  if (scene_.varies_over_surface)
-    return scene_.compliance.large_strain ? bend(curve) : vary_over_surface(curve);
+  if (scene_.varies_by_place)
+    return scene_.compliance.large_strain ? bend(curve) : vary_by_place(curve);
   law_->curves_.push_back(&curve);
   if (draws_tissue_) return finish_field();
   auto shape = indent::half_space_under(scene_.tool.spheres[0].radius_m, curve.range().press_m);
@@ -38,7 +38,7 @@ TissueLawBuilder::Step TissueLawBuilder::finish_curve(const law::Law& curve) {
 
 // The law is the tip's own indentation, the same everywhere; each curve of the family adds its
 // give, which is one of small strain.
-TissueLawBuilder::Step TissueLawBuilder::vary_over_surface(const law::Law& curve) {
+TissueLawBuilder::Step TissueLawBuilder::vary_by_place(const law::Law& curve) {
   auto family = read_scene_family(scene_, false);
   if (!family) return family.error();
   const law::LawRange range = curve.range();

@@ -60,7 +60,7 @@ Result<double> scene_tip_radius_m(const Scene& scene) {
     // One family of curves is made for one tip.
     if (sphere.radius_m != spheres[0].radius_m)
       return Error{fmt::format(
-          "{}: tool.sphere has radii of {} and {} m, but compliance, varies_over_surface and "
+          "{}: tool.sphere has radii of {} and {} m, but compliance, varies_by_place and "
           "rhombus.area_m2 know one tip; give every sphere one radius_m, or choose another law and "
           "leave these keys out",
           scene.path, spheres[0].radius_m, sphere.radius_m)};
@@ -69,7 +69,7 @@ Result<double> scene_tip_radius_m(const Scene& scene) {
 
 Result<std::vector<float>> read_scene_compliance(const Scene& scene) {
   std::vector<float> out;
-  if (!scene.varies_over_surface) return out;
+  if (!scene.varies_by_place) return out;
   auto map = read_scene_map(scene);
   if (!map) return map.error();
   out = std::move(map->regular_times_E_per_m);

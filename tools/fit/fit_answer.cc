@@ -126,7 +126,7 @@ Result<std::vector<FitAnswer>> solve(const model::scene::Scene& scene, model::sc
 
 /// Not a patch of chains nor what is in series with an organ: their tables take less time.
 bool is_solved(const model::scene::Scene& scene, model::scene::LawKind kind) {
-  if (scene.varies_over_surface) return false;
+  if (scene.varies_by_place) return false;
   return (kind == model::scene::LawKind::kRhombus && scene.rhombus_area_m2 == 0.0) ||
          (kind == model::scene::LawKind::kHexSheet && scene.hex_sheet.rings > 0);
 }
@@ -143,8 +143,8 @@ Result<std::vector<FitAnswer>> answers_of(const model::scene::Scene& scene,
   const bool is_stepped = (*made)->curve() == nullptr;
   // Springs in a row are drawn as a half-space; their parameters show in their own displacements.
   const model::law::Law* springs =
-      scene.varies_over_surface || kind == model::scene::LawKind::kCompliance ? nullptr
-                                                                              : (*made)->curve();
+      scene.varies_by_place || kind == model::scene::LawKind::kCompliance ? nullptr
+                                                                          : (*made)->curve();
   std::vector<FitAnswer> out;
   for (const FitSite& site : data.sites) {
     for (const FitSample& sample : site.samples) {

@@ -208,10 +208,10 @@ void add_raised(const FitLaw& law, const Scene& before, const Scene& after,
 
 Result<FittedLaw> fit_law(const FitLaw& law, const Scene& scene, const FitData& data,
                           const FitOptions& options) {
-  if ((law.by_place || scene.varies_over_surface) && !data.has_places())
+  if ((law.by_place || scene.varies_by_place) && !data.has_places())
     return Error{fmt::format(
         "{} differs from place to place: write the vertex of the organ into a column site of {}{}",
-        law.name, data.source, law.by_place ? "" : ", or --set varies_over_surface=false")};
+        law.name, data.source, law.by_place ? "" : ", or --set varies_by_place=false")};
   if (law.by_place)  // what such a law stands on may be missing
     if (const auto possible = make_tissue_law(scene, law.kind); !possible) return possible.error();
   Fit fit(law, scene, data, options);

@@ -127,7 +127,7 @@ TEST(Override, ThatIsWrongIsToldAsItWasTyped) {
 TEST(Override, OfAnUnknownSectionIsToldTheKnownOnes) {
   EXPECT_TRUE(complaint({"a.b.c=1"})
                   .starts_with("--set a.b.c=1: a is no key here; allowed here: name, rate_Hz, "
-                               "table_knots, varies_over_surface, "
+                               "table_knots, varies_by_place, "
                                "law, rhombus, "));
 }
 

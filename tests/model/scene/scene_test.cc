@@ -148,8 +148,8 @@ TEST(Scene, RefusesALawThatItDoesNotDescribe) {
             said.npos)
       << said;
   const std::string varies =
-      complaint(edited("law = \"rhombus\"", "law = \"rhombus\"\nvaries_over_surface = true"));
-  EXPECT_NE(varies.find("varies_over_surface = true needs a section [compliance]"), varies.npos)
+      complaint(edited("law = \"rhombus\"", "law = \"rhombus\"\nvaries_by_place = true"));
+  EXPECT_NE(varies.find("varies_by_place = true needs a section [compliance]"), varies.npos)
       << varies;
 }
 
@@ -229,26 +229,26 @@ TEST(Scene, HashChangesWithTheComplianceMapThatIsFelt) {
     return scene ? scene->hash : "";
   };
   for (const char* rendered :
-       {"law=compliance", "varies_over_surface=true", "law=spring_patch", "law=auto"}) {
+       {"law=compliance", "varies_by_place=true", "law=spring_patch", "law=auto"}) {
     EXPECT_EQ(hash(40.0F, rendered), hash(40.0F, rendered));
     EXPECT_NE(hash(40.0F, rendered), hash(40.1F, rendered)) << rendered;
   }
-  EXPECT_EQ(hash(40.0F, "varies_over_surface=false"), hash(40.1F, "varies_over_surface=false"));
+  EXPECT_EQ(hash(40.0F, "varies_by_place=false"), hash(40.1F, "varies_by_place=false"));
 }
 
 TEST(Scene, VariesByPlaceOnItsOwnOrganAloneAndSaysSo) {
   const auto own = load_scene(kLiver, {});
   ASSERT_TRUE(own) << own.error().message;
-  EXPECT_TRUE(own->varies_over_surface);
+  EXPECT_TRUE(own->varies_by_place);
   EXPECT_EQ(own->note, "");
   const auto other = load_scene(kLiver, {"organ.mesh=meshes/heart_10026.obj"});
   ASSERT_TRUE(other) << other.error().message;
-  EXPECT_FALSE(other->varies_over_surface);
+  EXPECT_FALSE(other->varies_by_place);
   EXPECT_NE(other->note.find("is of another organ than"), std::string::npos) << other->note;
   EXPECT_NE(other->note.find("tact-lab condense " + kLiver), std::string::npos) << "the remedy";
   const auto unread = load_scene(kLiver, {"compliance.map=none.compliance"});
   ASSERT_TRUE(unread) << unread.error().message;
-  EXPECT_TRUE(unread->varies_over_surface) << "a file that is not there is an error of the law";
+  EXPECT_TRUE(unread->varies_by_place) << "a file that is not there is an error of the law";
 }
 
 TEST(Scene, RefusesKeysThatDoNothing) {

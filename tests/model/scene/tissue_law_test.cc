@@ -79,7 +79,7 @@ TEST(TissueLaw, SpringsInARowAreDrawnAsTheDentOfAHalfSpace) {
 }
 
 TEST(TissueLaw, TitlesNameTheirSizes) {
-  const Scene liver = shipped("liver", {"varies_over_surface=false"});
+  const Scene liver = shipped("liver", {"varies_by_place=false"});
   const std::string patch = "rhombus chain, energy form, 10 units, in parallel under the tip";
   EXPECT_EQ(made(liver, LawKind::kRhombus)->title(), patch);
   EXPECT_EQ(made(liver, LawKind::kDiscStack)->title(), "disc stack, linear, 20 layers");
@@ -99,7 +99,7 @@ TEST(TissueLaw, ZeroRingsAreAsFewAsTheToleranceAllows) {
 
 TEST(TissueLaw, WhatVariesIsInSeriesWithTheGiveOfEachVertex) {
   const Scene varied = shipped("liver", {kLinear}),
-              same = shipped("liver", {"varies_over_surface=false"});
+              same = shipped("liver", {"varies_by_place=false"});
   const auto family = read_scene_family(varied, false);
   ASSERT_TRUE(family) << family.error().message;
   const auto compliance_m_per_N = [&](float kappa) {
@@ -134,7 +134,7 @@ TEST(TissueLaw, WhatVariesIsInSeriesWithTheGiveOfEachVertex) {
 TEST(TissueLaw, IsAtMostHalfAsStiffAgainNearTheHeldSide) {
   const Overrides stiff{"rhombus.normal_stiffness_N_per_m=16", "pull.stiffness_N_per_m=300"};
   Overrides alone = stiff;
-  alone.emplace_back("varies_over_surface=false");
+  alone.emplace_back("varies_by_place=false");
   const double ratio = made(shipped("liver", stiff))->stiffness_N_per_m() /
                        made(shipped("liver", alone))->stiffness_N_per_m();
   EXPECT_GT(ratio, 1.2);
@@ -142,7 +142,7 @@ TEST(TissueLaw, IsAtMostHalfAsStiffAgainNearTheHeldSide) {
 }
 
 TEST(TissueLaw, OneChainUnderTheWholeTipOrMoreTheDeeperItSinks) {
-  const Overrides tip{"varies_over_surface=false", "pull.limit_m=0.01"};
+  const Overrides tip{"varies_by_place=false", "pull.limit_m=0.01"};
   const auto patch = made(shipped("liver", tip));
   Overrides one = tip;
   one.emplace_back("rhombus.area_m2=0");
@@ -168,7 +168,7 @@ TEST(TissueLaw, LargeStrainSoftensTheComplianceLaw) {
 
 // Of the tip alone, with the organ that moves beside it.
 TEST(TissueLaw, AnOrganThatBendsHasTheLawOfTheTip) {
-  const Scene bends = shipped("liver"), same = shipped("liver", {"varies_over_surface=false"});
+  const Scene bends = shipped("liver"), same = shipped("liver", {"varies_by_place=false"});
   const auto law = made(bends), tip = made(same);
   ASSERT_NE(law->organ(), nullptr);
   EXPECT_EQ(tip->organ(), nullptr);
@@ -232,14 +232,14 @@ TEST(TissueLaw, SlopeAlongTheSurfaceIsThatOfTheEnergy) {
 }
 
 TEST(TissueLaw, RefusesTipsOfTwoSizesWhereTheMapKnowsOne) {
-  Scene liver = shipped("liver", {"varies_over_surface=false"});
+  Scene liver = shipped("liver", {"varies_by_place=false"});
   liver.tool.spheres[1].radius_m = 0.005;
   const std::string words = "radii of 0.004 and 0.005 m";
   EXPECT_NE(refusal(liver, LawKind::kCompliance).find(words), std::string::npos);
   EXPECT_NE(refusal(liver, LawKind::kRhombus).find(words), std::string::npos);
   liver.rhombus_area_m2 = 0.0;
   EXPECT_EQ(refusal(liver, LawKind::kRhombus), "") << "one chain knows no tip";
-  liver.varies_over_surface = true;
+  liver.varies_by_place = true;
   EXPECT_NE(refusal(liver, LawKind::kRhombus).find(words), std::string::npos);
 }
 

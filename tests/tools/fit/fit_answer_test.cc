@@ -76,7 +76,7 @@ TEST_F(FitOfAnOrgan, AReferenceIsFittedAtItsOwnStrainWhateverTheSceneSays) {
 }
 
 TEST_F(FitOfAnOrgan, FindsALawInSeriesWithItsPlaces) {
-  truth_.varies_over_surface = true;
+  truth_.varies_by_place = true;
   truth_.pull = {.stiffness_N_per_m = 45.0, .limit_m = 8_mm};
   for (const auto& [name, kind] :
        {std::pair{"rhombus", LawKind::kRhombus}, std::pair{"hex_sheet", LawKind::kHexSheet}}) {
@@ -103,10 +103,10 @@ TEST_F(FitOfAnOrgan, NeedsThePlacesOfTheSites) {
       fit_law(law_named(truth_, data_, "compliance"), truth_, data_, FitOptions{});
   ASSERT_FALSE(without_place);
   EXPECT_NE(without_place.error().message.find("column site"), std::string::npos);
-  truth_.varies_over_surface = true;
+  truth_.varies_by_place = true;
   const auto chain = fit_law(law_named(truth_, data_, "rhombus"), truth_, data_, FitOptions{});
   ASSERT_FALSE(chain);
-  EXPECT_NE(chain.error().message.find("varies_over_surface=false"), std::string::npos);
+  EXPECT_NE(chain.error().message.find("varies_by_place=false"), std::string::npos);
 }
 
 }  // namespace tact::tools::fit::fit_answer_test

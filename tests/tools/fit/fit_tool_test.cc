@@ -16,7 +16,7 @@ namespace tact::tests::fit_tool_test {
 namespace fs = std::filesystem;
 
 const std::string kScene = std::string(TACT_SOURCE_DIR) + "/model/scenes/liver.toml";
-const std::string kOnePlace = kScene + " --set varies_over_surface=false";
+const std::string kOnePlace = kScene + " --set varies_by_place=false";
 
 class FitTool : public testing::Test {
  protected:

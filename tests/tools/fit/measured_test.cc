@@ -22,7 +22,7 @@ const std::string kRoot = TACT_SOURCE_DIR;
 /// Silicone cylinders between plates: EF10_100T is fitted, the others judge with a factor each.
 Evaluation check_silicone(const std::string& law, double deepest_m) {
   const auto scene =
-      model::scene::load_scene(kRoot + "/model/scenes/liver.toml", {"varies_over_surface=false"});
+      model::scene::load_scene(kRoot + "/model/scenes/liver.toml", {"varies_by_place=false"});
   EXPECT_TRUE(scene) << scene.error().message;
   const auto data = read_bench_csv(kRoot + "/tests/data/measured/silicone_compression.csv",
                                    {.depth = "compression_mm",

@@ -91,7 +91,7 @@ TEST_F(NewScene, AScanBecomesASceneThatIsFelt) {
   ASSERT_TRUE(scene) << scene.error().message;
   EXPECT_EQ(scene->name, "mine");
   EXPECT_EQ(scene->law, model::scene::LawKind::kCompliance);
-  EXPECT_TRUE(scene->varies_over_surface) << "the map is of this organ";
+  EXPECT_TRUE(scene->varies_by_place) << "the map is of this organ";
   EXPECT_EQ(scene->elastic->youngs_modulus_Pa, 8000.0);
   const auto sum = summarize(scene->organ_mesh);
   EXPECT_NEAR(sum.high_m.z, 0.0, 1e-6) << "its top is under the tool";
