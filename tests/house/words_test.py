@@ -22,7 +22,8 @@ PARTS = {
 TYPES = {"SphereTouch": "SphereContact", "TouchState": "ContactState", "GateVerdict": "LimitedForce",
          "SiteLaw": "ContactLaw", "Place": "SurfacePoint", "LoopWatch": "LoopMonitor", "StallWatch": "StallDetector",
          "LateWatch": "OverrunCounter", "EdgeWatch": "EdgeMonitor", "InterruptWatch": "InterruptFlag", "StopWatch": "StopTimer",
-         "GateWatch": "GateMonitor", "Outlets": "Sinks", "OperatorDesk": "RequestHandler", "LastWords": "ShutdownFrames", "MakerLibrary": "VendorSdk"}
+         "GateWatch": "GateMonitor", "Outlets": "Sinks", "OperatorDesk": "RequestHandler",
+         "LastWords": "ShutdownFrames", "MakerLibrary": "VendorSdk"}
 # Anywhere: whole words.
 WORDS = {"cure": "remedy", "cures": "remedies", "maker's library": "vendor SDK", "last words": "shutdown frames",
          "anew": "again", "mend": "repair", "mends": "repairs"}

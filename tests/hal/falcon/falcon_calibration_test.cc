@@ -15,7 +15,8 @@ constexpr double kDead[3] = {60.0, 90.0, 120.0};
 constexpr double kMoving_kg = 0.087;
 
 std::vector<FalconBalance> balances(const std::vector<Vec3>& poses_W,
-                                    const std::vector<double>& masses_kg, double noise_words = 0.0) {
+                                    const std::vector<double>& masses_kg,
+                                    double noise_words = 0.0) {
   const FalconKinematics falcon;
   std::vector<FalconBalance> out;
   unsigned random = 12345;
