@@ -63,8 +63,8 @@ tell_stage() {
     "$(cpu_seconds "$logs/$name.times")" "${skipped:+  ($(wc -l <<<"$skipped") skipped)}"
   # shellcheck disable=SC2086  # a list of names
   [ -n "$skipped" ] && printf '           skipped: %s\n' $skipped
-  # shellcheck disable=SC2086  # a list of names
-  [ -n "$flaky" ] && printf 'flaky: %s\n' $flaky | tee -a "$counts.flaky" | sed 's/^/           /'
+  # One a line, without the value of a parameter behind it.
+  [ -n "$flaky" ] && sed 's/ *#.*//; s/^/flaky: /' <<<"$flaky" | tee -a "$counts.flaky" | sed 's/^/           /'
   [ "$status" -eq 0 ] && return
   echo "---- the end of build/logs/$name.log"
   grep -A3 -E 'FAILED|error:|warning:|\*\*\*Failed|Failure$' "$log" | head -n 40  # and why

@@ -62,8 +62,8 @@ void enter_real_time(int priority) {
 }
 
 /// Written before it is needed: after a death nothing is formatted.
-struct Message {
-  Message(int process, const char* what) {
+struct DeathMessage {
+  DeathMessage(int process, const char* what) {
     std::snprintf(text.data(), text.size(), "tact-guardian: tactd (process %d) died; %s\n", process,
                   what);
   }
@@ -118,9 +118,9 @@ int stand_guard(int socket) {
   // In this order: what needs a file or a priority comes before the filter, which then refuses it;
   // "r", that it stands guard, comes last.
   const Orders orders = taken->orders;
-  const Message sent(orders.process, "zero force and power off were sent to its device");
-  const Message unsent(orders.process,
-                       "its device did not take zero force and power off: switch it off now");
+  const DeathMessage sent(orders.process, "zero force and power off were sent to its device");
+  const DeathMessage unsent(orders.process,
+                            "its device did not take zero force and power off: switch it off now");
   outlive_short_memory();
   enter_real_time(orders.priority);
   filter_calls(orders.words.fd, socket);

@@ -78,7 +78,7 @@ static bool damp(int tank, double* fx, double* fy, double* fz, double* tx, doubl
   return limit_surplus(fx, fy, fz, tx, ty, tz, 0, 0, 0, 0, 0, 0, 0);
 }
 
-// The tank and the heat may be in any state; heat.c and tank.c say what comes of it.
+// Tank and thermal limit may be in any state; tank.c and thermal.c prove what follows.
 static bool is_tank_overdrawn;
 static void observe(int tank, int tool, bool fresh, double periods, int held) {
   is_tank_overdrawn = nondet_uint8_t() & 1;
@@ -86,9 +86,9 @@ static void observe(int tank, int tool, bool fresh, double periods, int held) {
 static bool overdrawn(int tank) { return is_tank_overdrawn; }
 static void refill(int tank) {}
 static double passive(int tank) { return nondet_double(); }
-static void thermal(int of, double* x, double* y, double* z, double periods) {}
+static void thermal_add(int of, double* x, double* y, double* z, double periods) {}
 static double peak_of(int thermal);
-static double warm(int thermal) {
+static double thermal_allowed(int thermal) {
   double allowed = nondet_double();
   ASSUME(allowed >= 0 && allowed <= peak_of(thermal));
   return allowed;

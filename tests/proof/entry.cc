@@ -53,9 +53,9 @@ void make(Gate* gate, const Limits* limits, double period_s, double share) {
 #ifdef TACT_WHOLE
 bool shorten(Vec3* v, double limit) { return limit_magnitude(*v, limit); }
 bool take(Vec3* v, double surplus, const Vec3* d) { return take_along(*v, surplus, *d); }
-double warm(const ThermalLimit* thermal) { return thermal->allowed(); }
-void thermal(ThermalLimit* thermal, const Vec3* held, double periods) {
-  thermal->thermal(*held, periods);
+double thermal_allowed(const ThermalLimit* thermal) { return thermal->allowed(); }
+void thermal_add(ThermalLimit* thermal, const Vec3* held, double periods) {
+  thermal->add(*held, periods);
 }
 void observe(EnergyTank* tank, const Tool* tool, bool fresh, double periods,
              const tact::model::Wrench* held) {

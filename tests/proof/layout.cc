@@ -46,7 +46,7 @@ void name_state() {
   name("TURN_SPEED", "gate", offsetof(Gate, limits_.turn_radps));
   name("HALF_LENGTH", "gate", offsetof(Gate, limits_.workspace_half_length_m));
   name("MISSED", "gate", offsetof(Gate, missed_), "q");
-  std::printf("#define HOT_FORCE %zu\n", offsetof(Gate, thermal_force_));
+  std::printf("#define THERMAL_FORCE %zu\n", offsetof(Gate, thermal_force_));
   vector("BEFORE_FORCE", "gate", offsetof(Gate, before_ramp_.force_N));
   vector("BEFORE_TORQUE", "gate", offsetof(Gate, before_ramp_.torque_Nm));
   vector("WRITTEN_FORCE", "gate", offsetof(Gate, written_.force_N));
@@ -78,11 +78,11 @@ void name_output() {
 }
 
 void name_parts() {
-  name("PEAK", "heat", offsetof(gate::ThermalLimit, peak_));
-  name("CONTINUOUS_SQUARED", "heat", offsetof(gate::ThermalLimit, continuous_squared_));
-  name("STEEPNESS", "heat", offsetof(gate::ThermalLimit, steepness_));
-  name("SHARE", "heat", offsetof(gate::ThermalLimit, share_));
-  name("HEAT", "heat", offsetof(gate::ThermalLimit, mean_square_));
+  name("PEAK", "thermal", offsetof(gate::ThermalLimit, peak_));
+  name("CONTINUOUS_SQUARED", "thermal", offsetof(gate::ThermalLimit, continuous_squared_));
+  name("STEEPNESS", "thermal", offsetof(gate::ThermalLimit, steepness_));
+  name("SHARE", "thermal", offsetof(gate::ThermalLimit, share_));
+  name("MEAN_SQUARE", "thermal", offsetof(gate::ThermalLimit, mean_square_));
   name("ENERGY", "tank", offsetof(gate::EnergyTank, level_J_));
   name("BUDGET", "tank", offsetof(gate::EnergyTank, settings_.budget_J));
   name("UNSEEN", "tank", offsetof(gate::EnergyTank, unseen_J_));

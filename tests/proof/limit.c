@@ -15,7 +15,7 @@
 #define KEEP(v) double v##_0_x = v##_x, v##_0_y = v##_y, v##_0_z = v##_z
 #define ACTED(stage) (COUNT_##stage - count_##stage)
 
-static double peak_of(int heat) { return heat == HOT_FORCE ? FORCE_LIMIT : TORQUE_LIMIT; }
+static double peak_of(int thermal) { return thermal == THERMAL_FORCE ? FORCE_LIMIT : TORQUE_LIMIT; }
 
 // Taken for granted of the constructor: what the ranges of a scene leave.
 static bool settings(void) {

@@ -3,7 +3,7 @@
 fail, and the property that it must lose."""
 
 GATE, LIMITER, TANK = (f"firmware/gate/{name}" for name in ("gate.cc", "limiter.h", "energy_tank.cc"))
-HEAT = "firmware/gate/thermal_limit.h"
+THERMAL = "firmware/gate/thermal_limit.h"
 WRONG = [
     (GATE, "if (is_finite(input.wanted)) return;", "return;", "limit",
      "finite: what is not finite latches and gives zero"),
@@ -17,13 +17,13 @@ WRONG = [
     (GATE, "armed && tank_.is_overdrawn()", "false", "limit", "passivity: an overdrawn tank latches"),
     (TANK, "return !(level_J_ >= -kRounding_J);", "return level_J_ < -kRounding_J;", "tank",
      "passivity: a tank that is no number is overdrawn"),
-    (GATE, "Magnitude all{.force_N = std::fmin(warm_N, passive_N),", "Magnitude all{.force_N = 1e9,", "limit",
+    (GATE, "Magnitude all{.force_N = std::fmin(thermal_N, passive_N),", "Magnitude all{.force_N = 1e9,", "limit",
      "magnitude: |F| <= force limit"),
     (LIMITER, "if (!is_finite(v)) v = {};", "", "limiter", "magnitude: a limited vector is finite"),
     (LIMITER, "1.0 - 1e-15", "1.0 - 4e-16", "gappa", "magnitude: rounding leaves no vector above its limit"),
-    (HEAT, "return squared < peak_ * peak_ ? std::sqrt(squared) : peak_;",
-     "return squared < 2.0 * peak_ * peak_ ? std::sqrt(squared) : peak_;", "heat",
-     "magnitude: what heat allows is no more than the peak"),
+    (THERMAL, "return squared < peak_ * peak_ ? std::sqrt(squared) : peak_;",
+     "return squared < 2.0 * peak_ * peak_ ? std::sqrt(squared) : peak_;", "thermal",
+     "magnitude: what the thermal limit allows is no more than the peak"),
     (LIMITER, "std::fmax(radius, length - shrink)", "std::fmax(radius, length + shrink)", "approach",
      "slew: an approach is no longer than its radius, or than the force before"),
     (GATE, "if (step_towards(verdict.wrench, periods, most))", "if (periods > 1e9)", "limit",

@@ -32,11 +32,11 @@ class Arming : public Tactd {
     const std::string script = in_folder("run.sh");
     std::ofstream(script)
         << "export XDG_RUNTIME_DIR=" << in_folder("") << "\ncd " << in_folder("") << "\n"
-        << program_path("tactd") << " " << kLiver << " --no-black-box --seconds 1 --socket "
+        << program_path("tactd") << " " << kLiver << " --no-black-box --seconds 3 --socket "
         << in_folder("t.sock") << kStubDevice << " --json " << in_folder("report.json") << " 2>"
         << reported()
-        << " & tactd=$!\nready() { for i in {1..100}; do grep -qs 'ready, force is off' "
-        << reported() << " && break; sleep .05; done; }\n"
+        << " & tactd=$!\nready() { while kill -0 $tactd && ! grep -qs 'ready, force is off' "
+        << reported() << "; do sleep .05; done; }\n"
         << "ctl() { " << program_path("tactctl") << " " << kLiver << " --pid $tactd $1; }\n"
         << acts << "\nwait $tactd; cat " << reported() << "\n";
     return run_command("bash " + script);

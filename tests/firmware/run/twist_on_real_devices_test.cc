@@ -24,6 +24,7 @@
 #include "model/units.h"
 #include "tests/support/message.h"
 #include "tests/support/mountings.h"
+#include "tests/support/paced_clock.h"
 #include "tests/support/scene_loop.h"
 #include "tests/support/stub_dhd/stub_client.h"
 #include "tests/support/stub_hd/hd_client.h"
@@ -219,7 +220,7 @@ class TwistOnRealDevices : public testing::TestWithParam<RealDevice> {
   std::unique_ptr<model::scene::Tissue> tissue_;
   hal::registry::OpenDevice device_;
   hal::NoSafetyLines lines_;
-  loop::MonotonicClock clock_;
+  tests::PacedClock clock_;
   loop::Requests requests_;
   std::unique_ptr<loop::TickRing> ring_ = std::make_unique<loop::TickRing>();
   std::unique_ptr<loop::Controller> controller_;

@@ -136,9 +136,10 @@ class Client(unittest.TestCase):
             self.assertEqual(ours.tobytes(), theirs.tobytes())
 
     def test_a_black_box_has_ticks_and_pictures(self):
-        boxes = self.folder / "boxes"
-        run = tactd("--seconds", 20, "--no-telemetry", "--black-box", boxes)
-        time.sleep(1.5)
+        boxes, record = self.folder / "boxes", self.folder / "box_record.csv"
+        run = tactd("--seconds", 60, "--no-telemetry", "--black-box", boxes, "--record", record)
+        while run.poll() is None and (not record.exists() or record.stat().st_size < 1_000_000):
+            time.sleep(0.05)
         run.send_signal(signal.SIGXCPU)  # as if the loop had run away
         run.wait(30)
         newest = max(boxes.glob("*.tactlog"), key=lambda path: path.stat().st_mtime_ns)  # a busy PC's late tick has its own
