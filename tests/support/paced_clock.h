@@ -3,10 +3,8 @@
 #pragma once
 
 #include <algorithm>
-#include <ctime>
 
 #include "firmware/loop/clock.h"
-#include "hal/monotonic.h"
 
 namespace tact::tests {
 
@@ -15,19 +13,17 @@ namespace tact::tests {
 class PacedClock final : public firmware::loop::Clock {
  public:
   std::int64_t now_ns() RT_SAFE override {
-    if (now_ns_ == 0) now_ns_ = hal::monotonic_ns();
+    if (now_ns_ == 0) now_ns_ = real_.now_ns();
     return now_ns_;
   }
   void sleep_until_ns(std::int64_t deadline_ns) RT_SAFE override {
     const std::int64_t half_ns = std::max<std::int64_t>(deadline_ns - now_ns(), 0) / 2;
-    const std::int64_t until_ns = std::max(deadline_ns, hal::monotonic_ns() + half_ns);
-    constexpr std::int64_t kSecond_ns = 1'000'000'000;
-    const timespec until{.tv_sec = until_ns / kSecond_ns, .tv_nsec = until_ns % kSecond_ns};
-    clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
+    real_.sleep_until_ns(std::max(deadline_ns, real_.now_ns() + half_ns));
     now_ns_ = std::max(now_ns_, deadline_ns);
   }
 
  private:
+  firmware::loop::MonotonicClock real_;
   std::int64_t now_ns_ = 0;
 };
 
