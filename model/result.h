@@ -4,6 +4,7 @@
 // Set-up code only. What gives no value returns std::optional<Error>: empty is good.
 #pragma once
 
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -12,9 +13,13 @@
 
 namespace tact::model {
 
-/// One line: what, where (file:line where there is one), and the remedy.
+/// What a caller acts on; the message is for people alone.
+enum class ErrorCode : std::uint8_t { kOther, kInterrupted, kProgramCrashed };
+
+/// The message is one line: what, where (file:line where there is one), and the remedy.
 struct Error {
   std::string message;
+  ErrorCode code = ErrorCode::kOther;
 };
 
 /// A mistake of the code, so the program ends, with NDEBUG too: nothing reads a value that is none.

@@ -79,8 +79,9 @@ export async function start_view(args) {
 /** The same link in full quality, whatever it costs. */
 export const sharp = (url) => `${url}&sharp`;
 
+/** Its pages have 2 minutes to load: on a busy machine the first one compiles its shaders for half a minute. */
 export async function start_browser() {
-  return chromium.launch({
+  const browser = await chromium.launch({
     executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
     args: [
       "--no-sandbox",
@@ -93,13 +94,20 @@ export async function start_browser() {
       "--disable-sync",
     ],
   });
+  const open = browser.newContext.bind(browser);
+  browser.newContext = async (options) => {
+    const context = await open(options);
+    context.setDefaultNavigationTimeout(120_000);
+    return context;
+  };
+  return browser;
 }
 
 /** What the page tells of itself. */
 export const numbers = (page) => page.evaluate(() => ({ ...window.tact }));
 /** True when the condition holds in time. */
 /** `condition(value)` in the page. */
-export const waits = (page, condition, value = null, timeout = 20000) =>
+export const waits = (page, condition, value = null, timeout = 60000) =>
   page.waitForFunction(condition, value, { timeout, polling: 50 }).then(
     () => true,
     () => false,

@@ -124,7 +124,7 @@ Result<std::vector<FalconBalance>> measure(FalconDevice& device, const Options& 
                           pose, o.poses, 1000.0 * mass_kg)))
         return Error{device.trouble().empty() ? "not agreed to" : device.trouble()};
       const auto sample = balance(device, mass_kg);
-      if (program::is_interrupted()) return Error{"interrupted"};
+      if (program::is_interrupted()) return program::interruption();
       if (!sample) {
         fmt::print("left out: {}\n", sample.error().message);
         if (device.trouble().empty()) continue;

@@ -252,7 +252,9 @@ Result<int> run(const program::Program&, Options& o) {
   const auto folder = program::ScratchFolder::make("tact-new-scene");
   if (!folder) return folder.error();
   const auto is_planned = make_scene(o, *names, folder->path());
-  if (!is_planned) return Error{about(is_planned.error().message, folder->path(), *names)};
+  if (!is_planned)
+    return Error{about(is_planned.error().message, folder->path(), *names),
+                 is_planned.error().code};
   report_what_next(*names, o.plan, *is_planned);
   return 0;
 }

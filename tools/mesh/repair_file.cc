@@ -163,7 +163,7 @@ std::string about(const std::string& source, const std::string& scratch, std::st
 /// Why repair.py ended without a mesh and without a word.
 Error no_mesh(const std::string& source, const Error& ran, const std::string& log_path) {
   if (program::was_interrupted(ran)) return ran;
-  if (ran.message.find("ended with signal") != std::string::npos) {
+  if (ran.code == model::ErrorCode::kProgramCrashed) {
     return Error{
         fmt::format("{}: its reader in VTK crashed: the file is damaged, or not of the "
                     "format that its ending says; export the mesh again",

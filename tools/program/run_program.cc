@@ -30,7 +30,6 @@ using model::Error;
 using model::Result;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::string_view kInterrupted = "interrupted";
 constexpr int kLastLines = 12;
 constexpr std::chrono::seconds kGrace{3};  // chosen: gmsh and ccx end at once
 
@@ -194,7 +193,8 @@ Result<std::string> run_program(const ProgramCall& call) {
   const std::string how = WIFEXITED(*status) ? fmt::format("status {}", WEXITSTATUS(*status))
                                              : fmt::format("signal {}", WTERMSIG(*status));
   return Error{fmt::format("{} ended with {}; all it printed is in {}, at the end:{}", call.program,
-                           how, call.log_path, tail(text ? *text : ""))};
+                           how, call.log_path, tail(text ? *text : "")),
+               WIFEXITED(*status) ? model::ErrorCode::kOther : model::ErrorCode::kProgramCrashed};
 }
 
 Result<RunningProgram> RunningProgram::start(const ProgramCall& call) {
@@ -209,9 +209,7 @@ RunningProgram::~RunningProgram() {
 
 bool RunningProgram::is_running() const { return child_ > 0 && still_runs(child_); }
 
-Error interruption() { return Error{std::string(kInterrupted)}; }
-
-bool was_interrupted(const Error& error) { return error.message == kInterrupted; }
+Error interruption() { return Error{"interrupted", model::ErrorCode::kInterrupted}; }
 
 Result<ScratchFolder> ScratchFolder::make(const std::string& name) {
   std::error_code failed;

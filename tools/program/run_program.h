@@ -56,9 +56,11 @@ class RunningProgram {
   int child_ = -1;  // leads its group
 };
 
-/// The error of a Ctrl-C, which is no failure of the program, and is it that one?
+/// The error of a Ctrl-C, which is no failure of the program.
 model::Error interruption();
-bool was_interrupted(const model::Error& error);
+inline bool was_interrupted(const model::Error& error) {
+  return error.code == model::ErrorCode::kInterrupted;
+}
 
 /// A new empty folder below the system's temporary one, gone when this object is.
 class ScratchFolder {

@@ -99,7 +99,13 @@ TEST(RunProgram, TellsTheLastLinesOfAFailure) {
   EXPECT_NE(message.find("the cause"), std::string::npos) << message;
   EXPECT_NE(message.find(where.file("log")), std::string::npos) << message;
   EXPECT_EQ(message.find("\n50\n"), std::string::npos) << "only the end belongs in a message";
-  EXPECT_FALSE(was_interrupted(said.error()));
+  EXPECT_EQ(said.error().code, model::ErrorCode::kOther);
+}
+
+TEST(RunProgram, ACrashHasItsOwnCode) {
+  const auto said = run(folder(), "sh", {"-c", "kill -SEGV $$"});
+  ASSERT_FALSE(said);
+  EXPECT_EQ(said.error().code, model::ErrorCode::kProgramCrashed);
 }
 
 TEST(RunProgram, EndsAProgramAndItsChildrenAfterTheTimeLimit) {
