@@ -129,7 +129,7 @@ void Guardian::keep(int priority) {
     if (poll(either.data(), either.size(), -1) < 0) continue;
     if (!is_hung_up(either[1])) continue;
     lost_.store(true);
-      either[1].fd = -1;  // poll ignores it from here on
+    either[1].fd = -1;  // poll ignores it from here on
     either[1].revents = 0;
   }
   liveness_.let_go();
