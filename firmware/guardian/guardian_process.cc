@@ -114,7 +114,7 @@ int stand_guard(int socket) {
     write_all(STDERR_FILENO, "tact-guardian: tactd starts this program; nobody else can\n");
     return 2;
   }
-  // In this order: whatever needs a file or a priority comes before the filter, which would refuse
+  // In this order: calls for files and priority come before the filter, which would refuse
   // it; the ready byte "r" comes last.
   const Orders orders = taken->orders;
   const DeathMessage sent(orders.process, "zero force and power off were sent to its device");

@@ -24,7 +24,7 @@ class Recorder {
   virtual void add(const Frame& frame) = 0;
   /// A fault that no tick can report, because the loop no longer ticks. kNone: no fault.
   virtual void stands(model::Fault fault) = 0;
-  /// work(): called after each frame. finish(): called at the end, returns when all is on the disk.
+  /// work(): called at each frame time. finish(): called at the end; returns when all is on disk.
   virtual void work() = 0;
   virtual void finish() = 0;
 };

@@ -12,7 +12,7 @@ namespace tact::host::figure {
 std::string text_of(BodyRole role);
 /// "silent", "too few points seen": why a body has no pose.
 const char* text_of(TrackingTrouble trouble);
-/// Sets trouble and words of a pose: the worst of its bodies, its arm and its legs.
+/// Sets a pose's `trouble` and `words` from the worst of its bodies, its arm and its legs.
 void report(const TrackedOperator& bodies, FigurePose& pose);
 
 }  // namespace tact::host::figure

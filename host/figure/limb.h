@@ -24,8 +24,7 @@ struct Limb {
   double missed_m = 0.0;                            // its distance from the wanted end
 };
 
-/// The part of `v` perpendicular to the unit vector `along`, with length 1; of `otherwise` if that
-/// is zero.
+/// The part of `v` perpendicular to the unit vector `along`, of length 1; if zero, of `otherwise`.
 Eigen::Vector3d across(const Eigen::Vector3d& v, const Eigen::Vector3d& along,
                        const Eigen::Vector3d& otherwise);
 

@@ -5,7 +5,6 @@
 //                 "speed_ratio": 0.25, "repeats": false}}
 //
 // Each key is optional. The request reaches only the tact-view that replays; there is no tactd.
-// tactd that could hear it.
 #pragma once
 
 #include <functional>
