@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Do the strokes of the hand need the inertia that the law leaves out?
+// Are the hand's strokes so fast that the neglected inertia of the tissue matters?
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 namespace tact::firmware::admission {
 namespace {
 
-/// The organ as a half-space under the first sphere: that of [elastic], or the incompressible one
-/// whose force at a depth of one radius is the law's.
+/// The organ under the first sphere as a half-space: that of [elastic], or the incompressible one
+/// with the law's force at a depth of one radius.
 std::optional<model::indent::ElasticTip> half_space_of(const model::scene::Scene& scene,
                                                        const model::scene::TissueLaw& law) {
   const double radius_m = scene.tool.spheres[0].radius_m;
@@ -25,7 +25,7 @@ std::optional<model::indent::ElasticTip> half_space_of(const model::scene::Scene
   const double depth_m = std::min(radius_m, law.range().press_m);
   const auto unit = model::indent::half_space_under(radius_m, depth_m);
   if (!unit) return std::nullopt;
-  // Tissue is mostly water. E from E* of the half-space with the same force: E = E* (1 - nu^2).
+  // Tissue is nearly incompressible. E follows from E* of the half-space: E = E* (1 - nu^2).
   constexpr double kIncompressible = 0.5;
   return model::indent::ElasticTip{.youngs_modulus_Pa = (1.0 - kIncompressible * kIncompressible) *
                                                         law.curve()->respond(depth_m).force_N /
@@ -35,33 +35,33 @@ std::optional<model::indent::ElasticTip> half_space_of(const model::scene::Scene
 }
 
 struct Press {
-  double depth_m = 0.0;  // of the lowest sphere below the touched point
+  double depth_m = 0.0;  // of the lowest sphere below the contact point
   double speed_mps = 0.0;
   double limit_mps = 0.0;  // IN-2
 };
 
-/// Where the hand's path is fastest against that limit: the slope of a minimum-jerk move is
-/// 30 s^2 (1 - s)^2 of its mean, at most 15/8.
+/// The point of the hand's path with the highest ratio of speed to that limit. The slope of a
+/// minimum-jerk move is 30 s^2 (1 - s)^2 times its mean, at most 15/8.
 Press fastest_press(const model::scene::Scene& scene, const model::indent::ElasticTip& tip,
                     double share) {
-  // Chosen: the ratio of two smooth curves.
+  // Chosen: the ratio of two smooth curves needs few samples.
   constexpr int kSamples = 100;
-  const double least_m = 0.25 * tip.radius_m;  // lighter touches are hardly felt
+  const double least_m = 0.25 * tip.radius_m;  // lighter contacts are hardly perceptible
   const double reach_m = model::scene::reach_m(scene.tool.spheres, scene.hand_inward);
   Press worst{.limit_mps = std::numeric_limits<double>::infinity()};
   for (std::size_t i = 1; i < scene.hand.path.size(); ++i) {
     const auto &from = scene.hand.path[i - 1], &to = scene.hand.path[i];
-    // The depth of scene_strokes.h, read back from the way points.
+    // The depth as scene_strokes.h defines it, from the way points.
     const double start_m = dot(from.position_m - scene.hand_site_m, scene.hand_inward) + reach_m;
     const double way_m = dot(to.position_m - from.position_m, scene.hand_inward);
     for (int k = 1; k < kSamples && way_m > 0.0; ++k) {
       const double s = static_cast<double>(k) / kSamples, rest = 1.0 - s;
       Press at{.depth_m = start_m + way_m * s * s * s * (10.0 + s * (-15.0 + 6.0 * s)),
                .speed_mps = 30.0 * s * s * rest * rest * way_m / (to.time_s - from.time_s)};
-      // A limit of IN-2 falls to 0 with the depth.
+      // The limit of IN-2 falls to 0 with the depth.
       if (at.depth_m < least_m) continue;
       at.limit_mps = model::indent::inertia_speed_mps(tip, at.depth_m, share);
-      // Speed over limit, compared without a division: the first limit is infinite.
+      // Compares ratios without a division, because the first limit is infinite.
       if (at.speed_mps * worst.limit_mps > worst.speed_mps * at.limit_mps) worst = at;
     }
   }
@@ -71,7 +71,7 @@ Press fastest_press(const model::scene::Scene& scene, const model::indent::Elast
 }  // namespace
 
 std::string inertia_note(const model::scene::Scene& scene, const model::scene::TissueLaw& law) {
-  constexpr double kFelt = 0.07;  // of a force: the least difference that people notice
+  constexpr double kFelt = 0.07;  // smallest relative change of force that people notice
   // A stepped law has masses of its own.
   if (law.curve() == nullptr) return {};
   const auto tip = half_space_of(scene, law);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// notes.h - what a person should know of scene and device, though it hinders nothing.
+// notes.h - messages about scene and device that do not prevent a run.
 #pragma once
 
 #include <string>
@@ -10,26 +10,26 @@
 
 namespace tact::firmware::admission {
 
-// Each a message for people, with the remedy or the keys to change; or empty.
+// Each returns a message with the remedy or the keys to change, or an empty string.
 
-/// The strokes of the hand close the jaws, and neither device nor lines have anything to close them
-/// with: what the scene grips, pulls or tears cannot be felt.
+/// The hand's strokes close the jaws, but neither device nor lines have an input to close them:
+/// what the scene grips, pulls or tears cannot be rendered.
 bool cannot_grip(const model::scene::Scene& scene, const hal::DeviceInfo& device);
 std::string grip_note(const model::scene::Scene& scene, const hal::DeviceInfo& device);
 
-/// The hand's own strokes press so fast that the inertia of tissue, which the law leaves out, would
-/// be felt (IN-2). Not for a law that has masses.
+/// The hand's own strokes are so fast that the inertia of tissue, which the law neglects, would be
+/// perceptible (IN-2). Empty for a law that has masses.
 std::string inertia_note(const model::scene::Scene& scene, const model::scene::TissueLaw& law);
 
-/// The surface of the organ is open: the number of its boundary edges, and the rule of contact
-/// beside them (model/contact/triangle_tree.h).
+/// The organ's surface is open: the number of its boundary edges, and the contact rule next to them
+/// (model/contact/triangle_tree.h).
 std::string open_organ_note(const model::scene::Scene& scene);
 
-/// The organ is a hundred times too large or too small for the workspace, or no stroke of the hand
-/// brings a sphere of the tool to its surface.
+/// The organ's size does not fit the workspace, probably by a wrong unit, or no stroke of the hand
+/// brings a sphere of the tool to the surface.
 std::string reach_note(const model::scene::Scene& scene);
 
-/// The tool has a lever and the device no torque.
+/// The tool has a lever, but the device has no torque.
 std::string torque_note(const model::scene::Scene& scene, const hal::DeviceInfo& device);
 
 }  // namespace tact::firmware::admission

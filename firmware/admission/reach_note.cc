@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Does the simulated hand touch the organ, and is the organ as large as an organ?
+// Does the simulated hand reach the organ, and does the organ's size fit the workspace?
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,8 +15,8 @@ namespace {
 using model::Vec3;
 using model::mesh::SurfaceMesh;
 
-// Of the workspace's width. Organs of the shipped scenes have 0.2 to 0.4 of it; millimetres read
-// as metres make 1000 times that, centimetres 100 times.
+// Relative to the workspace's width. Organs of the shipped scenes have 0.2 to 0.4 of it. Reading
+// millimetres as metres makes an organ 1000 times too large, centimetres 100 times.
 constexpr double kMinOrgan_ratio = 0.02, kMaxOrgan_ratio = 20.0;
 constexpr int kPlacesOfAStroke = 8;
 
@@ -35,7 +35,7 @@ double distance_m(const SurfaceMesh& organ, const Vec3& p) {
   return follow(organ.view(), organ.fan[organ.fan_start[nearest]], p).distance_m;
 }
 
-/// How far the spheres stay from the surface on the whole way of the hand; negative: they reach it.
+/// Least distance of the spheres from the surface along the hand's path; negative: they reach it.
 double least_gap_m(const model::scene::Scene& scene) {
   double least_m = std::numeric_limits<double>::infinity();
   const auto& path = scene.hand.path;
@@ -66,7 +66,7 @@ std::string reach_note(const model::scene::Scene& scene) {
         scene.path, size_m, 2.0 * scene.limits.workspace_radius_m, remedy);
   if (scene.hand.path.size() < 2) return {};
   const double gap_m = least_gap_m(scene);
-  if (gap_m <= 1e-4) return {};  // a stroke of depth 0 just touches
+  if (gap_m <= 1e-4) return {};  // a stroke of depth 0 just touches the surface
   return fmt::format(
       "{}: no stroke of the hand reaches the organ, {:.3g} mm are missing: change "
       "organ.position_m, "

@@ -22,7 +22,7 @@ std::string stiff_key(const model::scene::Scene& scene, const model::scene::Tiss
   return fmt::format("[{}]", model::scene::name_of(scene.law));
 }
 
-/// Never above it, so that the number printed is one that is accepted.
+/// Rounds down, so that a printed limit is itself accepted.
 double rounded_down(double value) {
   // Four digits, as {:.4g} prints them.
   const double unit = std::pow(10.0, std::floor(std::log10(value)) - 3.0);
@@ -33,10 +33,10 @@ std::string spheres_text(std::size_t n) {
   return n == 1 ? "1 sphere" : fmt::format("{} spheres", n);
 }
 
-// Of a held sphere at the stiffest place; 0: the law does not tell.
+// Lateral stiffness of a held sphere at the stiffest point; 0: the law does not define it.
 double stiffest_sideways_N_per_m(const model::scene::Scene& scene,
                                  const model::contact::ContactLaw& law) {
-  // Set by hand: the tissue's own does not count (contact/contact_scene.h).
+  // A value set in the scene replaces the tissue's own (contact/contact_scene.h).
   if (scene.contact.sliding_stiffness_N_per_m > 0.0) return scene.contact.sliding_stiffness_N_per_m;
   double most_N_per_m = 0.0;
   const auto ask = [&](const model::contact::SurfacePoint& place,
@@ -47,7 +47,7 @@ double stiffest_sideways_N_per_m(const model::scene::Scene& scene,
       if (compliance_m_per_N > 0.0) most_N_per_m = std::max(most_N_per_m, 1.0 / compliance_m_per_N);
     }
   };
-  // At every vertex, from every triangle that meets there: in between the give is a mean of them.
+  // At every vertex, from every triangle that meets there: in between, the compliance is a mean.
   for (std::uint32_t t = 0; t < scene.organ_mesh.triangle.size(); ++t) {
     const model::contact::Axes axes = model::contact::axes_of(scene.organ_mesh.face_normal[t]);
     for (std::size_t corner = 0; corner < 3; ++corner) {
@@ -59,7 +59,7 @@ double stiffest_sideways_N_per_m(const model::scene::Scene& scene,
   return most_N_per_m;
 }
 
-/// What the scene asks of the device, and the most that the device shows, of all spheres together.
+/// What the scene requires, and the most that the device can render, for all spheres together.
 struct Demand {
   double law_N_per_m, sliding_N_per_m;  // of one sphere
   double damping_Ns_per_m;              // of one sphere
@@ -89,11 +89,11 @@ std::string damping_hint(const hal::DeviceInfo& device) {
              : fmt::format(" ({} says what this one has)", device.damping_key);
 }
 
-/// Names the spring that decides, the key that softens it and to what number.
+/// Names the spring that is too stiff, the key that softens it, and the value to set.
 Error too_stiff(const model::scene::Scene& scene, const model::scene::TissueLaw& law,
                 const Demand& demand, const hal::DeviceInfo& device) {
   const bool is_law =
-      !(demand.law_N_per_m < demand.sliding_N_per_m);  // the stiffer one; NaN is the law's
+      !(demand.law_N_per_m < demand.sliding_N_per_m);  // the stiffer one; a NaN selects the law
   const bool is_set = scene.contact.sliding_stiffness_N_per_m > 0.0;
   const std::string what = is_law   ? fmt::format("law {}", model::scene::name_of(scene.law))
                            : is_set ? std::string("contact.sliding_stiffness_N_per_m")
@@ -110,7 +110,7 @@ Error too_stiff(const model::scene::Scene& scene, const model::scene::TissueLaw&
       rounded_down(demand.limit_N_per_m / demand.spheres), damping_hint(device))};
 }
 
-// HL-1. All spheres may stand on the stiffest place and damp at once.
+// HL-1. All spheres may be on the stiffest point and damp at once.
 double limit_with_N_per_m(const model::scene::Scene& scene, const hal::DeviceInfo& device,
                           double all_Ns_per_m) {
   return model::law::haptic_limit(*device.at_tool, scene.rate_Hz, all_Ns_per_m).grow_N_per_m;
@@ -118,7 +118,7 @@ double limit_with_N_per_m(const model::scene::Scene& scene, const hal::DeviceInf
 
 constexpr std::size_t kSampled = 16;  // vertices each way; chosen: 50 ms
 
-/// Where the scene's own hand presses.
+/// The vertex nearest to where the scene's own hand presses.
 model::scene::PressPoint hand_place(const model::scene::Scene& scene) {
   const auto& vertices_m = scene.organ_mesh.vertex_m;
   const auto nearest = std::ranges::min_element(
@@ -127,7 +127,7 @@ model::scene::PressPoint hand_place(const model::scene::Scene& scene) {
           model::scene::PressWay::kUpright};
 }
 
-/// Names a place where the force is not sound; the remedy is one of the mesh.
+/// Names a place where the force has a flaw; the remedy concerns the mesh.
 std::string note_of(const model::scene::Scene& scene, const model::scene::PressSweep& sweep) {
   const auto flawed = sweep.flawed();
   if (flawed.empty()) return {};
@@ -151,7 +151,7 @@ double stiffness_limit_N_per_m(const model::scene::Scene& scene, const model::sc
 model::Result<StiffnessMargin> check_renderable(const model::scene::Scene& scene,
                                                 const model::scene::Tissue& tissue,
                                                 const hal::DeviceInfo& device) {
-  // A device that does not say what it can bear is never felt.
+  // A device that does not report its damping cannot be checked, so it is refused.
   if (!device.at_tool)
     return Error{fmt::format(
         "device {} does not tell its damping at the tool: fill DeviceInfo::at_tool", device.name)};
@@ -167,7 +167,7 @@ model::Result<StiffnessMargin> check_renderable(const model::scene::Scene& scene
   const double needed_N_per_m = demand.needed_N_per_m();
   if (demand.fits(demand.law_N_per_m) && demand.fits(demand.sliding_N_per_m))
     return StiffnessMargin{.needed_N_per_m = needed_N_per_m, .limit_N_per_m = demand.limit_N_per_m};
-  // Stiff enough without its damping: then the damping is what must change.
+  // Renderable without the law's damping: then the damping must change.
   if (damping_Ns_per_m > 0.0 && needed_N_per_m <= demand.undamped_limit_N_per_m)
     return damps_too_much(scene, demand, device.at_tool->damping_Ns_per_m);
   return too_stiff(scene, tissue.law(), demand, device);
@@ -179,7 +179,7 @@ model::Result<PressCheck> check_sweep(const model::scene::Scene& scene,
                                       const model::scene::PressSweep& sweep) {
   const double limit_N_per_m = sweep.settings.limit_N_per_m;
   const model::scene::PressResult& hand = sweep.results.front();
-  if (!(hand.slope_N_per_m.value <= limit_N_per_m))  // NaN is too stiff
+  if (!(hand.slope_N_per_m.value <= limit_N_per_m))  // NaN counts as too stiff
     return Error{fmt::format(
         "{}: the whole tool is too stiff where the hand presses: {:.4g} N/m at {}, {:.3g} mm deep; "
         "this device is stable to {:.4g} N/m at {:g} Hz; soften {}, raise rate_Hz, or take a "

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// stiffness_check.h - is the law stable on this device at this rate? Asked once, before the loop
-// starts: a spring that is stiffer than both can render shakes the hand. It is refused, with what
-// to change. First by the numbers of the law, then by pressing the whole tool into the organ.
-// Set-up code.
+// stiffness_check.h - is the law stable on this device at this rate? Checked once, before the loop:
+// a law stiffer than device and rate can render oscillates in the hand. It is refused, with a
+// remedy. First the law's own numbers are checked, then presses of the whole tool into the organ.
 #pragma once
 
 #include <cstddef>
@@ -21,32 +20,32 @@ struct StiffnessMargin {
   double limit_N_per_m = 0.0;   // of device, rate and the law's own damping (haptic_limit.h)
 };
 
-/// K of HL-1, N/m: device, rate, and the damping of all spheres at once. 0: the device does not
-/// tell what it can bear.
+/// K of HL-1, N/m, from the device, the rate and the damping of all spheres together. 0: the device
+/// does not report its damping.
 double stiffness_limit_N_per_m(const model::scene::Scene& scene, const model::scene::TissueLaw& law,
                                const hal::DeviceInfo& device);
 
-/// All spheres on the stiffest place at once, pressed and slid. The error says which key is too
-/// stiff, or damps too much, and to what it must fall.
+/// Assumes all spheres on the stiffest point at once, pressed and slid. The error names the key
+/// that is too stiff or damps too much, and the value to which it must fall.
 model::Result<StiffnessMargin> check_renderable(const model::scene::Scene& scene,
                                                 const model::scene::Tissue& tissue,
                                                 const hal::DeviceInfo& device);
 
-/// What a sample of presses of the whole tool showed (model/scene/press.h).
+/// Result of sample presses of the whole tool (model/scene/press.h).
 struct PressCheck {
   double slope_N_per_m = 0.0;  // the largest dF/dd
-  std::string place{};         // of it: "vertex 1586, upright"
+  std::string place{};         // where it occurs: "vertex 1586, upright"
   std::size_t presses = 0;
-  std::string note{};  // for people: a place where the force is not sound, and the remedy; or empty
+  std::string note{};  // a place where the force has a flaw, and the remedy; or empty
 };
 
-/// At the vertex nearest to hand.site_m, upright, and at a few others both ways, the same ones each
-/// time; of a stepped law at the first alone. A slope above the limit is refused where the hand
-/// presses; elsewhere it is in the note. On a tissue of its own; 0.1 to 0.2 s.
+/// Presses upright at the vertex nearest to hand.site_m, and at a fixed sample of other vertices
+/// in both directions; a stepped law only at the first. A slope above the limit at the hand's
+/// vertex is an error, elsewhere a note. Uses a tissue of its own; takes 0.1 to 0.2 s.
 model::Result<PressCheck> check_presses(const model::scene::Scene& scene,
                                         const model::scene::TissueLaw& law,
                                         const hal::DeviceInfo& device, double limit_N_per_m);
-/// The same of a sweep whose first place is the hand's.
+/// The same check of a finished sweep, whose first place is the hand's.
 model::Result<PressCheck> check_sweep(const model::scene::Scene& scene,
                                       const model::scene::TissueLaw& law,
                                       const hal::DeviceInfo& device,

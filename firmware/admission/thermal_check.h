@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// thermal_check.h - do the motors of this device bear what the scene allows?
+// thermal_check.h - can the motors of this device sustain what the scene allows?
 #pragma once
 
 #include <optional>
@@ -10,8 +10,8 @@
 
 namespace tact::firmware::admission {
 
-/// `limits`: as they hold on the device (gate/limits_for.h), whose motors may bear less for long
-/// than the scene says. Error: its thermal time is too short for that, and the remedy.
+/// `limits`: as applied on the device (gate/limits_for.h); its continuous force may be lower than
+/// the scene's. The error says that the thermal time is too short for it, with the remedy.
 std::optional<model::Error> check_thermal(const model::scene::Scene& scene,
                                           const model::Limits& limits);
 

@@ -17,14 +17,14 @@ namespace {
 
 using model::Vec3;
 
-// All chosen. p99.9 of 4000 ticks is the fourth longest; a law
-// that is too slow for them in 150 ms is judged by fewer.
+// All chosen. p99.9 of 4000 ticks is the fourth longest. A law too slow for 4000 ticks in 150 ms is
+// checked with fewer.
 constexpr std::size_t kTurnTicks = 500;  // one turn of the circle
 constexpr std::size_t kMaxTicks = 4000;  // enough for a p99.9
 constexpr std::int64_t kLongest_ns = 150'000'000;
-constexpr double kCircleEdges = 5.0;  // radius: further than a patch bears before it gathers again
+constexpr double kCircleEdges = 5.0;  // radius: beyond what a patch covers without a new gathering
 
-/// One turn about the middle of a triangle, in its plane, each point brought to the surface.
+/// One turn around the middle of a triangle, in its plane, each point projected onto the surface.
 std::vector<model::contact::ContactPoint> circle(const model::mesh::SurfaceMesh& mesh,
                                                  std::uint32_t start) {
   const auto& corner = mesh.triangle[start];
@@ -40,20 +40,20 @@ std::vector<model::contact::ContactPoint> circle(const model::mesh::SurfaceMesh&
         2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(kTurnTicks);
     const Vec3 p_m =
         middle_m + radius_m * (std::cos(angle_rad) * along + std::sin(angle_rad) * across);
-    // Each walk starts where the one before ended, as contact does.
+    // Each search starts in the triangle where the last one ended, as in contact.
     way.push_back(follow(mesh.view(), triangle, p_m));
     triangle = way.back().surface_point.triangle;
   }
   return way;
 }
 
-/// Where the blade stands when the tool touches there: it cuts nothing, but must be looked at.
+/// A blade at rest where the tool touches: it cuts nothing, but takes the time of the check.
 model::contact::BladeSweep still(const model::contact::Blade& blade, const Vec3& tool_m) {
   const Vec3 a_m = tool_m + blade.a_m, b_m = tool_m + blade.b_m;
   return {.from_a_m = a_m, .from_b_m = b_m, .to_a_m = a_m, .to_b_m = b_m};
 }
 
-/// Rounded up to a sample: a p99.9 is never told too low.
+/// Rounded up to a sample, so that a p99.9 is never reported too low.
 double at_share(const std::vector<double>& ascending, double share) {
   const auto last = static_cast<double>(ascending.size() - 1);
   return ascending[static_cast<std::size_t>(std::ceil(share * last))];
@@ -81,7 +81,7 @@ LawTime measure_law(const model::scene::Scene& scene, model::contact::ContactLaw
     const double wave = std::sin(0.02 * static_cast<double>(tick));
     for (std::size_t i = 0; i < spheres; ++i) {
       const model::contact::ContactPoint& site = ways[i][tick % kTurnTicks];
-      // Summed, so that no answer can be left out, and a law that blew up is seen.
+      // Summed, so that the compiler keeps every call, and a diverged law is detected.
       unused_N += twin.respond({.sphere = i,
                                 .surface_point = site.surface_point,
                                 .normal = site.normal,
@@ -90,12 +90,12 @@ LawTime measure_law(const model::scene::Scene& scene, model::contact::ContactLaw
     }
     if (scene.tool.blade) twin.cut(still(*scene.tool.blade, ways[0][tick % kTurnTicks].point_m));
     twin.advance();
-    // One reading a tick: the end of one is the start of the next.
+    // One clock reading per tick: the end of one is the start of the next.
     end_ns = clock.now_ns();
     tick_us.push_back(1e-3 * static_cast<double>(end_ns - start_ns));
   }
   constexpr double kNever = std::numeric_limits<double>::infinity();
-  // A law that blows up is never fast enough.
+  // A diverged law is never fast enough.
   if (!std::isfinite(unused_N)) return {.median_us = kNever, .p999_us = kNever};
   std::sort(tick_us.begin(), tick_us.end());
   return {.median_us = at_share(tick_us, 0.5), .p999_us = at_share(tick_us, 0.999)};
@@ -108,9 +108,9 @@ model::Result<TimeMargin> check_budget(const model::scene::Scene& scene,
   TimeMargin margin;
   margin.tail_counts = hard_real_time.has_value();
   margin.budget_us = scene.tolerance ? scene.tolerance->tick_budget_us : 0.5e6 / scene.rate_Hz;
-  // In a thread of its own: priority, core and flushed denormals go with it.
+  // In a separate thread, which keeps its priority, core and flushed denormals to itself.
   std::thread([&] {
-    std::vector<pc::Shortfall> known;  // told before, by probe_rt_threads
+    std::vector<pc::Shortfall> known;  // probe_rt_threads has reported them
     if (hard_real_time) pc::enter_rt_thread(*hard_real_time, known);
     pc::flush_denormals();
     margin.measured = measure_law(scene, (*twin)->contact_law(), (*twin)->range().press_m);

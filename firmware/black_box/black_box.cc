@@ -21,7 +21,7 @@ void BlackBox::add(const loop::TickRecord& record) {
   ticks_.add(telemetry::LoggedTick::of(record, run_.header.non_rt != 0));
   if (to_wait_ > 0) --to_wait_;
   const model::Fault fault = record.output.fault;
-  // A fault that comes while one waits goes into the same file: its ticks are in it.
+  // A fault during the 0.25 s of an earlier one goes into the same file, with its ticks.
   if (fault != before_ && fault != model::Fault::kNone && waiting_ == model::Fault::kNone) {
     waiting_ = fault;
     to_wait_ = ticks_after_;
@@ -31,18 +31,18 @@ void BlackBox::add(const loop::TickRecord& record) {
 
 void BlackBox::stands(model::Fault fault) {
   if (fault == model::Fault::kNone || before_ != model::Fault::kNone) return;
-  // No tick will come, so none is waited for. before_: it is told once.
+  // The loop no longer ticks, so the file does not wait. before_: each fault is recorded once.
   before_ = waiting_ = fault;
   to_wait_ = 0;
 }
 
 void BlackBox::work() {
-  // While a file is being written the next one waits, not the telemetry thread.
+  // While a file is being written, the next one stays pending and this thread continues.
   if (waiting_ == model::Fault::kNone || to_wait_ > 0 || writing_.load()) return;
-  // It is at its end (writing_), so joining hardly waits.
+  // The writer has finished (writing_), so join() returns almost at once.
   if (writer_.joinable()) writer_.join();
   writing_.store(true);
-  // Copied here, as the rings go on; formatted and written there.
+  // Copied in this thread, because the buffers keep changing; formatted and written in the other.
   writer_ = std::thread([this, kept = Kept{waiting_, ticks_.all(), frames_.all()}] {
     write(kept);
     writing_.store(false);
@@ -58,7 +58,7 @@ void BlackBox::finish() {
 }
 
 void BlackBox::write(const Kept& kept) {
-  // The disk first, without the lock: who asks for news must not wait for it.
+  // The disk first, without the lock: news() and files() must not wait for it.
   const auto path = write_black_box(run_, kept);
   const std::lock_guard lock(reported_mutex_);
   if (!path) {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // black_box.h - the last 10 s of every tick, written to a file whenever a fault latches.
 //
-// The telemetry thread adds ticks and frames, far from the loop; a thread of its own writes, so a
-// slow disk costs neither ticks nor frames. A file waits for 0.25 s after its fault, so that it
-// shows the force going; a loop that gives no more ticks is not waited for. Several faults of a run
-// give several files. A disk that takes nothing is told in a message, and the run goes on.
+// The telemetry thread, not the loop, adds ticks and frames. A separate thread writes, so a slow
+// disk loses neither. A file is written 0.25 s after its fault, so that it contains the decay of
+// the force, or at once if the loop no longer ticks. Several faults of a run give several files. A
+// failed write is reported in a message, and the run continues.
 #pragma once
 
 #include <atomic>
@@ -21,7 +21,7 @@ class BlackBox final : public telemetry::Recorder {
  public:
   static constexpr double kKeep_s = 10.0, kAfter_s = 0.25;
 
-  /// Takes over run.mesh_fd.
+  /// Takes ownership of run.mesh_fd.
   BlackBox(BlackBoxRun run, double rate_Hz, double frame_rate_Hz);
   ~BlackBox() override;
   BlackBox(const BlackBox&) = delete;
@@ -30,14 +30,14 @@ class BlackBox final : public telemetry::Recorder {
   void add(const loop::TickRecord& record) override;
   void add(const telemetry::Frame& frame) override { frames_.add(frame); }
   void stands(model::Fault fault) override;
-  /// Hands over to the writer what has waited long enough.
+  /// Starts to write the pending file, once its 0.25 s have passed.
   void work() override;
-  /// Writes what still waits.
+  /// Writes the pending file, if any.
   void finish() override;
 
-  /// What happened since the last call, one message each. Any thread.
+  /// One message per event since the last call. Any thread.
   std::vector<std::string> news();
-  /// All files so far. Any thread.
+  /// Paths of all files so far. Any thread.
   std::vector<std::string> files() const;
 
  private:
@@ -46,12 +46,12 @@ class BlackBox final : public telemetry::Recorder {
   BlackBoxRun run_;
   NewestOnes<telemetry::LoggedTick> ticks_;
   NewestOnes<telemetry::Frame> frames_;
-  std::uint64_t ticks_after_;  // of a fault, before it is written
+  std::uint64_t ticks_after_;  // kept after a fault, before the file is written
   model::Fault before_ = model::Fault::kNone, waiting_ = model::Fault::kNone;
   std::uint64_t to_wait_ = 0;  // ticks
   std::atomic<bool> writing_{false};
   std::thread writer_;
-  mutable std::mutex reported_mutex_;  // never met by the loop
+  mutable std::mutex reported_mutex_;  // the loop never takes it
   std::vector<std::string> news_, files_;
 };
 

@@ -21,10 +21,10 @@ namespace fs = std::filesystem;
 using model::Error;
 using model::Result;
 
-// Of the end, where pictures at the frame rate would be too coarse; chosen.
+// Duration before the end with one frame per tick; chosen.
 constexpr std::int64_t kEveryTick_ns = 500'000'000;
 
-/// All of a memory file; shorter where it cannot be read.
+/// All bytes of a memory file; fewer after a read error.
 std::vector<std::byte> read_all(int fd) {
   const off_t size = lseek(fd, 0, SEEK_END);
   std::vector<std::byte> bytes(size > 0 ? static_cast<std::size_t>(size) : 0);
@@ -37,7 +37,7 @@ std::vector<std::byte> read_all(int fd) {
   return bytes;
 }
 
-// Letters, digits and dashes, whatever a scene is called.
+// Replaces all but letters, digits, dots and underscores of a scene's name.
 std::string plain(std::string text) {
   std::replace_if(
       text.begin(), text.end(),
@@ -45,14 +45,14 @@ std::string plain(std::string text) {
   return text;
 }
 
-/// SCENE-DATE-NUMBER-FAULT.tactlog of now, with a number where that is taken.
+/// SCENE-DATE-NUMBER-FAULT.tactlog with the present time, and a suffix if that name is taken.
 std::string free_path(const BlackBoxRun& run, model::Fault fault) {
   const std::time_t now = std::time(nullptr);
   const std::string stem =
       fmt::format("{}/{}-{:%Y%m%dT%H%M%SZ}-{}-{}", run.folder, plain(run.scene_name),
                   fmt::gmtime(now), static_cast<int>(fault), plain(model::describe(fault).name));
   std::string path = stem + ".tactlog";
-  // Two faults in one second; should one appear meanwhile, TickLogWriter::create refuses it.
+  // Two faults in one second. If the file appears meanwhile, TickLogWriter::create refuses it.
   for (int n = 2; fs::exists(path); ++n) path = fmt::format("{}-{}.tactlog", stem, n);
   return path;
 }
@@ -75,7 +75,7 @@ Result<std::string> black_box_folder(const std::string& asked) {
     folder = state / "tact" / "black-box";
   }
   std::error_code failed;
-  // The folder may not be made yet: what counts is the nearest one above that is there.
+  // The folder may not exist yet: check the nearest existing one above it.
   fs::path there = fs::absolute(folder, failed);
   while (!fs::exists(there, failed) && there.has_relative_path()) there = there.parent_path();
   int wrong = 0;
@@ -103,7 +103,7 @@ std::vector<telemetry::Frame> with_last_ticks(const Kept& kept) {
     out.push_back(picture);
     const bool last = i + 1 == kept.frames.size();
     const auto shown = tick(picture.tick);
-    // Of this frame no tick is kept: no pictures can be put between.
+    // The tick of this frame is no longer kept: no frames of ticks can follow it.
     if (shown == kept.ticks.end() || shown->tick != picture.tick) continue;
     const auto end = last ? kept.ticks.end() : tick(kept.frames[i + 1].tick);
     for (auto t = shown + 1; t < end; ++t)
@@ -116,12 +116,12 @@ std::vector<telemetry::Frame> with_last_ticks(const Kept& kept) {
 Result<std::string> write_black_box(const BlackBoxRun& run, const Kept& kept) {
   telemetry::LogHeader header = run.header;
   header.ticks = kept.ticks.size();
-  std::error_code failed;  // the file then cannot be made either, and says so
+  std::error_code failed;  // TickLogWriter::create then fails and reports it
   fs::create_directories(run.folder, failed);
   const std::string path = free_path(run, kept.fault);
   auto log = telemetry::TickLogWriter::create(path, header);
   if (!log) return log.error();
-  // Ticks before pictures: of a file that is cut off they are what is left.
+  // Ticks before frames: a truncated file then still has the ticks.
   for (const telemetry::LoggedTick& tick : kept.ticks) log->add(tick);
   log->append(recording_start(run.hello, read_all(run.mesh_fd)));
   for (const telemetry::Frame& frame : with_last_ticks(kept)) log->append(recording_frame(frame));

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// black_box_file.h - one file for one fault: a tick log of every tick, then pictures of them.
+// black_box_file.h - one file for one fault: a tick log of every tick, then frames for the viewer.
 //
 //     SCENE-DATE-NUMBER-FAULT.tactlog      liver-20260131T120000Z-105-loop-late.tactlog
 //
-// The pictures are a recording as tact-view makes them (recording_format.h), at the frame rate, and
-// tick by tick in the last half second. No file is ever written over.
+// The frames are a recording as tact-view makes it (recording_format.h), at the frame rate, and one
+// per tick in the last half second. An existing file is never overwritten.
 #pragma once
 
 #include <string>
@@ -14,14 +14,14 @@
 
 namespace tact::firmware::black_box {
 
-/// What was kept, oldest first.
+/// Ticks and frames, oldest first.
 struct Kept {
   model::Fault fault = model::Fault::kNone;
   std::vector<telemetry::LoggedTick> ticks;
   std::vector<telemetry::Frame> frames;
 };
 
-/// What is the same in every file of a run.
+/// The same in every file of a run.
 struct BlackBoxRun {
   std::string folder;
   std::string scene_name;
@@ -30,15 +30,15 @@ struct BlackBoxRun {
   int mesh_fd = -1;  // the memory file of telemetry_frame.h
 };
 
-/// `asked`, or $XDG_STATE_HOME/tact/black-box, or that below ~/.local/state; not made yet. An
-/// error if nothing can be written there.
+/// `asked`, else $XDG_STATE_HOME/tact/black-box, else the same below ~/.local/state. It need not
+/// exist yet. An error if it could not be created or written to.
 model::Result<std::string> black_box_folder(const std::string& asked);
 
-/// The new file's path; an error names what did not reach the disk.
+/// The new file's path; an error names what was not written to the disk.
 model::Result<std::string> write_black_box(const BlackBoxRun& run, const Kept& kept);
 
-/// The frames with one more for each tick of the last half second: the picture is that of the frame
-/// before it, tool, force and state are the tick's own.
+/// The frames, with one more for each tick of the last half second: organ from the frame before it,
+/// tool, force and state from the tick.
 std::vector<telemetry::Frame> with_last_ticks(const Kept& kept);
 
 }  // namespace tact::firmware::black_box

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// newest_ones.h - the last so many of what was added, oldest first; all room is taken at the start.
+// newest_ones.h - a ring buffer of the newest items, oldest first; allocated once, at the start.
 #pragma once
 
 #include <algorithm>

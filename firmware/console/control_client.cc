@@ -19,28 +19,28 @@ namespace {
 using model::Error;
 using model::Result;
 
-// Chosen: a tactd that runs answers at once.
+// Chosen: a running tactd answers at once.
 constexpr timeval kTimeout{.tv_sec = 5, .tv_usec = 0};
 
-/// A connected socket; -1: nobody listens there, or not one who may be believed.
+/// A connected socket; -1: nobody listens, or the peer is not trusted.
 int connect_to(const std::string& path) {
   const auto address = model::io::socket_address(path);
   const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
   if (!address || fd < 0) return fd < 0 ? fd : (close(fd), -1);
   setsockopt(fd, SOL_SOCKET, SO_RCVTIMEO, &kTimeout, sizeof kTimeout);
   setsockopt(fd, SOL_SOCKET, SO_SNDTIMEO, &kTimeout, sizeof kTimeout);
-  // Root may ask anybody's; others believe only their own user and root.
+  // Root may talk to any user's tactd; other users trust only their own user and root.
   const bool good = connect(fd, model::io::plain(*address), sizeof *address) == 0 &&
                     (geteuid() == 0 || model::io::has_trusted_peer(fd));
   return good ? fd : (close(fd), -1);
 }
 
-/// One word there, one message back.
+/// Sends one word and receives one message.
 Result<Answer> talk(int fd, const ControlName& control, const std::string& word) {
   std::array<char, kLongestControlMessage> message{};
   const bool sent =
       send(fd, word.data(), word.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(word.size());
-  // Who is refused is answered before he has asked: the answer waits behind the end of the peer.
+  // tactd answers a refused client before its request: the answer is read after the hang-up.
   const bool refused = !sent && (errno == EPIPE || errno == ECONNRESET);
   ssize_t n = sent || refused ? recv(fd, message.data(), message.size(), 0) : -1;
   if (n < 0 && errno == ECONNRESET) n = recv(fd, message.data(), message.size(), 0);
@@ -59,11 +59,11 @@ Result<Answer> ask_tactd(const ControlQuestion& question) {
   for (const ControlName& control : find_controls(question.folder, question.scene_path)) {
     if (question.process != 0 && control.process != question.process) continue;
     const int found = connect_to(control.path);
-    // Left over from a tactd that was killed.
+    // No connection: the tactd of this socket was killed.
     if (found < 0) continue;
     alive += fmt::format("{}{}", alive.empty() ? "" : " and ", control.process);
     if (fd >= 0) close(found);
-    // The first is kept; whether there is another one must be known before it is asked.
+    // Keep the first connection; ask only after checking that there is no second one.
     if (fd < 0) fd = found, chosen = control;
   }
   if (fd < 0)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// control_client.h - asks the tactd that runs a scene: the side of `tactctl`.
+// control_client.h - sends one request to the tactd that runs a scene: the client side of tactctl.
 #pragma once
 
 #include "firmware/console/control_socket.h"
@@ -7,13 +7,13 @@
 namespace tact::firmware::console {
 
 struct ControlQuestion {
-  std::string folder;      // the runtime folder of the user whose tactd it is
-  std::string scene_path;  // as tactd was given it, by whatever path
-  pid_t process = 0;       // 0: the only one that runs the scene
+  std::string folder;      // the runtime folder of tactd's user
+  std::string scene_path;  // any path to the scene file
+  pid_t process = 0;       // 0: the only tactd that runs the scene
   std::string word;        // arm, disarm, reset, stop, status
 };
 
-/// What tactd answered; an error: there is none, or several, or it does not answer within 5 s.
+/// tactd's answer; an error if there is no such tactd, if there are several, or after 5 s.
 model::Result<Answer> ask_tactd(const ControlQuestion& question);
 
 }  // namespace tact::firmware::console

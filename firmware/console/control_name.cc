@@ -21,7 +21,7 @@ constexpr std::string_view kBegin = "control-", kEnd = ".sock";
 /// "-HASH.sock" of a scene.
 std::string end_of(const std::string& scene_path) {
   std::error_code failed;
-  // The whole path, without links: tactd and tactctl may name one file differently.
+  // Absolute and without links, because tactd and tactctl may be given different paths to one file.
   const auto whole = std::filesystem::weakly_canonical(scene_path, failed);
   return fmt::format("-{:016x}{}", model::fnv1a(failed ? scene_path : whole.string()), kEnd);
 }
@@ -33,7 +33,7 @@ std::vector<ControlName> controls_that_end_in(const std::string& folder, std::st
     const std::string name = entry.path().filename();
     if (!name.starts_with(kBegin) || !name.ends_with(end)) continue;
     pid_t process = 0;
-    // The number ends at the next dash; what is none gives 0.
+    // from_chars stops at the next dash; without digits `process` stays 0.
     std::from_chars(name.data() + kBegin.size(), name.data() + name.size(), process);
     found.push_back({.process = process, .path = entry.path()});
   }
@@ -41,11 +41,11 @@ std::vector<ControlName> controls_that_end_in(const std::string& folder, std::st
   return found;
 }
 
-/// A socket whose process was killed stays as a file: only a connection tells.
+/// The socket file of a killed process remains: only a connection attempt shows that it is dead.
 bool nobody_listens(const std::string& path) {
   const auto address = model::io::socket_address(path);
   const int probe = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  // ECONNREFUSED alone means that nobody is there; a full queue, say, means somebody.
+  // Only ECONNREFUSED means that nobody listens; a full queue, for example, means a live process.
   const bool dead = address && probe >= 0 &&
                     connect(probe, model::io::plain(*address), sizeof *address) != 0 &&
                     errno == ECONNREFUSED;

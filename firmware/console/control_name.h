@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// control_name.h - where a running tactd listens to its operator, and how `tactctl SCENE` finds it.
+// control_name.h - the name of a tactd's control socket, by which `tactctl SCENE` finds it.
 //
 //     control-PID-HASH.sock   in the runtime folder, which only its owner can open
 //
-// HASH is that of the scene file's whole path, so every tactd of a scene is found, on whatever
-// device, the simulated one included.
+// HASH is the hash of the scene file's absolute path, so every tactd of a scene is found, with any
+// device.
 #pragma once
 
 #include <sys/types.h>
@@ -20,9 +20,9 @@ struct ControlName {
 };
 
 std::string control_path(const std::string& folder, const std::string& scene_path, pid_t process);
-/// Those of this scene in the folder; some may be left over from a tactd that was killed.
+/// The sockets of this scene in the folder, including those left by a killed tactd.
 std::vector<ControlName> find_controls(const std::string& folder, const std::string& scene_path);
-/// Takes away what dead ones left, of whatever scene.
+/// Removes the sockets that killed tactds left, of any scene.
 void remove_dead_controls(const std::string& folder);
 
 }  // namespace tact::firmware::console

@@ -23,19 +23,18 @@ namespace {
 using model::Error;
 using model::Result;
 
-// Chosen, both: tactctl connects, asks and ends.
+// Both chosen: tactctl connects, sends its request and ends.
 constexpr std::size_t kMaxSilent = 8;
 constexpr int kQueue = 8;
-constexpr unsigned kPause_us = 20'000;  // else it would ask again and again
+constexpr unsigned kPause_us = 20'000;  // limits the rate of failing accepts
 
-/// Listener and clients are watched as one descriptor,
-/// which the main thread waits for beside signals.
+/// Adds `fd` to the epoll descriptor. The main thread waits for that one and for signals.
 bool watch_it(int watch, int fd) {
   epoll_event event{.events = EPOLLIN, .data = {.fd = fd}};
   return epoll_ctl(watch, EPOLL_CTL_ADD, fd, &event) == 0;
 }
 
-/// It listens before it has its name: any user finds the name is heard.
+/// Listens under a temporary name first: a client that finds the final name can connect.
 Result<int> listen_at(const std::string& path) {
   const std::string before = path + ".new";
   const auto listener =
@@ -66,7 +65,7 @@ ControlRequest::~ControlRequest() {
 
 void ControlRequest::answer(const Answer& answer) const {
   const std::string message = pack_answer(answer);
-  [[maybe_unused]] const auto heard =  // who has gone needs no answer
+  [[maybe_unused]] const auto heard =  // a client that has gone needs no answer
       send(client_, message.data(), message.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
 }
 
@@ -75,7 +74,7 @@ Result<std::unique_ptr<ControlSocket>> ControlSocket::open(const std::string& pa
   const auto listener = listen_at(path);
   if (!listener) return listener.error();
   const int watch = epoll_create1(EPOLL_CLOEXEC);
-  // Owner of both descriptors and of the file from here on, also where one of them failed.
+  // Owns both descriptors and the file from here on, also after an error below.
   std::unique_ptr<ControlSocket> control(
       new ControlSocket(model::io::SocketFile(path), *listener, watch));
   if (watch < 0 || !watch_it(watch, *listener))
@@ -84,7 +83,7 @@ Result<std::unique_ptr<ControlSocket>> ControlSocket::open(const std::string& pa
 }
 
 ControlSocket::~ControlSocket() {
-  // The name first: who comes now finds nobody, instead of a socket that will not answer.
+  // The name first: a new client then finds no socket, instead of one that does not answer.
   file_.remove();
   for (const int client : silent_) close(client);
   for (const int fd : {listener_, watch_, spare_})
@@ -93,7 +92,7 @@ ControlSocket::~ControlSocket() {
 
 std::optional<ControlRequest> ControlSocket::next() {
   epoll_event event{};
-  // Taken again as soon as one is free.
+  // Reserves a spare descriptor again, as soon as one is free.
   if (spare_ < 0) spare_ = fcntl(listener_, F_DUPFD_CLOEXEC, 0);
   while (epoll_wait(watch_, &event, 1, 0) == 1) {
     if (event.data.fd != listener_) {
@@ -105,8 +104,8 @@ std::optional<ControlRequest> ControlSocket::next() {
   return std::nullopt;
 }
 
-// Without a free descriptor the spare one is given up for the first who asks. False: not even that
-// one is free.
+// Without a free descriptor the spare one is released for the first client. False: even that
+// failed.
 bool ControlSocket::accept_one() {
   const auto accept_it = [this] {
     return accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
@@ -126,7 +125,7 @@ bool ControlSocket::accept_one() {
     stranger.answer({.done = false, .message = "only the user of this tactd, and root, are heard"});
     return true;
   }
-  // Whoever connects and says nothing makes room for the next.
+  // The client that has been silent longest makes room for the new one.
   if (silent_.size() == kMaxSilent) {
     close(silent_.front());
     silent_.erase(silent_.begin());
@@ -139,7 +138,7 @@ std::optional<ControlRequest> ControlSocket::read(int client) {
   std::array<char, 64> word{};
   const auto n = recv(client, word.data(), word.size(), MSG_DONTWAIT);
   if (n < 0 && errno == EAGAIN) return std::nullopt;
-  // One word a connection: what else it sends is not read.
+  // One word per connection: nothing after it is read.
   epoll_ctl(watch_, EPOLL_CTL_DEL, client, nullptr);
   std::erase(silent_, client);
   ControlRequest request(

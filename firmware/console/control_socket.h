@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// control_socket.h - what a person asks of a running tactd by tactctl: one word, one message back.
+// control_socket.h - tactd's side of tactctl: a socket that takes one word and returns one message.
 //
-// A Unix socket of its owner alone, 0600, in a folder that nobody else can write to. The kernel
-// says who asks (SO_PEERCRED); the same user and root are heard. No way leads here from a network.
+// A Unix socket with permissions 0600, in a folder that only its owner can write to. The kernel
+// names the client's user (SO_PEERCRED); only the same user and root are served.
 #pragma once
 
 #include <memory>
@@ -16,19 +16,19 @@
 
 namespace tact::firmware::console {
 
-/// What was done, or the reason why not.
+/// What was done, or why it was refused.
 struct Answer {
   bool done = false;
   std::string message;
 };
 
-/// As it goes over the socket, one message: '+' done or '-' refused, then the message.
+/// One message on the socket: '+' done or '-' refused, then the text.
 std::string pack_answer(const Answer& answer);
 Answer unpack_answer(const std::string& message);
 
 inline constexpr std::size_t kLongestControlMessage = 1024;
 
-/// Somebody waits for the answer; an unanswered request is closed.
+/// A client waits for the answer; the destructor closes its connection.
 class ControlRequest {
  public:
   ControlRequest(int client, std::string word) : client_(client), word_(std::move(word)) {}
@@ -46,16 +46,16 @@ class ControlRequest {
 
 class ControlSocket {
  public:
-  /// Listens at `path`, in whose folder it removes what killed ones left.
+  /// Listens at `path`, and removes the sockets of killed tactds from that folder.
   static model::Result<std::unique_ptr<ControlSocket>> open(const std::string& path);
   ControlSocket(const ControlSocket&) = delete;
   ControlSocket& operator=(const ControlSocket&) = delete;
-  /// Removes its own file alone: another may stand there by now.
+  /// Removes its own file only: another tactd's may stand at the path by now.
   ~ControlSocket();
 
-  /// Readable when next() has something to do.
+  /// Readable when next() has work.
   int fd() const { return watch_; }
-  /// The oldest request that is there. Waits 20 ms at most, where descriptors have run out.
+  /// The oldest waiting request, if any. Sleeps 20 ms if no descriptor is free.
   std::optional<ControlRequest> next();
 
  private:
@@ -66,8 +66,8 @@ class ControlSocket {
 
   model::io::SocketFile file_;
   int listener_, watch_;
-  int spare_ = -1;           // a descriptor to be heard with when no other is free
-  std::vector<int> silent_;  // clients that have not asked yet
+  int spare_ = -1;           // reserved descriptor, to accept a client when no other is free
+  std::vector<int> silent_;  // clients that have sent nothing yet
 };
 
 }  // namespace tact::firmware::console

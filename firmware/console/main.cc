@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* kServices = "/run/tact";  // RuntimeDirectory of tactd@.service
 
-/// That of the caller's own tactd, or of the one that runs as a service.
+/// The folder of the caller's own tactd, or of the one that runs as a service.
 tact::model::Result<std::string> folder_of(const std::string& scene_path) {
   using tact::firmware::console::find_controls;
   auto own = tact::model::io::runtime_directory();

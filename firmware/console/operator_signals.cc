@@ -17,19 +17,19 @@ namespace {
 
 constexpr int kLastSignal = 64;
 constexpr std::array kLeave{SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP, SIGABRT};
-/// What nobody can ignore, and what ends nothing by itself.
+/// Signals that cannot be ignored, and signals that end nothing by default.
 constexpr std::array kLeftAlone{SIGKILL, SIGSTOP, SIGCHLD, SIGCONT, SIGURG, SIGWINCH};
 
-/// glibc keeps two signals to itself (nptl(7)) and lets nobody ignore them; it puts handlers of its
-/// own in place when it needs them.
+/// glibc reserves two signals (nptl(7)) and refuses to ignore them, so this calls the kernel
+/// directly. glibc installs its own handlers when it needs them.
 void ignore_one_of_glibc(int signal) {
   const std::array<std::uintptr_t, 4> kernel_sigaction{reinterpret_cast<std::uintptr_t>(SIG_IGN)};
-  // The kernel's set of 64 signals.
+  // The size of the kernel's set of 64 signals.
   constexpr std::size_t kMaskBytes = kLastSignal / 8;
   syscall(SYS_rt_sigaction, signal, kernel_sigaction.data(), nullptr, kMaskBytes);
 }
 
-/// Unless somebody has a handler for it: a sanitizer, say.
+/// Keeps an existing handler, such as that of a sanitizer.
 void ignore(int signal) {
   struct sigaction now{};
   if (sigaction(signal, nullptr, &now) != 0) return ignore_one_of_glibc(signal);
@@ -48,7 +48,7 @@ void outlive_stray_signals() {
 
 OperatorSignals::OperatorSignals() {
   std::signal(SIGINT, SIG_DFL);  // a shell starts background programs with SIGINT ignored
-  // Blocked in this thread and all that it starts: a thread that is not would end the process.
+  // Blocked in this thread and its later threads: in any other thread it would end the process.
   sigemptyset(&signals_);
   for (const int signal : kLeave) sigaddset(&signals_, signal);
   pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
@@ -66,7 +66,7 @@ bool OperatorSignals::wait_for_end(std::int64_t longest_ns, int other_fd) const 
   std::array<pollfd, 2> either{{{.fd = signal_fd_, .events = POLLIN, .revents = 0},
                                 {.fd = other_fd, .events = POLLIN, .revents = 0}}};
   ppoll(either.data(), either.size(), &longest, nullptr);
-  // The descriptor only wakes; this takes the signal, and works without a descriptor, too.
+  // signal_fd_ only wakes the poll. sigtimedwait takes the signal, also without a descriptor.
   return sigtimedwait(&signals_, nullptr, &kNow) > 0;
 }
 

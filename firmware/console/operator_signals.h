@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // operator_signals.h - the signals that end a running loop: INT, TERM, HUP (a closed terminal),
-// QUIT, TSTP and ABRT set the force to zero, then tactd ends. What every other signal does is in
-// README.md.
+// QUIT, TSTP and ABRT set the force to zero, then tactd ends. README.md lists all other signals.
 #pragma once
 
 #include <csignal>
@@ -9,25 +8,25 @@
 
 namespace tact::firmware::console {
 
-/// First of all in main: no signal that somebody sends by mistake ends or halts a process whose
-/// loop pushes. A file that may not grow is an error of its writer. A crash of its own ends it all
-/// the same: the kernel lets no process ignore that.
+/// Call first in main: ignores signals that would otherwise end or halt the process while the loop
+/// renders force. A write beyond the file size limit becomes an error (XFSZ). A crash still ends
+/// the process, because the kernel does not let it ignore that signal.
 void outlive_stray_signals();
 
 class OperatorSignals {
  public:
-  /// Blocks them in this thread and in all that it starts: wait_for_end() takes them.
+  /// Blocks these signals in this thread and in all that it starts; wait_for_end() takes them.
   OperatorSignals();
   ~OperatorSignals();
   OperatorSignals(const OperatorSignals&) = delete;
   OperatorSignals& operator=(const OperatorSignals&) = delete;
 
-  /// True: a signal asks to end. Waits at most so long for one, or until `other_fd` is readable.
+  /// True: a signal asks to end. Waits at most `longest_ns`, or until `other_fd` is readable.
   bool wait_for_end(std::int64_t longest_ns, int other_fd = -1) const;
 
  private:
   sigset_t signals_{};
-  int signal_fd_ = -1;  // readable while one waits; without it they are seen when the time is up
+  int signal_fd_ = -1;  // wakes the wait; without it a signal is taken at the timeout
 };
 
 }  // namespace tact::firmware::console

@@ -21,7 +21,7 @@ using model::Fault;
 std::string trouble_behind(Fault fault, const hal::Device& device, const hal::SafetyLines& lines) {
   if (fault == Fault::kNone) return {};
   if (fault == Fault::kForbiddenCall) return watch::refused_call();
-  // By their numbers, 107 to 110 (model/fault.h), and the grip line.
+  // By number, 107 to 110 (model/fault.h), and the fault of the grip line.
   const bool of_lines = (fault >= Fault::kEmergencyStop && fault <= Fault::kDeadManReleased) ||
                         fault == Fault::kGripFlaps;
   return of_lines ? lines.trouble() : device.trouble();
@@ -39,8 +39,8 @@ OperatorView::OperatorView(const hal::Device& device, const hal::SafetyLines& li
 bool OperatorView::show(const telemetry::Frame& newest) {
   const bool was_reported = reported_ready_;
   if (newest.state == loop::State::kArmed || newest.state == loop::State::kStopped)
-    arms_itself_ = false;  // at the start alone
-  // Each time it becomes ready it is told again: the words before are no leave to arm.
+    arms_itself_ = false;  // it arms itself only once, at the start
+  // Reported again at each change to ready: an earlier report does not allow arming.
   if (newest.state != loop::State::kReady) reported_ready_ = false;
   // Each fault once, when it latches.
   if (newest.fault != before_.fault && newest.fault != 0) {
@@ -63,13 +63,13 @@ bool OperatorView::show(const telemetry::Frame& newest) {
   const std::string noticed = std::exchange(notice_, lines_.notice());
   if (!notice_.empty() && notice_ != noticed) report(notice_);
   if (terminal_) say(stdout, "\r\033[K{}", status_line(newest, before_));
-  // A live line has no line end that would send it.
+  // The live line has no line end, which would flush it.
   std::fflush(stdout);
   before_ = newest;
   return reported_ready_ && !was_reported;
 }
 
-// A device may tell where it is while its motors have no power yet: it is not ready then.
+// A device may send positions before its motors have power: it is not ready then.
 bool OperatorView::waits(loop::State state) {
   if (state == loop::State::kOff) return true;
   const bool without_power = state == loop::State::kReady && !device_.trouble().empty();
@@ -77,7 +77,7 @@ bool OperatorView::waits(loop::State state) {
   return without_power;
 }
 
-// Each time the tool is found inside: nothing else says why an armed device has no force.
+// Reported at each entry: otherwise an armed device would give no force without an explanation.
 void OperatorView::report_inside(const telemetry::Frame& newest) {
   const auto is_inside = [](const telemetry::FrameSite& site) {
     return site.state == telemetry::SiteState::kInside;

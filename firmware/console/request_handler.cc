@@ -25,8 +25,8 @@ void pause_a_moment() {
 
 void RequestHandler::obey(std::int64_t longest_ns) {
   const bool ends = signals_.wait_for_end(longest_ns, control_ != nullptr ? control_->fd() : -1);
-  // Taken before show(): what was asked before the words
-  // were told must not count as an answer to them.
+  // Taken before show(): a request made before the ready message must not count as a response to
+  // it.
   const auto asked = next_request();
   if (ends) stop();
   const bool just_reported = show();
@@ -37,7 +37,7 @@ std::optional<ControlRequest> RequestHandler::next_request() const {
   return control_ != nullptr ? control_->next() : std::nullopt;
 }
 
-// A request that came before the words, and be it in the moment before, is no answer to them.
+// Requests that arrived before the ready message, even just before it, are refused as too early.
 bool RequestHandler::show() {
   if (!view_.show(newest_())) return false;
   while (const auto early = next_request()) early->answer(do_word(early->word(), true));
@@ -70,9 +70,9 @@ Answer RequestHandler::reset(bool too_early) {
   return {.done = true, .message = view_.device() + ": reset, ready; arm it"};
 }
 
-// Force goes away by it: never too early, and asked of the loop whatever was shown last.
+// Removes force, so it is never too early and does not depend on the frame shown last.
 Answer RequestHandler::disarm() {
-  // Not taken back: a loop that goes on later takes the force away then.
+  // Not withdrawn: a loop that ticks again later removes the force then.
   const auto off = wait_for(requests_.ask(loop::Request::kDisarm));
   if (!off)
     return not_done("disarmed", false,
@@ -86,8 +86,8 @@ Answer RequestHandler::disarm() {
                                            : ": no force; arm it again when it shall have one")};
 }
 
-// A loop that does not tick by then shall not do it later: the request is taken back. What a tick
-// had taken by then may be done all the same.
+// A request that no tick has taken by the timeout is withdrawn, so that it cannot act later. It may
+// still succeed if a tick had already taken it.
 std::optional<bool> RequestHandler::ask_loop(loop::Request request) {
   const std::uint32_t number = requests_.ask(request);
   if (const auto answer = wait_for(number)) return answer;
@@ -95,7 +95,7 @@ std::optional<bool> RequestHandler::ask_loop(loop::Request request) {
   return wait_for(number) == true ? std::optional(true) : std::nullopt;
 }
 
-// For the echo of a request, at most kMaxPauses.
+// Waits for the echo of a request, at most kMaxPauses.
 std::optional<bool> RequestHandler::wait_for(std::uint32_t number) {
   for (int i = 0; i < kMaxPauses; ++i) {
     if (const auto answer = requests_.answer(number)) return answer;
@@ -112,13 +112,13 @@ Answer RequestHandler::not_done(const char* what, const std::optional<bool>& ans
 }
 
 Answer RequestHandler::stop() {
-  // The one request that is never refused.
+  // A stop is never refused.
   requests_.stop.store(true);
   return {.done = true, .message = view_.device() + ": force to zero, then tactd ends"};
 }
 
 Answer RequestHandler::refuse(const char* what, const std::string& why) const {
-  // Counted with those that the loop refuses: the report has one number.
+  // Counted with the loop's own refusals, so the report has one number.
   requests_.refused.fetch_add(1);
   view_.report(fmt::format("not {}: {}", what, why));
   return {.done = false, .message = fmt::format("{}: not {}: {}", view_.device(), what, why)};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// request_handler.h - a person asks, the loop does it or not, and the person hears which.
+// request_handler.h - passes an operator's request to the loop and answers with the outcome.
 //
-// Arming is an act, made once, when it may be: after the words "ready, force is off" were told. A
-// request that comes at another time is refused with the reason, and forgotten.
+// Arming is a single act after the message "ready, force is off". A request at another time is
+// refused with the reason, and not kept.
 #pragma once
 
 #include <functional>
@@ -22,7 +22,7 @@ void pause_a_moment();
 
 class RequestHandler {
  public:
-  /// `control`: none, and nobody can ask. `pause` lets the loop have a moment to answer.
+  /// `control`: null without tactctl. `pause`: sleeps while the loop works on a request.
   RequestHandler(const OperatorSignals& signals, loop::Requests& requests, OperatorView& view,
                  std::function<telemetry::Frame()> newest, ControlSocket* control = nullptr,
                  std::function<void()> pause = pause_a_moment)
@@ -33,7 +33,7 @@ class RequestHandler {
         control_(control),
         pause_(std::move(pause)) {}
 
-  /// Waits at most so long for a request, shows the newest frame, and does or refuses it.
+  /// Waits at most `longest_ns` for a request, shows the newest frame, then handles the request.
   void obey(std::int64_t longest_ns);
 
  private:
@@ -57,7 +57,7 @@ class RequestHandler {
   std::function<void()> pause_;
 };
 
-/// The socket for tactctl; none, and told, where it cannot be opened.
+/// The socket for tactctl; null, with a report, if it cannot be opened.
 std::unique_ptr<ControlSocket> open_control(const std::string& scene_path,
                                             const OperatorView& view);
 

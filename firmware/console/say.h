@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// say.h - messages to a terminal or pipe that may be gone: what cannot be said is no reason to
-// end.
+// say.h - prints to a terminal or pipe that may be gone; a failed write is ignored.
 #pragma once
 
 #include <fmt/format.h>
@@ -10,8 +9,8 @@
 
 namespace tact::firmware::console {
 
-/// As fmt::print, but a write that fails is ignored; fmt's throws, which would end a process whose
-/// loop pushes.
+/// As fmt::print, which however throws on a failed write; that would end a process whose loop
+/// renders force.
 template <typename... T>
 void say(std::FILE* out, fmt::format_string<T...> message, T&&... words) {
   std::fputs(fmt::format(message, std::forward<T>(words)...).c_str(), out);

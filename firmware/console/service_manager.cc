@@ -25,11 +25,11 @@ bool is_service() { return !named_socket().empty(); }
 
 ServiceManager::ServiceManager() {
   const std::string_view path = named_socket();
-  // A name that does not fit is no manager that could be told.
+  // A path that is too long cannot be a socket: nothing is reported.
   if (path.empty() || path.size() >= sizeof address_.sun_path) return;
   address_.sun_family = AF_UNIX;
   std::memcpy(address_.sun_path, path.data(), path.size());
-  if (path.front() == '@') address_.sun_path[0] = '\0';  // a name of the kernel's, no file
+  if (path.front() == '@') address_.sun_path[0] = '\0';  // abstract socket, no file
   address_bytes_ = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + path.size());
   socket_ = socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
 }
@@ -43,7 +43,7 @@ ServiceManager::~ServiceManager() {
 void ServiceManager::report(const ServiceNews& news) {
   if (socket_ < 0) return;
   const bool first_ready = news.may_be_armed && !reported_ready_;
-  // READY at once, since systemctl start waits for it; all else once a second.
+  // READY at once, because systemctl start waits for it; all else once a second.
   if (!first_ready && news.now_ns < next_ns_) return;
   std::string words = first_ready ? "READY=1\n" : "";
   if (news.ticks != ticks_) words += "WATCHDOG=1\n";
@@ -54,7 +54,7 @@ void ServiceManager::report(const ServiceNews& news) {
 }
 
 void ServiceManager::send(const std::string& words) const {
-  [[maybe_unused]] const auto sent =  // a manager that does not read is no reason to end
+  [[maybe_unused]] const auto sent =  // a failed send is ignored
       sendto(socket_, words.data(), words.size(), MSG_NOSIGNAL,
              reinterpret_cast<const sockaddr*>(&address_), address_bytes_);
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// service_manager.h - what systemd is told of a tactd that it has started, by sd_notify(3): text to
-// the socket that NOTIFY_SOCKET names. Where nobody listens nothing happens.
+// service_manager.h - reports to the systemd that started tactd, by sd_notify(3): text to the
+// socket that NOTIFY_SOCKET names. Without that socket nothing is sent.
 //
-// A service never arms. Nobody holds the tool when a machine boots, or when a crash is remedied by
-// a restart: also the simulated device waits for a person then.
+// A service never arms itself, because at boot or at a restart after a crash nobody holds the tool:
+// even the simulated device then waits for an operator.
 #pragma once
 
 #include <sys/socket.h>
@@ -14,28 +14,28 @@
 
 namespace tact::firmware::console {
 
-/// Has a service manager started this process, and waits for its words?
+/// True: a service manager started this process and takes its reports.
 bool is_service();
 
-/// How the run is just now.
+/// The present state of the run.
 struct ServiceNews {
   std::int64_t now_ns = 0;
-  bool may_be_armed = false;  // "ready, force is off" has been told
+  bool may_be_armed = false;  // "ready, force is off" has been reported
   std::uint64_t ticks = 0;    // of the loop, by its progress
   std::string status = {};    // for systemctl status
 };
 
-/// Lives as long as the loop. Of the main thread.
+/// Exists while the loop runs. Main thread only.
 class ServiceManager {
  public:
   ServiceManager();
   ServiceManager(const ServiceManager&) = delete;
   ServiceManager& operator=(const ServiceManager&) = delete;
-  /// STOPPING=1
+  /// Sends STOPPING=1.
   ~ServiceManager();
 
-  /// READY=1 once it may be armed. Each second WATCHDOG=1, if the loop has ticked since the last
-  /// one, and STATUS: a loop that stands still is ended by the manager.
+  /// Sends READY=1 once it may be armed; each second STATUS, and WATCHDOG=1 if the loop has ticked
+  /// since the last one. Without WATCHDOG the manager ends the process.
   void report(const ServiceNews& news);
 
  private:

@@ -9,8 +9,7 @@
 namespace tact::firmware::console {
 
 /// Time, rate, late ticks, force, state, the fault or limit that acts, and how often contact was
-/// lost. The rate is measured:
-/// ticks over time since `before`; 0 when no time has passed.
+/// lost. The rate is ticks over time since `before`; 0 when no time has passed.
 std::string status_line(const telemetry::Frame& frame, const telemetry::Frame& before);
 
 }  // namespace tact::firmware::console

@@ -22,10 +22,10 @@
 namespace tact::firmware::guardian {
 namespace {
 
-// Chosen: patience with a busy PC; at the end the guardian has nothing left to do.
+// Chosen: start-up allows for a busy PC; at the end the guardian has nothing left to do.
 constexpr int kReadyWait_ms = 3000, kEndWait_ms = 100;
 
-// Both programs are built and installed together: one of another build is refused (orders.h).
+// Both programs are installed together; orders.h refuses a guardian of another build.
 std::string beside_this_program() {
   std::error_code none;
   return std::filesystem::read_symlink("/proc/self/exe", none).parent_path() / kProgram;
@@ -44,14 +44,14 @@ sigset_t all_signals() {
   return all;
 }
 
-/// 0: ordinary. Refused where the user may not: the guardian is
-/// then slower to hear, and that was told (pc/rt_setup.h).
+/// 0: SCHED_OTHER. Without the permission the thread stays SCHED_OTHER and reacts later;
+/// pc/rt_setup.h has reported that.
 void become_fifo(int priority) {
   const sched_param wanted{.sched_priority = priority};
   pthread_setschedparam(pthread_self(), priority > 0 ? SCHED_FIFO : SCHED_OTHER, &wanted);
 }
 
-/// The other end has gone, or has something to say: here both mean the same.
+/// The guardian has ended, or something is readable: both are treated alike here.
 bool is_hung_up(const pollfd& file) { return (file.revents & (POLLHUP | POLLERR | POLLIN)) != 0; }
 
 }  // namespace
@@ -65,10 +65,10 @@ model::Result<std::unique_ptr<Guardian>> Guardian::start(const hal::ShutdownFram
   if (const auto why = guardian->spawn(program)) return refused(program, std::strerror(*why));
   guardian->thread_ =
       std::thread([self = guardian.get(), settings] { self->keep(settings.priority); });
-  // The liveness lock must be held before the guardian has it: one that it finds free means "let
-  // go".
+  // The lock must be held before the guardian receives it: the guardian takes a free lock for a
+  // regular end.
   guardian->held_.acquire();
-  // getpid() is for the message that a person reads; nothing is sent to that number.
+  // getpid() appears only in a message; no signal is sent to that number.
   const Orders orders{.words = words, .priority = settings.priority, .process = getpid()};
   if (!give_orders(guardian->socket_, orders, guardian->liveness_.descriptor()))
     return refused(program, std::strerror(errno));
@@ -76,8 +76,8 @@ model::Result<std::unique_ptr<Guardian>> Guardian::start(const hal::ShutdownFram
   return guardian;
 }
 
-/// In a session of its own and with all signals blocked: what a terminal sends to tactd is not for
-/// it. Every other descriptor of ours closes by itself. The errno, if that fails.
+/// In a new session and with all signals blocked, so that a terminal's signals reach only tactd.
+/// Returns the errno of a failure.
 std::optional<int> Guardian::spawn(const std::string& program) {
   std::array<int, 2> ends{};
   dismiss_ = eventfd(0, EFD_CLOEXEC);
@@ -86,9 +86,9 @@ std::optional<int> Guardian::spawn(const std::string& program) {
   socket_ = ends[0];
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
-  // A copy by dup2 stays open in the new program; every other descriptor here closes by itself.
+  // The copy by dup2 stays open in the new program; all other descriptors are close-on-exec.
   posix_spawn_file_actions_adddup2(&files, ends[1], kOrdersFd);
-  // So that it holds no pipe of tactd's standard output open.
+  // Otherwise the guardian would keep a pipe of tactd's standard output open.
   posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
@@ -113,8 +113,9 @@ bool Guardian::is_ready() const {
   return poll(&one, 1, kReadyWait_ms) == 1 && recv(socket_, &answer, 1, MSG_DONTWAIT) == 1;
 }
 
-/// The guardian says nothing after it is ready, so whatever comes is its end. SCHED_FIFO, for a
-/// killed thread must run to be missed.
+/// After its ready byte the guardian sends nothing, so any event on the socket is its end. The
+/// thread is SCHED_FIFO, because a killed thread must be scheduled before the kernel releases its
+/// lock.
 void Guardian::keep(int priority) {
   pthread_setname_np(pthread_self(), "tact-guard");
   const sigset_t all = all_signals();
@@ -128,17 +129,17 @@ void Guardian::keep(int priority) {
     if (poll(either.data(), either.size(), -1) < 0) continue;
     if (!is_hung_up(either[1])) continue;
     lost_.store(true);
-    either[1].fd = -1;  // looked at no more
+    either[1].fd = -1;  // poll ignores it from here on
     either[1].revents = 0;
   }
   liveness_.let_go();
-  // A thread that gives its memory back at FIFO priority holds up all others (pc/rt_setup.h).
+  // A thread that frees its memory at FIFO priority delays all others (pc/rt_setup.h).
   become_fifo(0);
 }
 
 Guardian::~Guardian() {
-  // In this order: the liveness lock is let go in good order, the guardian ends by itself, and only
-  // one that does not is killed. Either way it has sent nothing.
+  // In this order: the lock is released, the guardian ends by itself, and is killed only if it does
+  // not. In both cases it has sent nothing.
   if (thread_.joinable()) {
     const std::uint64_t one = 1;
     static_cast<void>(::write(dismiss_, &one, sizeof one));
@@ -146,7 +147,7 @@ Guardian::~Guardian() {
   }
   pollfd end{.fd = socket_, .events = POLLHUP, .revents = 0};
   if (process_ > 0 && poll(&end, 1, kEndWait_ms) == 0) kill(process_, SIGKILL);
-  // Else it would stay as a zombie for as long as tactd lives.
+  // Otherwise it would stay as a zombie for tactd's lifetime.
   if (process_ > 0) waitpid(process_, nullptr, 0);
   for (const int fd : {socket_, dismiss_})
     if (fd >= 0) close(fd);

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// guardian.h - tactd's side of the process that zeroes the device when tactd has died.
+// guardian.h - tactd's side of the process that zeroes the device after tactd has died.
 //
-//     start      the program tact-guardian next to this one gets shutdown frames, descriptor,
-//                liveness lock
-//     tact-guard a thread of tactd that holds the liveness lock (liveness lock.h) for its whole
-//     life, and
-//                hears at once when the guardian ends
-//     destructor lets go, after the device is off: the guardian ends and has sent nothing
+//     start        spawns tact-guardian from this program's folder and sends it the shutdown
+//                  frames, the device's descriptor and the liveness lock
+//     tact-guard   a thread of tactd that holds the liveness lock (liveness_lock.h) for its whole
+//                  life and detects the end of the guardian at once
+//     destructor   releases the lock after the device is off: the guardian ends, nothing is sent
 //
-// It is spawned, not forked: a fork would make the loop's locked pages faults again. Nothing of it
-// is in the loop: the watch looks at is_lost() (watch/loop_monitor.h).
+// The guardian is spawned, not forked, because after a fork the loop's locked pages would fault
+// again. None of this runs in the loop: the watch polls is_lost() (watch/loop_monitor.h).
 #pragma once
 
 #include <atomic>
@@ -26,20 +25,20 @@
 namespace tact::firmware::guardian {
 
 struct GuardianSettings {
-  int priority = 0;     // SCHED_FIFO, of the guardian and of the thread whose end it waits for
+  int priority = 0;     // SCHED_FIFO, of the guardian and of the thread that holds the lock
   std::string program;  // empty: tact-guardian in the folder of this program
 };
 
 class Guardian {
  public:
-  /// Ready when it returns. The device must stay open as long as the guardian.
+  /// Returns when the guardian is ready. The device must stay open until the destructor ends.
   static model::Result<std::unique_ptr<Guardian>> start(const hal::ShutdownFrames& words,
                                                         const GuardianSettings& settings);
   ~Guardian();
   Guardian(const Guardian&) = delete;
   Guardian& operator=(const Guardian&) = delete;
 
-  /// It has ended, and not because it was let go: nobody zeroes the device any more. Any thread.
+  /// The guardian has ended unasked: a crash of tactd would not zero the device. Any thread.
   const std::atomic<bool>& is_lost() const { return lost_; }
   pid_t process() const { return process_; }
 
@@ -50,7 +49,7 @@ class Guardian {
   void keep(int priority);
 
   LivenessLock liveness_;
-  int socket_ = -1;   // its death hangs this up
+  int socket_ = -1;   // hangs up when the guardian ends
   int dismiss_ = -1;  // eventfd
   pid_t process_ = -1;
   std::binary_semaphore held_{0};

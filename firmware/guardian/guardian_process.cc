@@ -24,17 +24,17 @@ namespace tact::firmware::guardian {
 namespace {
 
 constexpr std::uint32_t kRefuse = SCMP_ACT_ERRNO(EPERM);
-// Chosen, deeper than what follows should go: a page that was touched and locked faults no more.
+// Chosen, deeper than the later calls need: a page touched and locked causes no fault later.
 constexpr std::size_t kTouchedStack_bytes = std::size_t{64} * 1024;
 
-/// As pc/rt_setup.cc does; this small program links nothing of it.
+/// Same as in pc/rt_setup.cc, which this small program does not link.
 __attribute__((noinline)) void touch_stack() {
   volatile char bytes[kTouchedStack_bytes];
   for (std::size_t i = 0; i < sizeof bytes; i += 1024) bytes[i] = 1;
   static_cast<void>(bytes[0]);
 }
 
-/// As far as it goes: nobody is there who could do anything about an error.
+/// Stops at an error: nothing could handle it here.
 void write_all(int fd, std::string_view text) {
   while (!text.empty()) {
     const ssize_t n = write(fd, text.data(), text.size());
@@ -43,7 +43,7 @@ void write_all(int fd, std::string_view text) {
   }
 }
 
-/// The out-of-memory killer takes the one with the memory; only root may ask for never.
+/// Exempts this process from the out-of-memory killer. Only root may lower the score to -1000.
 void outlive_short_memory() {
   const int file = open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
   if (file < 0) return;
@@ -51,17 +51,17 @@ void outlive_short_memory() {
   close(file);
 }
 
-/// As far as this user may: what is missing tactd itself has told.
+/// As far as this user's permissions allow; tactd has reported what is missing.
 void enter_real_time(int priority) {
   touch_stack();
   mlockall(MCL_CURRENT | MCL_FUTURE);
-  // RT-4: a timer slack of 1 ns, asked for before the thread becomes FIFO.
+  // RT-4: a timer slack of 1 ns, set before the thread becomes FIFO.
   prctl(PR_SET_TIMERSLACK, 1);
   const sched_param wanted{.sched_priority = priority};
   sched_setscheduler(0, SCHED_FIFO, &wanted);
 }
 
-/// Written before it is needed: after a death nothing is formatted.
+/// Formatted in advance, so that nothing is formatted after the death.
 struct DeathMessage {
   DeathMessage(int process, const char* what) {
     std::snprintf(text.data(), text.size(), "tact-guardian: tactd (process %d) died; %s\n", process,
@@ -74,7 +74,7 @@ scmp_arg_cmp is(unsigned argument, scmp_datum_t value) {
   return {.arg = argument, .op = SCMP_CMP_EQ, .datum_a = value, .datum_b = 0};
 }
 
-/// By its first argument: this call on this descriptor alone.
+/// Allows this call with this descriptor as its first argument.
 bool allow_on(void* filter, int call, int fd) {
   const scmp_arg_cmp only = is(0, static_cast<scmp_datum_t>(fd));
   return seccomp_rule_add_array(filter, SCMP_ACT_ALLOW, call, 1, &only) == 0;
@@ -85,18 +85,17 @@ bool allow_ioctl(void* filter, int fd, scmp_datum_t request) {
   return seccomp_rule_add_array(filter, SCMP_ACT_ALLOW, SYS_ioctl, 2, only.data()) == 0;
 }
 
-/// Any other call fails. Where the kernel has no filters it goes on without.
+/// Any other call fails. On a kernel without filters the guardian runs unfiltered.
 void filter_calls(int device, int socket) {
   void* filter = seccomp_init(kRefuse);
   if (filter == nullptr) return;
   bool good = true;
-  // Waiting for the liveness lock, a millisecond between two
-  // steps, the end, and what a signal leaves behind.
+  // Waiting for the liveness lock, the pause of a millisecond between two steps, the exit, and the
+  // return from an interrupting signal.
   for (const int call : {SYS_futex, SYS_clock_nanosleep, SYS_exit_group, SYS_exit,
                          SYS_restart_syscall, SYS_rt_sigreturn})
     good = good && seccomp_rule_add(filter, SCMP_ACT_ALLOW, call, 0) == 0;
-  // Shutdown frames over CAN are sent by one call each step,
-  // those over USB by transfers on its endpoint.
+  // Shutdown frames over CAN take one call per step, those over USB transfers on its endpoint.
   good = good && allow_on(filter, SYS_sendmmsg, device) &&
          allow_ioctl(filter, device, USBDEVFS_BULK) &&
          allow_ioctl(filter, device, USBDEVFS_CLEAR_HALT);
@@ -115,8 +114,8 @@ int stand_guard(int socket) {
     write_all(STDERR_FILENO, "tact-guardian: tactd starts this program; nobody else can\n");
     return 2;
   }
-  // In this order: what needs a file or a priority comes before the filter, which then refuses it;
-  // "r", that it stands guard, comes last.
+  // In this order: calls for files and priority come before the filter, which would refuse
+  // it; the ready byte "r" comes last.
   const Orders orders = taken->orders;
   const DeathMessage sent(orders.process, "zero force and power off were sent to its device");
   const DeathMessage unsent(orders.process,

@@ -12,7 +12,7 @@
 namespace tact::firmware::guardian {
 namespace {
 
-/// The same page in both processes.
+/// Maps the page that both processes share.
 pthread_mutex_t* map(int fd) {
   void* memory = mmap(nullptr, sizeof(pthread_mutex_t), PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
   return memory == MAP_FAILED ? nullptr : static_cast<pthread_mutex_t*>(memory);
@@ -33,12 +33,13 @@ model::Result<LivenessLock> LivenessLock::make() {
   if (mutex == nullptr) return refused(fd, errno);
   pthread_mutexattr_t attributes;
   pthread_mutexattr_init(&attributes);
-  // Two processes lock it, and the kernel hands it on when its holder's thread is gone (RT-18).
+  // Shared between processes; robust: the kernel passes it on when the holder's thread ends
+  // (RT-18).
   pthread_mutexattr_setpshared(&attributes, PTHREAD_PROCESS_SHARED);
   pthread_mutexattr_setrobust(&attributes, PTHREAD_MUTEX_ROBUST);
   const int error = pthread_mutex_init(mutex, &attributes);
   pthread_mutexattr_destroy(&attributes);
-  // Owner of both from here on: its destructor closes and unmaps.
+  // From here on the destructor closes and unmaps both.
   LivenessLock liveness(fd, mutex);
   if (error != 0) return refused(-1, error);
   return liveness;
@@ -62,7 +63,7 @@ void LivenessLock::hold() { pthread_mutex_lock(mutex_); }
 
 void LivenessLock::let_go() { pthread_mutex_unlock(mutex_); }
 
-// The death is told as EOWNERDEAD; whatever else cannot be waited for counts as one, too.
+// The kernel reports the death as EOWNERDEAD; any other error of the lock counts as a death, too.
 LivenessLock::End LivenessLock::await() {
   if (pthread_mutex_lock(mutex_) != 0) return End::kDied;
   pthread_mutex_unlock(mutex_);

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// liveness_lock.h - a robust mutex between two processes: who waits for it learns how its holder
-// ended.
+// liveness_lock.h - a robust mutex shared by two processes: the waiter learns how the holder ended.
 //
-//     holder lets go      await() gives kLetGo: it leaves in good order
-//     holder's thread is  await() gives kDied: the kernel marks the mutex as soon as the thread
-//     gone without that   exits, before any memory of its process is freed (RT-18)
+//     let_go() by the holder     await() returns kLetGo: a regular end
+//     holder's thread has ended  await() returns kDied: the kernel marks the mutex as soon as the
+//     without let_go()           thread exits, before it frees memory of the process (RT-18)
 //
-// It lies in a memory file, so it belongs to both and to no name. Set-up code, but for await().
+// It lies in an anonymous memory file shared by descriptor. All but await() is set-up code.
 #pragma once
 
 #include <pthread.h>
@@ -20,17 +19,17 @@ class LivenessLock {
   enum class End { kLetGo, kDied };
 
   static model::Result<LivenessLock> make();
-  /// Of a descriptor that make() gave to another process; it is closed at the end.
+  /// From a descriptor of make() received from another process; closed by the destructor.
   static model::Result<LivenessLock> take(int fd);
   LivenessLock(LivenessLock&& other) noexcept;
   LivenessLock& operator=(LivenessLock&&) = delete;
   ~LivenessLock();
 
   int descriptor() const { return fd_; }
-  /// By the thread whose end is to be told, and which alone may let go.
+  /// Call from the thread to be monitored; only that thread may call let_go().
   void hold();
   void let_go();
-  /// Waits, without limit, for the end of the holder.
+  /// Waits without a timeout for the end of the holder.
   End await();
 
  private:

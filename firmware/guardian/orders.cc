@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kFds = 2;  // liveness lock, device
 
-/// Orders and room for two descriptors, as sendmsg and recvmsg take them.
+/// Orders and a buffer for two descriptors, as sendmsg and recvmsg take them.
 class Message {
  public:
   explicit Message(Orders& orders) : place_{.iov_base = &orders, .iov_len = sizeof orders} {
@@ -34,7 +34,7 @@ class Message {
 }  // namespace
 
 bool give_orders(int socket, const Orders& orders, int liveness_fd) {
-  // sendmsg takes no const.
+  // msghdr takes no pointer to const.
   Orders copy = orders;
   Message message(copy);
   cmsghdr* header = message.descriptors();
@@ -51,8 +51,7 @@ std::optional<TakenOrders> take_orders(int socket) {
   Message message(taken.orders);
   const ssize_t size = recvmsg(socket, message.header(), MSG_CMSG_CLOEXEC);
   const cmsghdr* header = size > 0 ? message.descriptors() : nullptr;
-  // A datagram of another length, or without both
-  // descriptors, is of another build or another sender.
+  // A datagram of another length, or without both descriptors, comes from another build or sender.
   const bool whole = size == static_cast<ssize_t>(sizeof taken.orders) &&
                      taken.orders.magic == Orders{}.magic && header != nullptr &&
                      header->cmsg_type == SCM_RIGHTS &&
@@ -61,7 +60,7 @@ std::optional<TakenOrders> take_orders(int socket) {
   std::array<int, kFds> fds{};
   std::memcpy(fds.data(), CMSG_DATA(header), sizeof fds);
   taken.liveness_fd = fds[0];
-  // The number that came inside the words is one of tactd's table; here it has another.
+  // The fd number inside the datagram is valid in tactd only; the received descriptor replaces it.
   taken.orders.words.fd = fds[1];
   return taken;
 }

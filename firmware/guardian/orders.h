@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// orders.h - what tactd tells its guardian: one datagram, and with it two descriptors.
+// orders.h - the one datagram that tactd sends to its guardian, with two descriptors attached.
 //
-// Both programs are built together; a guardian of another build is refused by size and magic.
+// The guardian refuses orders of another build by their size and magic number.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,9 @@ inline constexpr const char* kProgram = "tact-guardian";
 
 struct Orders {
   std::uint64_t magic = 0x7461'6374'6775'6132;
-  hal::ShutdownFrames words;  // its fd is the one that comes with the datagram
+  hal::ShutdownFrames words;  // its fd is valid only in the sender; the datagram carries another
   std::int32_t priority = 0;  // SCHED_FIFO
-  std::int32_t process = 0;   // whose end it waits for
+  std::int32_t process = 0;   // process id of tactd, for the message
 };
 
 struct TakenOrders {
@@ -27,7 +27,7 @@ struct TakenOrders {
 };
 
 bool give_orders(int socket, const Orders& orders, int liveness_fd);
-/// None: nobody gave whole ones of this build.
+/// None: no complete orders of this build were received.
 std::optional<TakenOrders> take_orders(int socket);
 
 }  // namespace tact::firmware::guardian

@@ -14,7 +14,7 @@ namespace {
 
 std::string line_of(const char* path) { return PcFiles{}.line(path).value_or("unknown"); }
 
-/// Of the first CPU: /proc/cpuinfo has a paragraph for each, and all of them alike.
+/// A field of the first CPU; /proc/cpuinfo has a paragraph for each, with equal fields.
 std::string cpu_fact(const std::string& name) {
   std::istringstream file(PcFiles{}.text("/proc/cpuinfo").value_or(""));
   for (std::string line; std::getline(file, line);) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// environment.h - the facts of a PC and a build that a measurement is worth nothing without.
+// environment.h - facts of PC and build that every measurement must record.
 #pragma once
 
 #include <string>

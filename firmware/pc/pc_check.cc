@@ -38,8 +38,7 @@ std::vector<PcRow> check_pc(const PcQuestion& question) {
   check_permissions(settled, rows);
   check_core(settled, rows);
   check_others(settled, rows);
-  // Rows are written with their remedy, whatever they
-  // find; here it is dropped where nothing is wrong.
+  // Each row is built with its remedy; a green one does not need it.
   for (PcRow& row : rows)
     if (row.verdict == Verdict::kGreen) row.remedy.clear();
   return rows;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// pc_check.h - is this PC fit for hard real time? One row a question: what was found, why it
+// pc_check.h - is this PC fit for hard real time? One row per check: what was found, why it
 // matters, and the remedy as a command.
 //
-// Read from files alone (pc_files.h); nothing is changed, no device is opened. `tact-doctor` shows
-// all rows, `tactd` names the red ones when it starts. Evidence: RT-1 to RT-13.
+// Only reads files (pc_files.h); nothing is changed, no device is opened. `tact-doctor` shows all
+// rows, `tactd` names the red ones at its start. Evidence: RT-1 to RT-13.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -34,15 +34,15 @@ struct PcQuestion {
 
 /// All rows, the most important first.
 std::vector<PcRow> check_pc(const PcQuestion& question);
-/// The core that the rows speak of.
+/// The core that the rows describe.
 int core_in_question(const PcQuestion& question);
 
-/// The red ones in a line, for a program that starts; empty when none is red.
+/// The red rows in one line, for a program that starts; empty when none is red.
 std::string name_red_rows(const std::vector<PcRow>& rows);
 /// [{"name","verdict","found","why","remedy"}]
 nlohmann::json to_json(const std::vector<PcRow>& rows);
 
-// The groups that check_pc() puts together, each in a file of its own.
+// The groups of check_pc(), each in a file of its own.
 void check_kernel(const PcQuestion& question, std::vector<PcRow>& rows);
 void check_permissions(const PcQuestion& question, std::vector<PcRow>& rows);
 void check_core(const PcQuestion& question, std::vector<PcRow>& rows);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The core of the loop: who else may use it, and how fast it wakes.
+// The core of the loop: what else may use it, and how fast it wakes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace tact::firmware::pc {
 namespace {
 
 constexpr const char* kCpus = "/sys/devices/system/cpu";
-constexpr long kQuickExit_us = 20;  // of a sleep state that does not count
+constexpr long kQuickExit_us = 20;  // exit latency up to which a sleep state is harmless
 
 bool contains(const std::vector<int>& cpus, int cpu) {
   return std::find(cpus.begin(), cpus.end(), cpu) != cpus.end();
@@ -21,14 +21,14 @@ std::vector<int> cpu_list(const PcFiles& files, const std::string& name) {
   return parse_cpu_list(files.line(fmt::format("{}/{}", kCpus, name)).value_or(""));
 }
 
-/// The other online CPUs, for commands: "0-2"; empty where there is none.
+/// The other online CPUs, as in commands: "0-2"; empty if there is none.
 std::string other_cpus(const PcQuestion& q) {
   std::vector<int> cpus = cpu_list(q.files, "online");
   cpus.erase(std::remove(cpus.begin(), cpus.end(), q.core), cpus.end());
   return make_cpu_list(cpus);
 }
 
-/// The remedy of what only a boot can change: the parameters are those of tools/deploy/rt.
+/// The remedy that needs a reboot; the parameters are those of tools/deploy/rt.
 std::string boot_parameters(const PcQuestion& q) {
   const std::string others = other_cpus(q);
   if (others.empty()) return "a PC with two cores or more: one for the loop, one for all else";
@@ -69,7 +69,7 @@ PcRow tick_row(const PcQuestion& q) {
           .remedy = boot_parameters(q)};
 }
 
-/// "36 virtio1-req.0": the number and what its device is called, a folder beside its settings.
+/// The device of an interrupt, as in "36 virtio1-req.0": a folder of that name in its /proc folder.
 std::string name_interrupt(const PcFiles& files, const std::string& number) {
   for (const std::string& name : files.names("/proc/irq/" + number))
     if (files.names(fmt::format("/proc/irq/{}/{}", number, name)).empty() &&
@@ -92,13 +92,13 @@ PcRow interrupt_row(const PcQuestion& q) {
   for (const std::string& number : q.files.names("/proc/irq")) {
     const std::string folder = "/proc/irq/" + number;
     auto list = q.files.line(folder + "/effective_affinity_list");
-    // Where an interrupt really comes is told by newer kernels; else where it may come.
+    // Newer kernels report the CPU that is in use; older ones only the CPUs that are allowed.
     if (!list || list->empty()) list = q.files.line(folder + "/smp_affinity_list");
     const std::string name = list ? name_interrupt(q.files, number) : "";
-    if (name.empty()) continue;  // nobody waits for it
+    if (name.empty()) continue;  // no driver uses it
     ++there;
     if (!contains(parse_cpu_list(*list), q.core)) continue;
-    // A row stays readable: the remedy has all numbers, the finding four names.
+    // To keep the row readable, it names four devices; the remedy has all numbers.
     if (here++ < 4) named += fmt::format("{}{} {}", named.empty() ? "" : ", ", number, name);
     numbers += fmt::format("{}{}", numbers.empty() ? "" : " ", number);
   }
@@ -117,7 +117,7 @@ PcRow interrupt_row(const PcQuestion& q) {
   return row;
 }
 
-/// RT-7: a governor that keeps the clock up.
+/// RT-7: a governor that keeps the clock rate high.
 PcRow governor_row(const PcQuestion& q) {
   const std::string path = fmt::format("{}/cpu{}/cpufreq/scaling_governor", kCpus, q.core);
   const auto governor = q.files.line(path);
@@ -135,12 +135,12 @@ PcRow governor_row(const PcQuestion& q) {
                         : "set the highest speed in the firmware (BIOS) or on the host"};
 }
 
-/// RT-5, RT-7: tactd may forbid deep sleep for its own time, or there is none.
+/// RT-5, RT-7: tactd may forbid deep sleep during its run, or the CPU has none.
 PcRow sleep_row(const PcQuestion& q) {
   const std::string folder = fmt::format("{}/cpu{}/cpuidle", kCpus, q.core);
   long slowest_us = 0;
   for (const std::string& state : q.files.names(folder)) {
-    // A state that is switched off does not count.
+    // A disabled state does not count.
     if (q.files.line(fmt::format("{}/{}/disable", folder, state)) == "1") continue;
     const auto exit_us = q.files.line(fmt::format("{}/{}/latency", folder, state));
     slowest_us = std::max(slowest_us, std::strtol(exit_us.value_or("0").c_str(), nullptr, 10));
@@ -158,7 +158,7 @@ PcRow sleep_row(const PcQuestion& q) {
           .remedy = kPowerReason.remedy};
 }
 
-/// RT-7: nobody on the other half of the core.
+/// RT-7: nothing else runs on the other hardware thread of the core.
 PcRow sibling_row(const PcQuestion& q) {
   const auto list =
       q.files.line(fmt::format("{}/cpu{}/topology/thread_siblings_list", kCpus, q.core));
@@ -174,7 +174,7 @@ PcRow sibling_row(const PcQuestion& q) {
       .remedy = "switch SMT off in the firmware (BIOS)"};
   if (siblings.empty()) return row;
   row.found = fmt::format("CPU {} shares the core of CPU {}", make_cpu_list(siblings), q.core);
-  // Until the next boot: a switch that can be taken back.
+  // Switches the sibling off until the next boot.
   row.remedy = fmt::format("echo 0 | sudo tee {}/cpu{}/online", kCpus, siblings.front());
   return row;
 }

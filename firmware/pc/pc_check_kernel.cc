@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Kernel, clock and what the process may ask for.
+// Kernel, clock, and the limits and permissions of the process.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ constexpr unsigned kCapIpcLock = 14, kCapSysNice = 23;              // linux/cap
 bool has_capability(const PcFiles& files, unsigned capability) {
   std::istringstream status(files.text("/proc/self/status").value_or(""));
   for (std::string line; std::getline(status, line);) {
-    // What the process may do now, as hexadecimal bits (proc(5)).
+    // The effective capabilities, as hexadecimal bits (proc(5)).
     if (!line.starts_with("CapEff:")) continue;
     return ((std::strtoull(line.c_str() + 7, nullptr, 16) >> capability) & 1U) != 0;
   }
@@ -58,7 +58,7 @@ PcRow kernel_row(const PcFiles& files) {
 /// RT-9. The flag "hypervisor" is set by the machine that the kernel runs in.
 PcRow machine_row(const PcFiles& files) {
   const auto cpu = files.text("/proc/cpuinfo");
-  // With the blank: the word stands among the flags of a processor.
+  // With the leading blank: the word is one of the processor's flags.
   const bool guest = cpu && cpu->find(" hypervisor") != std::string::npos;
   return {.name = "machine",
           .verdict = !cpu    ? Verdict::kUnknown
@@ -71,7 +71,7 @@ PcRow machine_row(const PcFiles& files) {
           .remedy = "run tactd on the PC itself; here numbers only compare with each other"};
 }
 
-/// RT-10. A clock that is on neither list is not judged.
+/// RT-10. A clock on neither list stays unknown.
 PcRow clock_row(const PcFiles& files) {
   const auto source =
       files.line("/sys/devices/system/clocksource/clocksource0/current_clocksource");
@@ -85,7 +85,7 @@ PcRow clock_row(const PcFiles& files) {
                 "add tsc=reliable clocksource=tsc to GRUB_CMDLINE_LINUX, sudo update-grub, "
                 "boot; dmesg says why the kernel left tsc"};
   if (!source) return row;
-  // Read in user space: the vDSO knows these.
+  // The vDSO reads these in user space.
   for (const char* quick :
        {"tsc", "kvm-clock", "hyperv_clocksource_tsc_page", "arch_sys_counter", "riscv_clocksource"})
     if (*source == quick) row.verdict = Verdict::kGreen;
@@ -94,7 +94,7 @@ PcRow clock_row(const PcFiles& files) {
   return row;
 }
 
-/// RT-11: throttling may stop a runaway loop, and no other.
+/// RT-11: throttling may stop only a runaway loop.
 PcRow throttling_row(const PcFiles& files) {
   const auto runtime = files.line("/proc/sys/kernel/sched_rt_runtime_us");
   const auto period = files.line("/proc/sys/kernel/sched_rt_period_us");
@@ -107,13 +107,13 @@ PcRow throttling_row(const PcFiles& files) {
   const double runtime_us = std::strtod(runtime->c_str(), nullptr);
   const double period_us = std::strtod(period->c_str(), nullptr);
   const bool off = runtime_us < 0.0;
-  // At the usual 95 % it only meets a loop that has run away, and then it keeps the PC usable.
+  // At the usual 95 % it stops only a runaway loop, and keeps the PC usable then.
   row.verdict = off || runtime_us >= 0.95 * period_us ? Verdict::kGreen : Verdict::kRed;
   row.found = off ? "off" : fmt::format("{:.0f} of {:.0f} us are theirs", runtime_us, period_us);
   return row;
 }
 
-/// RT-3. The highest that tactd asks for is the watch's.
+/// RT-3. The highest priority that tactd requests is the watch's.
 PcRow priority_row(const PcFiles& files) {
   const std::string limit = soft_limit(files, "Max realtime priority");
   const bool free = has_capability(files, kCapSysNice);
@@ -130,7 +130,7 @@ PcRow priority_row(const PcFiles& files) {
           .remedy = kPriorityReason.remedy};
 }
 
-/// RT-2. A limit in bytes is red, whatever it is: MCL_FUTURE counts all that is to come.
+/// RT-2. Any limit in bytes is red, because MCL_FUTURE also counts all later memory.
 PcRow memory_row(const PcFiles& files) {
   const std::string limit = soft_limit(files, "Max locked memory");
   const bool free = has_capability(files, kCapIpcLock);
@@ -146,7 +146,7 @@ PcRow memory_row(const PcFiles& files) {
           .remedy = kMemoryReason.remedy};
 }
 
-/// RT-12: an inherited limit kills the thread without a word.
+/// RT-12: an inherited limit kills the thread without a message.
 PcRow time_limit_row(const PcFiles& files) {
   const std::string limit = soft_limit(files, "Max realtime timeout");
   return {.name = "real-time time limit",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What else runs on the PC, and the buses and devices that the loop waits for.
+// Other programs on the PC, and the buses and devices that the loop waits for.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ struct Thread {
   std::string process, id, name;
 };
 
-/// Every thread of the PC that its reader may see.
+/// Every thread of the PC that this user may see.
 std::vector<Thread> find_threads(const PcFiles& files) {
   std::vector<Thread> threads;
   for (const std::string& process : files.names("/proc")) {
@@ -38,7 +38,7 @@ std::vector<Thread> find_threads(const PcFiles& files) {
   return threads;
 }
 
-/// Field 40 of /proc/PID/stat, counted behind the name, which may hold blanks (proc(5)).
+/// Field 40 of /proc/PID/stat, counted after the name, which may contain blanks (proc(5)).
 std::optional<long> real_time_priority(const PcFiles& files, const Thread& thread) {
   const auto stat = files.line(fmt::format("/proc/{}/task/{}/stat", thread.process, thread.id));
   const std::size_t name_end = stat ? stat->rfind(')') : std::string::npos;
@@ -50,7 +50,7 @@ std::optional<long> real_time_priority(const PcFiles& files, const Thread& threa
   return std::strtol(field.c_str(), nullptr, 10);
 }
 
-/// RT-2. The first line of /proc/swaps is its head.
+/// RT-2. The first line of /proc/swaps is a heading.
 PcRow swap_row(const PcFiles& files) {
   const auto swaps = files.text("/proc/swaps");
   const auto lines = swaps ? std::count(swaps->begin(), swaps->end(), '\n') : 0;
@@ -65,7 +65,7 @@ PcRow swap_row(const PcFiles& files) {
           .remedy = "sudo swapoff -a, and take swap out of /etc/fstab"};
 }
 
-/// RT-13: irqbalance moves interrupts back.
+/// RT-13: irqbalance would move interrupts to the loop's core again.
 PcRow balancer_row(const PcFiles& files, const std::vector<Thread>& threads) {
   const bool known = files.is_there("/proc/self/comm") || !threads.empty();
   const bool runs = std::any_of(threads.begin(), threads.end(),
@@ -81,7 +81,7 @@ PcRow balancer_row(const PcFiles& files, const std::vector<Thread>& threads) {
           .remedy = "sudo systemctl disable --now irqbalance"};
 }
 
-/// RT-4. Only of a loop that runs: the limit belongs to a thread.
+/// RT-4. Known only while a loop runs, because the timer slack belongs to a thread.
 PcRow slack_row(const PcFiles& files, const std::vector<Thread>& threads) {
   PcRow row{.name = "timer slack",
             .verdict = Verdict::kUnknown,
@@ -102,18 +102,18 @@ PcRow slack_row(const PcFiles& files, const std::vector<Thread>& threads) {
   return row;
 }
 
-/// irq/24-xhci_hcd, irq/31-can0: threads that carry what the loop waits for.
+/// irq/24-xhci_hcd, irq/31-can0: interrupt threads of the buses that the loop waits for.
 bool carries_a_bus(const std::string& name) {
   if (!name.starts_with("irq/")) return false;
   const std::string device = name.substr(std::min(name.find('-'), name.size() - 1) + 1);
-  // Drivers of USB hosts and CAN controllers by the beginning of their thread's name.
+  // Drivers of USB hosts and CAN controllers, as prefixes of their thread's name.
   for (const char* bus : {"xhci", "ehci", "ohci", "uhci", "dwc2", "dwc3", "can", "peak", "kvaser",
                           "mcan", "c_can", "m_can", "sja1000"})
     if (device.starts_with(bus)) return true;
   return false;
 }
 
-/// RT-13: the interrupts of the device's bus above the loop.
+/// RT-13: the interrupt threads of the device's bus run above the loop's priority.
 PcRow bus_row(const PcFiles& files, const std::vector<Thread>& threads) {
   PcRow row{.name = "bus interrupts",
             .verdict = Verdict::kUnknown,
@@ -137,12 +137,12 @@ PcRow bus_row(const PcFiles& files, const std::vector<Thread>& threads) {
   return row;
 }
 
-/// A row for each part that is plugged in; the devices are not opened.
+/// One row per connected part; no device is opened.
 void check_devices(const PcFiles& files, std::vector<PcRow>& rows) {
   hal::list::PartProbes probes = hal::list::system_probes();
-  // Below the same root as all other files, so that a copy of another PC can be judged.
+  // Below the same root as all other files, so that a copy of another PC's files can be checked.
   probes.roots = {.sys = files.root() + "/sys", .dev = files.root() + "/dev"};
-  if (!files.root().empty()) probes.can_link = nullptr;  // another PC's bus is not ours to ask
+  if (!files.root().empty()) probes.can_link = nullptr;  // a copy has no bus to query
   const auto parts = hal::list::list_devices(probes);
   for (const hal::list::FoundPart& part : parts)
     rows.push_back({.name = "device " + part.name,

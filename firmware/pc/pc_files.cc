@@ -15,9 +15,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMaxCpus = 4096;  // the kernel's own limit is 8192; a torn list must end
+constexpr int kMaxCpus = 4096;  // bounds the result of a corrupt list; the kernel's limit is 8192
 
-/// The number at `at`, which moves behind it. False: none, or no CPU's.
+/// Parses the number at `at` and advances `at`. False: no number, or not one of a CPU.
 bool parse_number(const char*& at, const char* end, int& number) {
   const auto [rest, error] = std::from_chars(at, end, number);
   at = rest;
@@ -43,7 +43,7 @@ std::vector<std::string> PcFiles::names(const std::string& folder) const {
   std::error_code error;  // a process may end while its folder is read
   for (fs::directory_iterator i(root_ + folder, error), end; !error && i != end; i.increment(error))
     found.push_back(i->path().filename().string());
-  // A folder lists in any order; rows and their numbers should not change with it.
+  // The kernel lists in any order; rows and their numbers must not depend on it.
   std::sort(found.begin(), found.end());
   return found;
 }
@@ -69,7 +69,7 @@ std::vector<int> parse_cpu_list(const std::string& list) {
       ++at;
       if (!parse_number(at, end, last)) return {};
     }
-    // Bounded by kMaxCpus, whatever the file says.
+    // At most kMaxCpus.
     for (int cpu = first; cpu <= last; ++cpu) cpus.push_back(cpu);
     if (at != end && *at == ',')
       ++at;
@@ -93,7 +93,7 @@ std::string make_cpu_list(const std::vector<int>& cpus) {
 
 bool is_realtime_kernel(const PcFiles& files) {
   const auto version = files.line("/proc/sys/kernel/version");
-  // RT-1: the version first, as newer kernels lack the file.
+  // RT-1: the version first, because newer kernels lack the other file.
   if (version && version->find("PREEMPT_RT") != std::string::npos) return true;
   return files.line("/sys/kernel/realtime").value_or("0") == "1";
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// rt_needs.h - what hard real time needs of a PC, why, and the remedy: said by the doctor's rows
-// (pc_check.h) and by a start that does not get it (rt_setup.h).
+// rt_needs.h - the requirements of hard real time, each with reason and remedy, for the doctor's
+// rows (pc_check.h) and for a start that lacks them (rt_setup.h).
 #pragma once
 
 namespace tact::firmware::pc {
@@ -8,14 +8,14 @@ namespace tact::firmware::pc {
 inline constexpr int kLoopPriority = 80;   // SCHED_FIFO
 inline constexpr int kWatchAboveLoop = 5;  // the watch's priority over the loop's
 
-/// Why something matters, and the remedy.
+/// Why a requirement matters, and the remedy.
 struct Reason {
   const char* why;
   const char* remedy;
 };
-/// Kernel parameters, CPU speed and interrupts: what the package tact-rt sets.
+/// Sets kernel parameters, CPU speed and interrupts.
 inline constexpr const char* kRtPackageRemedy = "sudo apt install ./tact_*.deb ./tact-rt_*.deb";
-/// The group's rights: what the package tact sets.
+/// Grants the group's rights.
 inline constexpr const char* kGroupRemedy =
     "sudo apt install ./tact_*.deb, sudo adduser $USER haptics, then log in again";
 

@@ -24,21 +24,21 @@
 namespace tact::firmware::pc {
 namespace {
 
-// RT-2. Sizes chosen: MCL_FUTURE locks all of each stack; half of it is touched before the loop.
+// RT-2. Sizes chosen: MCL_FUTURE locks each whole stack; half of it is touched before the loop.
 constexpr std::size_t kStackBytes = std::size_t{256} * 1024;
 constexpr std::size_t kTouchedStackBytes = std::size_t{128} * 1024;
 
-/// RT-2. How glibc takes and keeps memory is settled before it is locked.
+/// RT-2. Configures glibc's allocator, then locks the memory.
 void lock_memory(std::vector<Shortfall>& shortfalls) {
-  mallopt(M_TRIM_THRESHOLD, -1);  // freed memory stays ours
-  mallopt(M_MMAP_MAX, 0);         // no block of its own mapping that goes back on free
+  mallopt(M_TRIM_THRESHOLD, -1);  // never returns freed memory to the kernel
+  mallopt(M_MMAP_MAX, 0);         // no separate mappings, which free() would unmap
   mallopt(M_ARENA_MAX, 1);        // one heap, not one per thread
   if (mlockall(MCL_CURRENT | MCL_FUTURE) == 0) return;
   shortfalls.push_back({fmt::format("memory is not locked ({}): {}; {}", std::strerror(errno),
                                     kMemoryReason.why, kMemoryReason.remedy)});
 }
 
-// RT-5. The kernel keeps the promise while the file stays open.
+// RT-5. The kernel holds the latency while the file stays open.
 int hold_power_latency(std::vector<Shortfall>& shortfalls) {
   const int fd = open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC);
   const std::int32_t latency_us = 0;
@@ -49,10 +49,9 @@ int hold_power_latency(std::vector<Shortfall>& shortfalls) {
   return -1;
 }
 
-/// A page of a stack comes at its first touch, by a page fault: here, not in a tick.
+/// The first touch of a stack page causes a page fault: take it here, not in a tick.
 __attribute__((noinline)) void touch_stack() {
-  // Volatile, or the compiler would leave it out; noinline, so
-  // that the frame lies where the loop's will.
+  // volatile keeps the writes; noinline places the frame where the loop's frames will be.
   volatile char bytes[kTouchedStackBytes];
   for (std::size_t i = 0; i < sizeof bytes; i += 1024) bytes[i] = 1;
   static_cast<void>(bytes[0]);
@@ -67,7 +66,7 @@ int choose_core(const RtSettings& settings) {
   sched_getaffinity(0, sizeof allowed, &allowed);
   const auto isolated =
       parse_cpu_list(PcFiles{}.line("/sys/devices/system/cpu/isolated").value_or(""));
-  // An isolated core, whatever affinity was inherited: that is what it was isolated for.
+  // An isolated core regardless of the inherited affinity: it was isolated for this.
   if (!isolated.empty()) return isolated.back();
   int core = 0;
   for (int i = 0; i < CPU_SETSIZE; ++i)
@@ -80,7 +79,7 @@ ProcessSetup::ProcessSetup(std::vector<Shortfall>& shortfalls) {
     shortfalls.push_back({fmt::format("the kernel is not PREEMPT_RT: {}; {}", kKernelReason.why,
                                       kKernelReason.remedy)});
   prctl(PR_SET_THP_DISABLE, 1, 0, 0,
-        0);  // joining pages into huge ones takes them away for a moment
+        0);  // merging pages into huge ones unmaps them for a moment
   lock_memory(shortfalls);
   latency_fd_ = hold_power_latency(shortfalls);
 }
@@ -129,13 +128,13 @@ void enter_watch_thread(const RtSettings& loop, std::vector<Shortfall>& shortfal
   CPU_ZERO(&cores);
   sched_getaffinity(getpid(), sizeof cores, &cores);  // of the main thread
   CPU_CLR(static_cast<std::size_t>(choose_core(loop)), &cores);
-  // With one core alone the watch shares it, and its priority must do.
+  // With only one core the watch shares it and relies on its priority.
   if (CPU_COUNT(&cores) > 0) pthread_setaffinity_np(pthread_self(), sizeof cores, &cores);
   const int wanted = loop.priority + kWatchAboveLoop;
   const sched_param priority{.sched_priority = wanted};
-  // In a probe this thread has been the loop's before:
-  // what that was refused needs no second message.
-  const bool loop_may = sched_getscheduler(0) == SCHED_FIFO;  // else that is told already
+  // In a probe this thread was set up as the loop's before; if FIFO was refused then, it is not
+  // reported twice.
+  const bool loop_may = sched_getscheduler(0) == SCHED_FIFO;
   const int refused = pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);
   if (refused != 0 && loop_may)
     shortfalls.push_back(

@@ -21,14 +21,13 @@ std::string devices_as_text(const std::vector<FoundPart>& parts) {
   auto out = std::back_inserter(text);
   for (const FoundPart& part : parts) {
     fmt::format_to(out, "{}: {}\n", part.name, part.what);
-    // A part that is ready is told as the lines that a
-    // scene needs; else what it lacks, and the remedy.
+    // A ready part gives the lines for a scene; any other what it lacks, and the remedy.
     if (part.lacking.empty())
       fmt::format_to(out, "  ready: {}\n", part.scene);
     else
       fmt::format_to(out, "  not ready: {}\n  remedy: {}\n", part.lacking, part.remedy);
   }
-  // Of a kind that is not there it is told, too, what was looked for.
+  // For a kind without a part: what was searched for.
   for (const PartKind kind : hal::list::kPartKinds) {
     const bool there = std::any_of(parts.begin(), parts.end(),
                                    [&](const FoundPart& part) { return part.kind == kind; });

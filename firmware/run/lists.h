@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// lists.h - what tactd lists: `--list-devices`, `SCENE --parameters`. For people, and as JSON.
+// lists.h - the lists that tactd prints, as text and JSON: `--list-devices`, `SCENE --parameters`.
 #pragma once
 
 #include <string>
@@ -10,13 +10,13 @@
 
 namespace tact::firmware::run {
 
-/// For people: one paragraph per part, then what is not there.
+/// Text: one paragraph per connected part, then the kinds that were not found.
 std::string devices_as_text(const std::vector<hal::list::FoundPart>& parts);
 
 /// {"devices":[{"kind","name","what","scene","ready","lacking","remedy"}]}
 std::string devices_as_json(const std::vector<hal::list::FoundPart>& parts);
 
-/// For people: one line per number, as --help-scene has them, with the scene's value.
+/// Text: one line per number, as in --help-scene, with the scene's value.
 std::string parameters_as_text(const std::vector<model::reader::SceneNumber>& numbers);
 
 /// {"scene","law","simulated","parameters":[{"key","unit","value","low","high","whole","meaning"}]}

@@ -13,8 +13,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::int64_t kTimeout_ns = 3'000'000'000;  // more than any device's stop may take
-// Chosen: the device gets 2 s to stop, and the process ends within 6 s whatever hangs.
+constexpr std::int64_t kTimeout_ns = 3'000'000'000;  // longer than any device needs to stop
+// Chosen: the device gets 2 s to stop, and the process ends within 6 s even if a call hangs.
 constexpr auto kDeviceStop = 2000ms, kLook = 10ms;
 constexpr unsigned kShutdownFrames_s = 6;
 
@@ -25,18 +25,18 @@ LoopExecutor::LoopExecutor(const GuardedLoop& guarded)
   executor_ = std::thread(&LoopExecutor::keep, this);
 }
 
-// Outside the loop's thread, whose filter would let a device's stop do nothing.
+// Not in the loop's thread, whose filter would refuse the system calls of Device::stop().
 void LoopExecutor::keep() {
   for (const LoopRun& turn : guarded_.turns) {
     take(turn);
     if (guarded_.requests.stop.load()) break;
   }
-  guarded_.device.stop();  // at once: drives watch for their host
+  guarded_.device.stop();  // at once, because drives expect cyclic messages of their host
   ended_.store(true);
 }
 
 void LoopExecutor::take(const LoopRun& turn) {
-  // It starts before the loop's thread and stops after it: no tick is without its watch.
+  // The watch starts before the loop's thread and stops after it, so it monitors every tick.
   watch::LoopMonitor watch(watch::StallDetector(guarded_.period_ns, guarded_.hard_real_time),
                            turn.progress, guarded_.requests, guarded_.lines,
                            guarded_.guardian == nullptr ? nullptr : &guarded_.guardian->is_lost());
@@ -50,7 +50,7 @@ void LoopExecutor::take(const LoopRun& turn) {
 bool LoopExecutor::hangs() {
   if (!guarded_.requests.stop.load() || ended_.load()) return false;
   const std::int64_t now_ns = loop::MonotonicClock().now_ns();
-  // The timeout begins when the request is seen, any user made it.
+  // The timeout starts when the request is first noticed, from any source.
   if (asked_ns_ == 0) asked_ns_ = now_ns;
   return now_ns - asked_ns_ > kTimeout_ns;
 }
@@ -59,10 +59,10 @@ void LoopExecutor::join() {
   if (executor_.joinable()) executor_.join();
 }
 
-// The device may hang in a call, so its stop may hang, too, and so may the disk: SIGALRM ends both.
-// To the guardian this end is a death: it zeroes the device once more.
+// The device's stop and the disk may hang, too: SIGALRM ends the process then. The guardian takes
+// this exit for a death and zeroes the device once more.
 void LoopExecutor::leave_behind(int status, const std::function<void()>& shutdown_frames) {
-  // The lines first: whatever hangs below, the power is on its way off.
+  // The lines first: the power goes off even if a call below hangs.
   guarded_.lines.drop();
   std::signal(SIGALRM, [](int) { _exit(1); });
   alarm(kShutdownFrames_s);
@@ -74,7 +74,7 @@ void LoopExecutor::leave_behind(int status, const std::function<void()>& shutdow
   for (auto waited = 0ms; !stopped.load() && waited < kDeviceStop; waited += kLook)
     std::this_thread::sleep_for(kLook);
   shutdown_frames();
-  // No destructors: one of them would wait for the loop's thread.
+  // No destructors, because one would wait for the loop's thread.
   _exit(status);
 }
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// loop_executor.h - runs the loop, with the threads around it, from its first tick to the device's
-// rest.
+// loop_executor.h - runs the loop and the threads around it, until the device is stopped.
 //
 //     tact-loop    the loop behind its call filter (watch/call_filter.h)
-//     tact-watch   above it (watch/loop_monitor.h)
-//     keeper       starts the loop; stops the device as soon as it has ended
+//     tact-watch   monitors it (watch/loop_monitor.h)
+//     executor     starts the loop; stops the device as soon as the loop has ended
 //     main         signals, status line, hangs (serve_operator in session.cc)
 //
-// Loops may follow each other on one device, each in a thread of its own behind the same filter.
-// A loop that does not end when it is asked to is left behind: the process ends without it.
+// Several loops may run one after another on one device, each in its own thread behind the same
+// filter. A loop that does not end after a stop request is abandoned: the process exits without
+// joining it.
 #pragma once
 
 #include <atomic>
@@ -24,18 +24,18 @@
 
 namespace tact::firmware::run {
 
-/// One loop from its first tick to its letting go.
+/// One loop from its first tick to the release of the device.
 struct LoopRun {
   const loop::Progress& progress;
   std::function<void()> run;
 };
 
 struct GuardedLoop {
-  std::vector<LoopRun> turns;  // one after the other, until a stop request
+  std::vector<LoopRun> turns;  // run one after another, until a stop request
   hal::Device& device;
   hal::SafetyLines& lines;
   loop::Requests& requests;
-  watch::CallFilter* filter = nullptr;  // none: any call is allowed
+  watch::CallFilter* filter = nullptr;  // null: any call is allowed
   const guardian::Guardian* guardian = nullptr;
   pc::RtSettings rt;
   std::int64_t period_ns = 0;
@@ -50,16 +50,15 @@ class LoopExecutor {
   LoopExecutor& operator=(const LoopExecutor&) = delete;
 
   bool ended() const { return ended_.load(); }
-  /// Asked to stop, and 3 s later loop or device are still not at their end. Call a few times a
-  /// second.
+  /// True 3 s after a stop request if loop or device have not ended. Call a few times a second.
   bool hangs();
   /// After ended().
   void join();
-  /// After hangs(): lines low, zero force if the device still answers, the shutdown frames, and out
-  /// within 6 s. The kernel closes what is open; drives with a watchdog let go when they hear
-  /// nothing.
+  /// After hangs(): drops the lines, stops the device if it still answers, calls `shutdown_frames`,
+  /// and exits within 6 s. The kernel then closes all files; drives with a watchdog remove the
+  /// force.
   [[noreturn]] void leave_behind(int status, const std::function<void()>& shutdown_frames);
-  /// Of all turns together, after join().
+  /// Sum over all turns; call after join().
   const ThreadCosts& costs() const { return costs_; }
 
  private:

@@ -16,20 +16,20 @@ using model::Result;
 
 namespace {
 
-// What a scene must keep to on this device and PC, told before a loop starts.
+// Checks what this device and PC require of a scene.
 std::optional<Error> admit(const model::scene::Scene& scene, const PartsSetup& setup,
                            LoopParts& parts) {
-  // After the device is open: its damping decides, and it may tell it only then.
+  // After the device is open, because it may report its damping only then.
   const auto stiffness = admission::check_renderable(scene, *parts.tissue, parts.device->info());
   if (!stiffness) return stiffness.error();
   parts.stiffness = *stiffness;
-  // Simulated time waits: there no law is too slow.
+  // Simulated time waits, so no law is too slow.
   if (setup.simulated_time) return {};
   const auto time =
       admission::check_budget(scene, setup.non_rt ? std::nullopt : std::optional(setup.rt));
   if (!time) return time.error();
   parts.time = *time;
-  // After its time is known: a law that is too slow would be pressed for minutes.
+  // After the time check: presses of a law that is too slow would take minutes.
   auto presses = admission::check_presses(scene, parts.tissue->law(), parts.device->info(),
                                           parts.stiffness.limit_N_per_m);
   if (!presses) return presses.error();
@@ -48,21 +48,21 @@ Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsS
     return Error{fmt::format(
         "{}: --free-run is simulated time, and device.kind \"{}\" is hardware; leave it out",
         scene.path, scene.device.kind)};
-  // The enable line before the device: it is low, so no drive has power while it opens.
+  // The lines before the device: enable is low, so no drive has power while the device opens.
   auto lines = hal::gpio::open_safety_lines(scene.device.lines);
   if (!lines) return Error{fmt::format("{}: {}", scene.path, lines.error().message)};
   parts.lines = std::move(*lines);
   auto device = hal::registry::open_device(scene);
   if (!device) return device.error();
   parts.device = std::move(*device);
-  // At once: from here on a crash would leave an open device.
+  // Immediately, because from here on a crash would leave an open device.
   auto guardian = start_guardian(*parts.device, setup.rt);
   if (!guardian) return guardian.error();
   parts.guardian = std::move(*guardian);
   if (auto error = admit(scene, setup, parts)) return *error;
   parts.limits = gate::limits_for(scene.limits, parts.device->info());
   if (auto error = admission::check_thermal(scene, parts.limits)) return *error;
-  // Of the limits as they act: a quarter of the force on this PC is another checksum.
+  // Of the limits in use: a PC with a quarter of the force has another checksum.
   parts.limits_checksum =
       model::io::limits_checksum(model::limits_in_use(parts.limits, setup.force_share()));
   const double period_s = static_cast<double>(model::period_ns(scene.rate_Hz)) * 1e-9;
@@ -76,7 +76,7 @@ Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsS
 Result<std::unique_ptr<guardian::Guardian>> start_guardian(hal::Device& device,
                                                            const pc::RtSettings& rt) {
   const auto words = device.shutdown_frames();
-  // Simulated, or its vendor's handle cannot be shared (hal/shutdown_frames.h).
+  // Null: simulated, or the vendor's handle cannot be shared (hal/shutdown_frames.h).
   if (!words) return std::unique_ptr<guardian::Guardian>();
   return guardian::Guardian::start(*words, {.priority = rt.priority + 1, .program = {}});
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// loop_parts.h - everything that a tick touches, opened and checked in the order in which it comes
-// to life. Set-up code: `tactd`, `tact-jitter` and `tact-limits` run the same loop, in a thread of
+// loop_parts.h - opens and checks all objects that a tick uses, in the order of their dependences.
+// Set-up code: `tactd`, `tact-jitter` and `tact-limits` run the same loop, in a thread of
 // thread_costs.h.
 #pragma once
 
@@ -23,8 +23,8 @@
 namespace tact::firmware::run {
 
 struct PartsSetup {
-  bool simulated_time = false;  // waits for any law, so no law is too slow
-  bool non_rt = false;          // caps the force; simulated time is never late
+  bool simulated_time = false;  // time waits for the law, so no law is too slow
+  bool non_rt = false;          // caps the force; not set for simulated time
   pc::RtSettings rt;
 
   double force_share() const { return non_rt ? gate::kNonRtForceShare : 1.0; }
@@ -33,22 +33,21 @@ struct PartsSetup {
 struct LoopParts {
   std::unique_ptr<model::scene::Tissue> tissue;
   std::unique_ptr<hal::SafetyLines> lines;
-  std::unique_ptr<guardian::Guardian>
-      guardian;                      // outlives the device; null: it has no shutdown frames
-  hal::registry::OpenDevice device;  // off when the parts go, whatever ended them
+  std::unique_ptr<guardian::Guardian> guardian;  // outlives the device; null: no shutdown frames
+  hal::registry::OpenDevice device;              // its destructor switches the device off
   admission::StiffnessMargin stiffness;
   std::optional<admission::TimeMargin> time;
   std::optional<admission::PressCheck> presses;
   model::Limits limits;         // of scene and device together
-  std::string limits_checksum;  // in use, the PC's share counted
+  std::string limits_checksum;  // of the limits in use, with the force share of this PC
   std::unique_ptr<loop::Controller> controller;
   std::unique_ptr<loop::TickRing> ring;
 };
 
-/// Opens the device of the scene and checks that the law may be felt on it.
+/// Opens the device of the scene and checks that the law may be rendered on it.
 model::Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsSetup& setup);
 
-/// The process that zeroes this device if its program dies; null: the device has no shutdown
+/// Starts the process that zeroes this device if its program dies; null: the device has no shutdown
 /// frames.
 model::Result<std::unique_ptr<guardian::Guardian>> start_guardian(hal::Device& device,
                                                                   const pc::RtSettings& rt);

@@ -35,7 +35,7 @@ void print_fault_lines() {
     say(stdout, "{:>4}  {:18}  {}; {}\n", static_cast<int>(f.fault), f.name, f.cause, f.remedy);
 }
 
-/// What the page must say in words: {"faults": [...], "states": [...]}, states by number.
+/// Texts for the page: {"faults": [...], "states": [...]}, states by number.
 std::string faults_as_json() {
   nlohmann::json list = nlohmann::json::array(), states = nlohmann::json::array();
   for (const model::FaultEntry& f : model::fault_table())
@@ -53,7 +53,7 @@ std::string faults_as_json() {
          "\n";
 }
 
-/// A list for --json PATH; nothing without one.
+/// Writes a list to the path of --json; does nothing without a path.
 int write_json(const std::string& path, const std::string& json) {
   if (path.empty()) return 0;
   if (path == "-")
@@ -81,7 +81,7 @@ int print_parameters(const model::scene::Scene& scene, const firmware::run::Opti
   return write_json(options.json_path, firmware::run::parameters_as_json(scene, *numbers));
 }
 
-/// Exit status 0 only where every force has the same bits and nothing is missing.
+/// Exit status 0 only if all forces have equal bits and no tick is missing or damaged.
 int run_replay(const model::scene::Scene& scene, const std::string& path) {
   const auto tissue = model::scene::make_tissue(scene);
   if (!tissue) return complain(tissue.error().message, 2);
@@ -91,7 +91,7 @@ int run_replay(const model::scene::Scene& scene, const std::string& path) {
       outcome->different, outcome->force_hash);
   if (!outcome->damage.empty())
     return complain(fmt::format("{}: {}; what came before was compared", path, outcome->damage), 1);
-  // Damage goes before a gap, a gap before a difference: what comes first explains what follows.
+  // In this order, because damage explains a gap, and a gap a difference.
   if (outcome->gap_before != 0)
     return complain(fmt::format("{}: ticks {} to {} are missing, so the replay ends there; record "
                                 "to a faster disk",
@@ -104,15 +104,15 @@ int run_replay(const model::scene::Scene& scene, const std::string& path) {
                   1);
 }
 
-/// The --set values of a recorded run: they replay it, unless some are given again.
+/// The --set values of a recorded run, used for its replay unless the command line has some.
 model::Result<std::vector<std::string>> recorded_overrides(const std::string& path) {
   const auto log = firmware::telemetry::TickLogReader::open(path);
   if (!log) return log.error();
   return log->header().overrides_of_run();
 }
 
-/// The scene to be felt. law = "auto" becomes what tact-lab plan chose on this machine, as
-/// --set values that a tick log keeps, so a recording is replayed without the plan.
+/// The scene to run. law = "auto" is replaced by the choice of tact-lab plan on this machine, as
+/// --set values; a tick log keeps them, so its replay needs no plan.
 model::Result<model::scene::Scene> load(firmware::run::Options& options) {
   if (!options.replay_path.empty() && options.overrides.empty()) {
     auto recorded = recorded_overrides(options.replay_path);
@@ -126,7 +126,7 @@ model::Result<model::scene::Scene> load(firmware::run::Options& options) {
   const auto choice = model::scene::overrides_of(plan->sizes);
   say(stderr, "tactd: law \"auto\" is{}: p99.9 {:.3g} us, force error {:.1f} %\n",
       model::scene::command_text(choice), plan->tick_p999_us, 100.0 * plan->force_error_ratio);
-  // At the end, so that the plan's law wins over law=auto.
+  // Appended last, so that the plan's law overrides law=auto.
   options.overrides.insert(options.overrides.end(), choice.begin(), choice.end());
   return model::scene::load_scene(options.scene_path, options.overrides);
 }
@@ -134,7 +134,7 @@ model::Result<model::scene::Scene> load(firmware::run::Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Both before anything can print, or start a thread that a stray signal would end.
+  // Both before anything is printed and before any thread starts.
   model::io::watch_standard_output("tactd");
   firmware::console::outlive_stray_signals();
   firmware::run::Parsed parsed = firmware::run::parse_options(argc, argv);
@@ -146,7 +146,7 @@ int main(int argc, char** argv) {
     say(stdout, "{}", model::scene::scene_reference());
     return 0;
   }
-  // A table of a log needs no scene: only a replay does.
+  // A table of a log needs no scene; only a replay does.
   if (!options.csv_path.empty()) {
     const auto damage = firmware::telemetry::write_tick_csv(options.replay_path, options.csv_path);
     if (!damage) return complain(damage.error().message, 2);
@@ -156,7 +156,7 @@ int main(int argc, char** argv) {
   auto scene = load(options);
   if (!scene) return complain(scene.error().message, 2);
   if (options.parameters) return print_parameters(*scene, options);
-  // Of the command line alone: no scene may name a library and call it trusted.
+  // Only from the command line, so that no scene can name a library and declare it trusted.
   scene->device.trust_library = options.trust_library;
   if (!scene->note.empty()) say(stderr, "tactd: {}\n", scene->note);
   if (!options.replay_path.empty()) return run_replay(*scene, options.replay_path);

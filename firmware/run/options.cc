@@ -16,7 +16,7 @@ void add_run(CLI::App& app, Options& o) {
   app.add_option("SCENE", o.scene_path, "scene file (TOML), e.g. model/scenes/liver.toml");
   app.add_option("--set", o.overrides, "KEY=VALUE override of a scene key, may be repeated")
       ->take_all()
-      // CLI11 would take further words for values of the same --set.
+      // Otherwise CLI11 would take the next words as further values of this --set.
       ->allow_extra_args(false);
   auto* seconds = app.add_option("--seconds", o.duration_s, "stop after this time, s");
   seconds->check(model::io::within(1e-3, 1e7));
@@ -43,7 +43,7 @@ void add_real_time(CLI::App& app, Options& o) {
                "load the vendor SDK without checking who owns the file");
 }
 
-// What is kept of a run, and a kept run again.
+// Recordings of a run, and their replay.
 void add_records(CLI::App& app, Options& o) {
   auto* record = app.add_option("--record", o.record_path, "log every tick to this new file");
   auto* replay =
@@ -73,7 +73,7 @@ void add_telemetry(CLI::App& app, Options& o) {
   app.add_flag("--no-telemetry", o.no_telemetry, "open no socket");
 }
 
-// What is done without a run.
+// Options that print something and start no run.
 void add_answers(CLI::App& app, Options& o) {
   app.add_flag("--check", o.check, "check scene, meshes, law and device, then leave");
   app.add_flag("--faults", o.faults, "print every fault with its cause and remedy, then leave");
@@ -84,14 +84,14 @@ void add_answers(CLI::App& app, Options& o) {
   app.add_flag("--help-scene", o.help_scene, "print every scene key with its range, then leave");
 }
 
-/// What no single option can know.
+/// Contradictions between options.
 std::optional<model::Error> contradiction(const Options& o) {
   if (o.scene_path.empty() && !o.faults && !o.help_scene && !o.list_devices && o.csv_path.empty())
     return model::Error{"SCENE is required"};
-  // Nobody holds the tool when a machine boots, or after a crash.
+  // A service starts at boot or after a crash, when nobody holds the tool.
   if (o.arm && console::is_service())
     return model::Error{"--arm: a service never arms; a person does, by tactctl"};
-  // Simulated time never waits: it would run until somebody kills it.
+  // Simulated time does not wait: it would run until it is killed.
   if (o.free_run && o.duration_s == 0.0 && o.ticks == 0)
     return model::Error{"--free-run: needs --ticks or --seconds"};
   return std::nullopt;

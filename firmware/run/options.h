@@ -16,8 +16,8 @@ struct Options {
   std::string json_path;               // "-" is standard output
   std::string record_path, replay_path, csv_path;
   std::string socket_path;  // empty: in the runtime directory
-  std::string viewers;      // group that may look; empty: nobody but the same user and root
-  bool check = false;       // load everything, then leave
+  std::string viewers;      // group that may read telemetry; empty: only the same user and root
+  bool check = false;       // load everything, then exit
   bool arm = false;         // hardware: force as soon as the device is ready
   bool strict = false;      // refuse to run without hard real time
   bool free_run = false;    // simulated time, as fast as the CPU allows
@@ -35,7 +35,7 @@ struct Options {
   bool has_json_file() const { return !json_path.empty() && json_path != "-"; }
 };
 
-/// What parse_options decided: run, or leave with this status (after --help or a usage error).
+/// Result of parse_options: run, or exit with this status (after --help or a usage error).
 struct Parsed {
   Options options;
   bool leave = false;

@@ -14,7 +14,7 @@ void RealTime::enter(const pc::RtSettings& settings) {
   for (pc::Shortfall& s : probe_rt_threads(settings)) shortfalls_.push_back(std::move(s));
 }
 
-// The last line is the short form of tact-doctor.
+// The last line is a summary of tact-doctor.
 void RealTime::report(const pc::RtSettings& settings) const {
   for (const pc::Shortfall& s : shortfalls_) console::say(stderr, "tactd: {}\n", s.message);
   const std::string red =

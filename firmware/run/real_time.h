@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// real_time.h - hard real time for one run: what the PC gives, and what it lacks.
+// real_time.h - hard real time for one run: requests it from the PC and reports what is missing.
 #pragma once
 
 #include <optional>
@@ -9,14 +9,14 @@
 
 namespace tact::firmware::run {
 
-/// Lasts as long as the run.
+/// Exists during the run.
 class RealTime {
  public:
-  /// Locks memory and the like, and tries what the loop's threads need.
+  /// Locks memory, holds the power latency, and tries what the loop's threads need.
   void enter(const pc::RtSettings& settings);
-  /// What is missing, and what of this PC will make the loop late, to standard error.
+  /// Prints what is missing, and what else on this PC delays the loop, to standard error.
   void report(const pc::RtSettings& settings) const;
-  /// Empty: hard real time, or nobody asked for it.
+  /// Empty: hard real time, or it was not requested.
   const std::vector<pc::Shortfall>& shortfalls() const { return shortfalls_; }
 
  private:

@@ -12,11 +12,11 @@
 namespace tact::firmware::run {
 namespace {
 
-/// A log that this scene cannot play again: why, and what can.
+/// Why this scene cannot replay the log, and what can.
 std::optional<model::Error> check_header(const telemetry::LogHeader& header,
                                          const std::string& path,
                                          const model::scene::Scene& scene) {
-  // Same hash, same forces: anything else would find differences that nobody made.
+  // Another scene would give different forces without any error of the program.
   if (scene.hash != header.scene_hash)
     return model::Error{fmt::format(
         "{}: was recorded with another scene (hash {}, this one has {}); replay it with the scene "
@@ -26,7 +26,7 @@ std::optional<model::Error> check_header(const telemetry::LogHeader& header,
             ? "no --set"
             : "with" + model::scene::command_text(header.overrides_of_run()) +
                   " or no --set at all")};
-  // Only a black box counts its ticks in the header: it begins with a state that it does not hold.
+  // Only a black box has its number of ticks in the header. It starts from an unrecorded state.
   if (header.ticks != 0)
     return model::Error{
         path +
@@ -52,7 +52,7 @@ model::Result<ReplayOutcome> replay(const std::string& path, const model::scene:
   outcome.force_hash = model::kFnvStart;
   telemetry::LoggedTick tick;
   for (; log->next(tick); ++outcome.ticks) {
-    // Contact, gate and supervisor remember: behind a gap nothing can be computed.
+    // Contact, gate and supervisor have state, so nothing can be computed after a gap.
     if (tick.tick != outcome.ticks) {
       outcome.gap_before = tick.tick;
       break;
@@ -66,7 +66,7 @@ model::Result<ReplayOutcome> replay(const std::string& path, const model::scene:
       continue;
     if (outcome.different++ == 0) outcome.first_different = tick.tick;
   }
-  while (log->next(tick)) continue;  // what is behind a gap counts as good all the same
+  while (log->next(tick)) continue;  // counts the good ticks after a gap
   outcome.damage = log->damage();
   return outcome;
 }

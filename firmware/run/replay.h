@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// replay.h - a recorded run computed again: the same samples must give the same forces, bit for
-// bit.
+// replay.h - computes a recorded run again: equal samples must give equal forces, bit for bit.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +15,8 @@ struct ReplayOutcome {
   std::uint64_t ticks = 0;
   std::uint64_t different = 0;        // ticks whose force has other bits
   std::uint64_t first_different = 0;  // tick number, meaningful if different > 0
-  std::uint64_t gap_before = 0;       // the log misses ticks before this one; 0: no gap
-  std::string damage;                 // of the log; what was good before it was compared
+  std::uint64_t gap_before = 0;       // ticks are missing before this one; 0: no gap
+  std::string damage;                 // of the log; the good ticks before it were compared
   std::uint64_t force_hash = 0;       // force_hash.h
 };
 

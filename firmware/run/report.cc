@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-/// The worst with its tick, which a tick log can be asked for.
+/// With the tick of the maximum, to find it in a tick log.
 json percentiles(const loop::LatencyHistogram& h) {
   return {{"count", h.count()},
           {"p50_ns", h.percentile_ns(0.50)},
@@ -23,7 +23,7 @@ json percentiles(const loop::LatencyHistogram& h) {
           {"max_tick", h.max_tick()}};
 }
 
-/// RT-17: each phase by itself, as a wake-up that is in time says nothing of the bus.
+/// RT-17: each phase separately, because a punctual wake-up does not show a slow bus.
 json phases(const loop::LoopStatistics& loop) {
   json all;
   for (std::size_t i = 0; i < loop::kPhaseCount; ++i)
@@ -70,7 +70,7 @@ json to_json(const pc::Environment& e) {
 }
 
 json to_json(const ThreadCosts& c) {
-  // null, not 0: a build that cannot count has not seen none.
+  // null, not 0, if this build cannot count allocations.
   return {{"allocations", c.heap_calls_known ? json(c.heap_calls) : json(nullptr)},
           {"minor_page_faults", c.minor_faults},
           {"major_page_faults", c.major_faults},
@@ -83,7 +83,7 @@ json to_json(const loop::StopTimes& t) {
   return {{"missed_ns", t.missed_ns}, {"fault_ns", t.fault_ns}, {"zero_ns", t.zero_ns}};
 }
 
-/// The largest that a hand was given, beside its limits.
+/// The largest forces and energy of the run, next to their limits.
 json largest_forces(const RunFacts& facts, const loop::LoopStatistics& loop,
                     const gate::Gate& gate) {
   return {{"force_max_N", loop.max_force_N},
@@ -143,7 +143,7 @@ std::string make_summary(const RunFacts& facts, const loop::LoopStatistics& loop
       fmt::format("{}, law {}, on {}: {} ticks at {:g} Hz, {} late, {} skipped{}\n",
                   facts.scene_name, facts.law_title, facts.device_name, loop.ticks, facts.rate_Hz,
                   loop.late_ticks, loop.skipped_ticks, facts.non_rt ? ", non-rt" : "");
-  // Time stands still within a simulated tick.
+  // The clock does not advance within a simulated tick.
   if (facts.simulated_time) {
     out += "  simulated time: durations are not measured\n";
   } else {
@@ -167,7 +167,7 @@ std::string make_summary(const RunFacts& facts, const loop::LoopStatistics& loop
   if (loop.clutches > 0)
     out += fmt::format("\n  the clutch opened {} times: the tool stayed while the handle moved",
                        loop.clutches);
-  // Five seconds: time to touch something; the usual cause is an organ that stands elsewhere.
+  // After 5 s a contact is expected; the usual cause is a misplaced organ.
   if (loop.max_force_N == 0.0 && facts.duration_s > 5.0 && facts.fault == model::Fault::kNone)
     out +=
         "\n  nothing was touched: see organ.position_m, organ.mesh_unit_m and hand.site_m in the "

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// report.h - what a run tells when it ends: a JSON file for machines, a few lines for people.
+// report.h - the report at the end of a run: a JSON file for programs, a few lines for people.
 #pragma once
 
 #include <cstdint>
@@ -20,22 +20,22 @@ struct RunFacts {
   double rate_Hz = 0.0;
   double duration_s = 0.0;
   double force_limit_N = 0.0;
-  std::string limits_checksum;  // of all limits in use
+  std::string limits_checksum;  // of the limits in use
   bool non_rt = false;
-  bool simulated_time = false;  // durations mean nothing
+  bool simulated_time = false;  // durations are meaningless
   std::vector<pc::Shortfall> shortfalls;
   ThreadCosts costs;
   std::vector<hal::DeviceCount> device_counts;
   std::uint64_t dropped_records = 0, dropped_frames = 0;
   loop::State state = loop::State::kOff;
   model::Fault fault = model::Fault::kNone;
-  std::string trouble;                 // what the device says of it
-  std::uint32_t refused_requests = 0;  // of a person, to arm or reset
+  std::string trouble;                 // detail of the fault, from the device or the lines
+  std::uint32_t refused_requests = 0;  // requests to arm or reset
   std::uint64_t force_hash = 0;        // equal for equal runs; 0 when not computed
   long resident_peak_kB = 0;
   std::size_t law_table_bytes = 0;
   bool call_filter = false;              // on the loop's thread
-  std::vector<std::string> black_boxes;  // files that this run left
+  std::vector<std::string> black_boxes;  // files written by this run
 };
 
 nlohmann::json to_json(const pc::Environment& environment);

@@ -35,7 +35,7 @@ int fail(const std::string& message, int status) {
   return status;
 }
 
-// Everything of one run, in the order in which it comes to life.
+// All objects of one run, in the order of their construction.
 class Session {
  public:
   Session(const model::scene::Scene& scene, const Options& options)
@@ -52,12 +52,12 @@ class Session {
   void run_real_time();
   void run_free();
   void serve_operator(LoopExecutor& executor);
-  // Also of a loop that ended before it could tell what the watch had found.
+  // Includes a fault of the watch that no tick has reported.
   model::Fault last_fault() const {
     const model::Fault latched = parts_.controller->newest().fault;
     return latched != model::Fault::kNone ? latched : requests_.fault.load();
   }
-  // A stop request that comes after a tick's look is in no tick.
+  // A stop request after the last tick is in no tick's state.
   loop::State last_state() const {
     return requests_.stop.load() ? loop::State::kStopped : parts_.controller->newest().state;
   }
@@ -67,7 +67,7 @@ class Session {
     return {.simulated_time = options_.free_run, .non_rt = non_rt_, .rt = rt_};
   }
   std::int64_t period_ns() const { return model::period_ns(scene_.rate_Hz); }
-  // As often as a viewer looks.
+  // One shape per frame of a viewer.
   std::uint64_t ticks_per_shape() const {
     return std::max(1ul, static_cast<std::uint64_t>(scene_.rate_Hz / scene_.frame_rate_Hz));
   }
@@ -204,7 +204,7 @@ void Session::run_real_time() {
   costs_ = executor.costs();
 }
 
-// The main thread while the loop runs: waits for signals, tells what happens.
+// The main thread while the loop runs: waits for signals and requests, and reports events.
 void Session::serve_operator(LoopExecutor& executor) {
   console::OperatorView view(*parts_.device, *parts_.lines, requests_.arm_at_start.load(),
                              scene_.path);
@@ -228,7 +228,7 @@ void Session::serve_operator(LoopExecutor& executor) {
     executor.leave_behind(1, [&] {
       view.report(
           "the loop does not come back, so tactd ends without it: switch the device's power off");
-      // The loop is lost: an outlet that was not written to its end is the smaller trouble.
+      // The loop is lost; an error of a sink no longer matters.
       static_cast<void>(telemetry_->stop());
       view.show(telemetry_->newest_frame());
       report_news();
@@ -237,7 +237,7 @@ void Session::serve_operator(LoopExecutor& executor) {
   view.end();
 }
 
-// What the device, the lines and the threads say once they have ended.
+// Collects the final state of device, lines and threads, prints the report, and returns the status.
 int Session::report() {
   const model::Fault fault = last_fault();
   const std::string trouble = console::trouble_behind(fault, *parts_.device, *parts_.lines);

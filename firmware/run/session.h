@@ -7,8 +7,8 @@
 
 namespace tact::firmware::run {
 
-/// Runs until Ctrl-C or the asked time; a fault stops the force and is told at the end. Returns the
-/// exit status: 0 good, 1 a fault or a refusal, 2 bad input.
+/// Runs until Ctrl-C or the requested time; a fault stops the force and is reported at the end.
+/// Exit status: 0 good, 1 a fault or a refusal, 2 bad input.
 int run_session(const model::scene::Scene& scene, const Options& options);
 
 }  // namespace tact::firmware::run

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// start_text.h - what tactd says of scene and device before its loop runs.
+// start_text.h - texts about scene and device that tactd prints before its loop runs.
 #pragma once
 
 #include <string>
@@ -11,13 +11,13 @@
 
 namespace tact::firmware::run {
 
-/// What a person should know, though it hinders nothing; with --check also what takes long to find.
+/// Notes that do not prevent a run; with --check also those that take long to compute.
 std::vector<std::string> start_notes(const model::scene::Scene& scene, const LoopParts& parts,
                                      bool is_check);
-/// At boot a service may come before the bus of its device. Asks once a second, and says once for
-/// what it waits. False: a signal ended the wait.
+/// At boot a service may start before the bus of its device is up. Polls once a second, and reports
+/// once what it waits for. False: a signal ended the wait.
 bool wait_for_bus(const model::scene::Scene& scene, const console::OperatorSignals& signals);
-/// What --check found, in a few lines.
+/// The results of --check, in a few lines.
 std::string check_lines(const model::scene::Scene& scene, const LoopParts& parts);
 
 }  // namespace tact::firmware::run

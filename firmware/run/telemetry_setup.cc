@@ -17,7 +17,7 @@ namespace {
 using model::Error;
 using model::Result;
 
-/// As asked, or in the folder that only this user can open.
+/// As --socket says, or in the folder that only this user can open.
 Result<std::string> socket_path(const RunSetup& run) {
   if (!run.options.socket_path.empty()) return run.options.socket_path;
   auto directory = model::io::runtime_directory();
@@ -25,7 +25,7 @@ Result<std::string> socket_path(const RunSetup& run) {
   return *directory + "/telemetry.sock";
 }
 
-/// What a viewer is told first; with limits as they act on this PC.
+/// The first message to a viewer, with the limits in use on this PC.
 telemetry::Hello hello_of(const RunSetup& run, const std::string& hand_path) {
   const gate::Gate& gate = run.parts.controller->gate();
   const telemetry::HelloFacts facts{
@@ -41,18 +41,18 @@ telemetry::Hello hello_of(const RunSetup& run, const std::string& hand_path) {
   return make_hello(run.scene, *run.parts.tissue, facts);
 }
 
-/// Takes over `meshes`.
+/// Takes ownership of `meshes`.
 std::optional<Error> open_sockets(const RunSetup& run, int meshes, Sinks& out) {
   const auto path = socket_path(run);
   if (!path) return path.error();
   std::optional<gid_t> viewers;
-  // Before a socket is made: a group that does not exist leaves nothing behind.
+  // Before a socket is created: an unknown group then leaves no file.
   if (!run.options.viewers.empty()) {
     const auto group = model::io::find_group(run.options.viewers);
     if (!group) return Error{"--viewers " + group.error().message};
     viewers = *group;
   }
-  // Of a simulated device alone: on hardware no program may move the hand.
+  // Only for a simulated device: no program may move the hand of hardware.
   const std::string hand_path =
       hal::registry::is_simulated(*run.parts.device) ? *path + ".hand" : "";
   auto opened = telemetry::TelemetrySocket::open(*path, hello_of(run, hand_path), meshes, viewers);
@@ -65,7 +65,7 @@ std::optional<Error> open_sockets(const RunSetup& run, int meshes, Sinks& out) {
   return viewers ? model::io::share_socket(hand_path, *viewers) : std::nullopt;
 }
 
-/// False if the --set values are too long for it.
+/// False if the --set values are too long for the header.
 bool fill_header(const RunSetup& run, telemetry::LogHeader& header) {
   header.period_ns = run.period_ns;
   header.limits = run.parts.limits;
@@ -83,7 +83,7 @@ bool fill_header(const RunSetup& run, telemetry::LogHeader& header) {
   keep(environment.git_revision, header.revision);
   keep(pc_name.nodename, header.host);
   keep(fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))), header.began_utc);
-  // Last: a black box does without them, and all else of its header is filled.
+  // Last, so that the rest of the header is filled if this fails: a black box does without them.
   return header.keep_overrides(run.options.overrides);
 }
 
@@ -97,7 +97,7 @@ Result<telemetry::TickLogWriter> open_log(const RunSetup& run) {
   return telemetry::TickLogWriter::create(run.options.record_path, header);
 }
 
-/// Takes over `meshes`.
+/// Takes ownership of `meshes`.
 std::unique_ptr<black_box::BlackBox> make_black_box(const RunSetup& run, const std::string& folder,
                                                     int meshes) {
   black_box::BlackBoxRun facts{.folder = folder,
@@ -105,7 +105,7 @@ std::unique_ptr<black_box::BlackBox> make_black_box(const RunSetup& run, const s
                                .header = {},
                                .hello = hello_of(run, ""),
                                .mesh_fd = meshes};
-  fill_header(run, facts.header);  // too long ones are left out: nothing here is replayed
+  fill_header(run, facts.header);  // --set values that are too long are left out: no replay here
   return std::make_unique<black_box::BlackBox>(std::move(facts), run.scene.rate_Hz,
                                                run.scene.frame_rate_Hz);
 }
@@ -126,14 +126,13 @@ Result<Sinks> open_sinks(const RunSetup& run) {
   }
   if (run.options.no_black_box) return out;
   const auto folder = black_box::black_box_folder(run.options.black_box_folder);
-  // What was asked for and cannot be is an error; the
-  // usual folder is done without, and that is told.
+  // A folder named by --black-box must work; without the default folder there is only a message.
   if (!folder && !run.options.black_box_folder.empty()) return folder.error();
   if (!folder) {
     out.no_black_box = folder.error().message;
     return out;
   }
-  // One of its own: socket and black box close theirs.
+  // A separate memory file, because socket and black box each close their own.
   const auto meshes = telemetry::make_mesh_file(run.scene);
   if (!meshes) return meshes.error();
   out.black_box = make_black_box(run, *folder, *meshes);

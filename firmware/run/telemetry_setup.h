@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// telemetry_setup.h - everything that leaves a run: viewer socket, hand socket, tick log, black
-// box.
+// telemetry_setup.h - opens all outputs of a run: viewer socket, hand socket, tick log, black box.
 #pragma once
 
 #include <memory>
@@ -14,7 +13,7 @@
 
 namespace tact::firmware::run {
 
-/// What is known of the run before it starts.
+/// Facts of the run before it starts.
 struct RunSetup {
   const model::scene::Scene& scene;
   const Options& options;
@@ -26,13 +25,13 @@ struct RunSetup {
 
 struct Sinks {
   telemetry::Sinks sinks;
-  std::unique_ptr<black_box::BlackBox> black_box;  // sinks.recorder, where there is one
+  std::unique_ptr<black_box::BlackBox> black_box;  // the target of sinks.recorder
   std::unique_ptr<hal::sim::HandSocket> hand;      // of a simulated device
-  std::string no_black_box;                        // why there is none although nobody declined it
+  std::string no_black_box;                        // the error, if the default folder is unusable
 };
 
-/// What the command line asks for; the rest stays empty. A black box whose usual folder cannot be
-/// written is done without; one that was asked for is an error.
+/// Opens the outputs that the command line asks for; the others stay empty. An unusable folder for
+/// the black box is an error only if --black-box names it; otherwise the run has no black box.
 model::Result<Sinks> open_sinks(const RunSetup& run);
 
 }  // namespace tact::firmware::run

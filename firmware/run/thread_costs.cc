@@ -12,7 +12,7 @@ namespace tact::firmware::run {
 
 void add_to(ThreadCosts& sum, const ThreadCosts& more) {
   sum.heap_calls += more.heap_calls;
-  // A matter of the build: alike in all turns.
+  // A property of the build, equal in all turns.
   sum.heap_calls_known = more.heap_calls_known;
   sum.call_filter = more.call_filter;
   sum.minor_faults += more.minor_faults;
@@ -24,12 +24,12 @@ void add_to(ThreadCosts& sum, const ThreadCosts& more) {
 ThreadCosts run_as_loop_thread(const pc::RtSettings& settings, const std::function<void()>& loop,
                                watch::CallFilter* filter) {
   pthread_setname_np(pthread_self(), "tact-loop");
-  std::vector<pc::Shortfall> known;  // told before the loop, by probe_rt_threads
+  std::vector<pc::Shortfall> known;  // probe_rt_threads has reported them
   pc::enter_rt_thread(settings, known);
   ThreadCosts costs;
-  // In this order: real time before the filter, which refuses
-  // FIFO; counters last, so that they count the loop alone.
-  costs.call_filter = filter != nullptr && filter->enter_thread() == 0;  // tried when it was made
+  // In this order: real time before the filter, which refuses FIFO; counters last, so that they
+  // count only the loop.
+  costs.call_filter = filter != nullptr && filter->enter_thread() == 0;  // make() has tried it
   rusage before{}, after{};
   {
     const loop::HeapCallCounter heap;
@@ -38,7 +38,7 @@ ThreadCosts run_as_loop_thread(const pc::RtSettings& settings, const std::functi
     getrusage(RUSAGE_THREAD, &after);
     costs.heap_calls = heap.calls();
   }
-  // The filter stays; what it refuses from here on is no fault of the loop.
+  // The filter stays active; a refused call after this is not a fault of the loop.
   if (filter != nullptr) filter->leave_loop();
   pc::leave_rt_thread();
   costs.heap_calls_known = loop::can_count_heap_calls();

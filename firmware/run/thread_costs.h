@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// thread_costs.h - the thread in which a loop runs: real time before its first tick, ordinary again
-// after its last, and what the kernel and the allocator counted between them.
+// thread_costs.h - the loop's thread: sets real time before the first tick, resets it after the
+// last, and reads the counters of kernel and allocator in between.
 #pragma once
 
 #include <cstdint>
@@ -11,20 +11,20 @@
 
 namespace tact::firmware::run {
 
-/// Kernel's and allocator's view of the loop's thread between its first and its last tick.
+/// Counters of the loop's thread between its first and its last tick.
 struct ThreadCosts {
   std::uint64_t heap_calls = 0;
   bool heap_calls_known = false;
-  bool call_filter = false;  // was on
+  bool call_filter = false;  // the filter was active
   long minor_faults = 0, major_faults = 0;
   long voluntary_switches = 0, involuntary_switches = 0;
 };
 
-/// Of several runs together.
+/// Adds one run to a sum.
 void add_to(ThreadCosts& sum, const ThreadCosts& more);
 
-/// Runs `loop` as the loop's thread, which this one becomes and then leaves again; behind the
-/// filter, if there is one, which stays with the thread to its end.
+/// Makes the calling thread the loop's thread, runs `loop`, and resets the thread. A filter, if
+/// any, stays with the thread to its end.
 ThreadCosts run_as_loop_thread(const pc::RtSettings& settings, const std::function<void()>& loop,
                                watch::CallFilter* filter = nullptr);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// force_hash.h - all forces of a run as one number: equal hashes, equal runs.
+// force_hash.h - all forces of a run as one number: equal runs have equal hashes.
 //
-// Bits, not values: -0 is not 0 here, and NaN is itself.
+// The hash is over bits, not values: -0 differs from 0, and equal NaN bits are equal.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ inline WrenchBits bits_of(const model::Wrench& wrench) {
   return std::bit_cast<WrenchBits>(wrench);
 }
 
-/// One step over the bytes of a wrench; begins with model::kFnvStart.
+/// One step over the bytes of a wrench; start with model::kFnvStart.
 inline std::uint64_t hash_wrench(std::uint64_t hash, const model::Wrench& wrench) {
   return model::fnv1a(bits_of(wrench), hash);
 }

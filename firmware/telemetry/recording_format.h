@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// recording_format.h - the files that both tactd and tact-view know: a viewer's recording, and how
-// a tick log begins.
+// recording_format.h - the files shared by tactd and tact-view: a viewer's recording, and the start
+// of a tick log.
 //
 // Recording: FileHeader, Hello, meshes, then one FrameRecord per frame; little-endian, fixed sizes,
-// so a damaged frame costs that frame only. Every part has a CRC-32 (polynomial 0x04C11DB7, as
-// zlib). In version 9 the operator's tracker ran: behind each frame stands one operator record of
-// the viewer, bodies and figure (host/record/operator_record.h). tactd writes version 7.
-// Tick log: LogStart and what else belongs to its header (tick_log.h), then `ticks` records of
-// tick_bytes, each with its CRC, in the machine's own layout, and a whole recording of the same
-// seconds. Without a number of ticks they go on to the end of the file, and no recording follows.
-// A finished file ends with its seal (model/io/seal.h), the SHA-256 of all before.
+// so a damaged frame loses only itself. Every part has a CRC-32 (polynomial 0x04C11DB7, as zlib).
+// In version 9, with a tracked operator, an operator record (bodies and figure,
+// host/record/operator_record.h) follows each frame. tactd writes version 7.
+// Tick log: LogStart and the rest of its header (tick_log.h), then `ticks` records of tick_bytes,
+// each with its CRC, in the machine's own layout, then a complete recording of the same seconds.
+// If `ticks` is 0, the records extend to the end of the file, without a recording.
+// A finished file ends with its seal (model/io/seal.h), the SHA-256 of all bytes before.
 #pragma once
 
 #include <boost/crc.hpp>
@@ -23,7 +23,7 @@
 namespace tact::firmware::telemetry {
 
 inline constexpr char kRecordingMagic[8] = {'t', 'a', 'c', 't', 'r', 'e', 'c', '\n'};
-inline constexpr std::uint32_t kRecordingVersion = 7;         // 7: with the look
+inline constexpr std::uint32_t kRecordingVersion = 7;         // 7: with the scene's appearance
 inline constexpr std::uint32_t kTrackedRecordingVersion = 9;  // 7 with the tracked operator
 
 struct FileHeader {
@@ -45,9 +45,9 @@ inline constexpr char kLogMagic[8] = {'t', 'a', 'c', 't', 'l', 'o', 'g', 'A'};
 
 struct LogStart {
   char magic[8] = {};
-  std::uint32_t header_bytes = 0;  // all that comes before the first tick
-  std::uint32_t tick_bytes = 0;    // a different build is refused
-  std::uint64_t ticks = 0;         // 0: to the end of the file
+  std::uint32_t header_bytes = 0;  // everything before the first tick
+  std::uint32_t tick_bytes = 0;    // the reader refuses a build with another size
+  std::uint64_t ticks = 0;         // 0: up to the end of the file
 };
 
 inline std::uint32_t crc_of(const void* bytes, std::size_t size) {
@@ -65,7 +65,7 @@ inline std::uint32_t crc_of(const Hello& hello, std::span<const std::byte> mesh)
   return crc.checksum();
 }
 
-/// The bytes that begin a recording, and those of one frame.
+/// The bytes at the start of a recording.
 inline std::string recording_start(const Hello& hello, std::span<const std::byte> mesh,
                                    std::uint32_t version = kRecordingVersion) {
   FileHeader header{.version = version,

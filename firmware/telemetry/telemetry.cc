@@ -20,7 +20,7 @@ Telemetry::Telemetry(loop::TickRing& ring, FrameBuilder builder, const FramePace
       watch_fault_(watch_fault),
       force_hash_(model::kFnvStart) {}
 
-// Whoever can tell what a sink has lost has called stop() before.
+// An error of the log is lost here: call stop() first to get it.
 Telemetry::~Telemetry() { static_cast<void>(stop()); }
 
 void Telemetry::start() { thread_ = std::thread(&Telemetry::run, this); }
@@ -32,7 +32,7 @@ std::optional<model::Error> Telemetry::stop() {
   drain();
   publish();
   if (sinks_.recorder) {
-    sinks_.recorder->stands(watch_fault());  // of a loop that ended before it could tell
+    sinks_.recorder->stands(watch_fault());  // a fault after the loop's last tick
     sinks_.recorder->finish();
   }
   return sinks_.log ? sinks_.log->close() : std::nullopt;
@@ -41,14 +41,14 @@ std::optional<model::Error> Telemetry::stop() {
 void Telemetry::run() {
   loop::MonotonicClock clock;
   const std::int64_t frame_ns = model::period_ns(pace_.frame_rate_Hz);
-  // Absolute, as in the loop: a slow disk delays one frame and shifts none.
+  // Absolute times, as in the loop: a slow disk delays one frame without shifting later ones.
   std::int64_t due_ns = clock.now_ns();
   while (!ending_.load(std::memory_order_relaxed)) {
     drain();
     publish();
     due_ns += frame_ns;
-    // Halfway between two deadlines: its wake-up must not
-    // meet the same phase of every tick (RT-14).
+    // Halfway between two deadlines: a wake-up at a deadline would disturb the same phase of every
+    // tick (RT-14).
     clock.sleep_until_ns(loop::next_half_way_ns(due_ns, pace_.loop_period_ns));
   }
 }
@@ -61,7 +61,7 @@ void Telemetry::drain() {
     if (sinks_.log) sinks_.log->add(record_);
     if (sinks_.recorder) sinks_.recorder->add(record_);
   }
-  // Told once: a full disk loses every tick from then on.
+  // Reported once: after a full disk every later tick is lost.
   if (reported_lost_ || !sinks_.log || !sinks_.log->trouble()) return;
   reported_lost_ = true;
   const std::lock_guard lock(newest_mutex_);
@@ -73,8 +73,8 @@ std::optional<model::Error> Telemetry::lost_record() {
   return std::exchange(lost_, std::nullopt);
 }
 
-// What the watch found goes into the next frame, and into the last one again when the loop stands
-// still and sends nothing.
+// A fault from the watch goes into the next frame. If the loop no longer ticks, the last frame is
+// sent again with the fault.
 std::optional<Frame> Telemetry::next_frame() {
   const model::Fault found = watch_fault();
   std::optional<Frame> frame;
@@ -82,10 +82,10 @@ std::optional<Frame> Telemetry::next_frame() {
     frame = builder_.take(ring_.dropped());
   } else {
     if (sinks_.recorder) sinks_.recorder->stands(found);
-    // newest_ is written by this thread alone, so reading it takes no lock.
+    // Only this thread writes newest_, so it reads it without the lock.
     if (found != model::Fault::kNone && newest_.fault == 0) frame = newest_;
   }
-  // The loop's own word goes first; the watch's counts where the loop has not told any.
+  // The loop's own fault has precedence; the watch's is used if the loop reported none.
   if (frame && frame->fault == 0 && found != model::Fault::kNone) {
     frame->fault = static_cast<std::uint16_t>(found);
     frame->state = loop::State::kStopped;
@@ -97,7 +97,7 @@ void Telemetry::publish() {
   if (const std::optional<Frame> frame = next_frame()) {
     if (sinks_.recorder) sinks_.recorder->add(*frame);
     if (sinks_.socket) {
-      // Never waits: a viewer that does not read loses it.
+      // Never waits: a viewer that does not read loses the frame.
       sinks_.socket->send(*frame);
       dropped_frames_.store(sinks_.socket->dropped_frames(), std::memory_order_relaxed);
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// telemetry.h - the ordinary thread behind the ring: feeds viewers, the tick log, a
-// recorder and the status line.
+// telemetry.h - the ordinary thread that reads the loop's ring buffer and feeds viewers, the tick
+// log, a recorder and the status line.
 #pragma once
 
 #include <atomic>
@@ -16,27 +16,27 @@
 
 namespace tact::firmware::telemetry {
 
-/// What else is told every tick and frame, in the telemetry thread: the black box is one.
+/// An additional sink for every tick and frame, called in the telemetry thread: the black box.
 class Recorder {
  public:
   virtual ~Recorder() = default;
   virtual void add(const loop::TickRecord& record) = 0;
   virtual void add(const Frame& frame) = 0;
-  /// A fault of a loop that gives no ticks which could tell it; kNone is none.
+  /// A fault that no tick can report, because the loop no longer ticks. kNone: no fault.
   virtual void stands(model::Fault fault) = 0;
-  /// Now and then, and once at the end; finish() returns when all is on the disk.
+  /// work(): called at each frame time. finish(): called at the end; returns when all is on disk.
   virtual void work() = 0;
   virtual void finish() = 0;
 };
 
-/// Where ticks and frames go; what is missing gets none.
+/// Sinks of ticks and frames; absent ones are skipped.
 struct Sinks {
   std::optional<TelemetrySocket> socket{};
   std::optional<TickLogWriter> log{};
   Recorder* recorder = nullptr;  // outlives the telemetry
 };
 
-/// How often frames leave, and the loop between whose ticks they do (release_schedule.h).
+/// Frame rate, and the period of the loop between whose ticks frames are sent (release_schedule.h).
 struct FramePace {
   double frame_rate_Hz = 60.0;
   std::int64_t loop_period_ns = 1'000'000;
@@ -44,8 +44,8 @@ struct FramePace {
 
 class Telemetry {
  public:
-  /// Without any sink it only drains the ring for the status line. `watch_fault` is what the watch
-  /// has found: a loop that gives no ticks any more cannot tell it.
+  /// Without sinks it only drains the ring for the status line. `watch_fault` is set by the watch,
+  /// because a loop that no longer ticks cannot report its fault.
   Telemetry(loop::TickRing& ring, FrameBuilder builder, const FramePace& pace, Sinks sinks,
             const std::atomic<model::Fault>* watch_fault = nullptr);
   ~Telemetry();
@@ -53,16 +53,16 @@ class Telemetry {
   Telemetry& operator=(const Telemetry&) = delete;
 
   void start();
-  /// Takes what is left in the ring, writes what the black box still keeps, and ends the thread.
-  /// Returns the log's error, if any.
+  /// Drains the ring, writes the pending file of the black box, and ends the thread. Returns the
+  /// log's error, if any.
   std::optional<model::Error> stop();
 
-  /// By hand, for runs without real time: empties the ring, shows the newest.
+  /// Called by hand in runs without real time: drain() empties the ring, publish() sends a frame.
   void drain();
   void publish();
 
   Frame newest_frame() const;
-  /// Once, as soon as the tick log has lost something: what. Any thread.
+  /// The tick log's error, returned once, as soon as it has lost data. Any thread.
   std::optional<model::Error> lost_record();
   std::uint64_t dropped_frames() const { return dropped_frames_.load(std::memory_order_relaxed); }
   /// Over all forces of the run, after stop(); 0 if the ring dropped any.
@@ -82,9 +82,9 @@ class Telemetry {
   const std::atomic<model::Fault>* watch_fault_;
   std::atomic<bool> ending_{false};
   std::atomic<std::uint64_t> dropped_frames_{0};
-  mutable std::mutex newest_mutex_;  // never met by the loop
+  mutable std::mutex newest_mutex_;  // the loop never takes it
   Frame newest_;
-  std::optional<model::Error> lost_;  // with the newest frame's lock
+  std::optional<model::Error> lost_;  // guarded by newest_mutex_
   bool reported_lost_ = false;
   loop::TickRecord record_;
   std::uint64_t force_hash_;

@@ -14,7 +14,7 @@
 namespace tact::firmware::telemetry {
 namespace {
 
-/// A field of a message: cut to its size, and always ended.
+/// Truncates to the field's size; always zero-terminated.
 template <std::size_t kSize>
 void put(char (&field)[kSize], const std::string& text) {
   const std::size_t length = std::min(text.size(), kSize - 1);
@@ -41,7 +41,7 @@ void put(Frame& frame, const loop::TickInput& input, const loop::TickOutput& out
   put(frame.force_N, output.written.force_N);
   put(frame.torque_Nm, output.written.torque_Nm);
   put(frame.wanted_force_N, output.wanted.force_N);
-  // The gate lets 8 N through at the most, and 32 N have room.
+  // The gate allows at most 8 N; the field holds 32 N.
   frame.grip_force_mN =
       static_cast<std::int16_t>(std::clamp(1e3 * output.written_grip_N, -32'000.0, 32'000.0));
   frame.fault = static_cast<std::uint16_t>(output.fault);
@@ -52,7 +52,7 @@ void put(Frame& frame, const loop::TickInput& input, const loop::TickOutput& out
 
 float to_us(std::int64_t ns) { return static_cast<float>(static_cast<double>(ns) * 1e-3); }
 
-/// In the order of telemetry_record.h; floats, as a picture needs no more.
+/// In the order of telemetry_record.h; float is precise enough for drawing.
 void append(std::vector<char>& bytes, const model::mesh::SurfaceMesh& mesh) {
   const auto add = [&bytes](const void* data, std::size_t size) {
     const char* from = static_cast<const char*>(data);
@@ -77,14 +77,14 @@ Hello make_hello(const model::scene::Scene& scene, const model::scene::Tissue& t
   hello.tool_triangles = static_cast<std::uint32_t>(scene.tool_mesh.triangle.size());
   hello.site_count = static_cast<std::uint32_t>(scene.tool.spheres.size());
   std::array<double, kMaxRings> ring_m{};
-  // At no depth, in any place: only how many rings there are is asked.
+  // Any point and no indentation: only the number of profile points is needed.
   hello.ring_count = static_cast<std::uint32_t>(tissue.law().contact_law().profile(
       {.surface_point = {.triangle = 0, .weight = {1, 0, 0}}}, ring_m));
   hello.ring_pitch_m = static_cast<float>(tissue.law().contact_law().ring_pitch_m());
   hello.rate_Hz = static_cast<float>(scene.rate_Hz);
   hello.frame_rate_Hz = static_cast<float>(scene.frame_rate_Hz);
   hello.force_limit_N = static_cast<float>(facts.force_limit_N);
-  // Rounded up, as 0 says that there is no torque; what is a whole number stays one.
+  // Rounded up, because 0 means that there is no torque; 1e-6 keeps whole numbers as they are.
   hello.torque_limit_mNm = static_cast<std::uint16_t>(
       std::clamp(std::ceil(1e3 * facts.torque_limit_Nm - 1e-6), 0.0, 65'535.0));
   hello.continuous_force_N = static_cast<float>(facts.continuous_force_N);
@@ -116,7 +116,7 @@ model::Result<int> make_mesh_file(const model::scene::Scene& scene) {
   append(bytes, scene.tool_mesh);
   for (const model::mesh::Rgb& color : scene.look.vertex_color)
     bytes.insert(bytes.end(), color.begin(), color.end());
-  // Sealed at last, so that a viewer can map it without fear that it shrinks, and change nothing.
+  // Sealed last, so that a viewer can map it safely: it can neither shrink nor change.
   const int fd = memfd_create("tact-meshes", MFD_CLOEXEC | MFD_ALLOW_SEALING);
   std::size_t written = 0;
   while (fd >= 0 && written < bytes.size()) {
@@ -135,13 +135,13 @@ void FrameBuilder::add(const loop::TickRecord& record) {
   if (first_due_ns_ < 0) first_due_ns_ = record.due_ns;
   const float margin_us = to_us(record.margin_ns);
   const auto given_J = static_cast<float>(record.output.given_energy_J);
-  // tick_us_ is empty at the first tick of a frame: extremes begin again.
+  // tick_us_ is empty at the first tick of a frame: the extremes start again.
   given_energy_J_ = tick_us_.empty() ? given_J : std::max(given_energy_J_, given_J);
   worst_margin_us_ = tick_us_.empty() ? margin_us : std::min(worst_margin_us_, margin_us);
-  // The total of the tick before: a tick's own is known after its record has left.
+  // The total of the tick before: a tick's own total is known only after its record is published.
   tick_us_.push_back(to_us(record.phase_ns[static_cast<std::size_t>(loop::Phase::kTotal)]));
   peak_force_N_ = std::max(peak_force_N_, static_cast<float>(norm(record.output.written.force_N)));
-  // A limit that acted for one tick is seen in the frame, though the newest tick has none.
+  // A limit that acted for only one tick still appears in the frame.
   if (record.output.limit != model::Fault::kNone) limit_ = record.output.limit;
   newest_ = record;
 }
@@ -151,7 +151,7 @@ Frame frame_of_tick(const Frame& picture, const LoggedTick& tick, std::int64_t t
   frame.tick = tick.tick;
   frame.time_ns = time_ns;
   put(frame, tick.input, tick.output);
-  // Of this tick alone: frame and tick are one here.
+  // The extremes of this one tick.
   frame.peak_force_N = static_cast<float>(norm(tick.output.written.force_N));
   frame.rms_force_N = static_cast<float>(tick.output.rms_force_N);
   frame.given_energy_J = static_cast<float>(tick.output.given_energy_J);
@@ -170,7 +170,7 @@ Frame FrameBuilder::take(std::uint64_t dropped_records) {
   put(frame, r.input, r.output);
   frame.worst_margin_us = worst_margin_us_;
   const auto middle = tick_us_.begin() + static_cast<std::ptrdiff_t>(tick_us_.size() / 2);
-  // It moves them about; they are forgotten below.
+  // Reorders tick_us_, which is cleared below.
   std::nth_element(tick_us_.begin(), middle, tick_us_.end());
   frame.median_tick_us = tick_us_.empty() ? 0.0f : *middle;
   frame.peak_force_N = peak_force_N_;
@@ -192,7 +192,7 @@ void FrameBuilder::add_patch(FramePatch& patch) {
   static_assert(kMaxPatchVertices == model::contact::kMaxShapeNodes &&
                 kMaxCutsReported == model::contact::kCutWindow);
   constexpr double kMax_um = std::numeric_limits<std::int16_t>::max();
-  shapes_.read(shape_);  // or the one before
+  shapes_.read(shape_);  // keeps the last shape if there is no new one
   patch.vertex_count = shape_.node_count;
   patch.cut_total = shape_.cut_total;
   patch.cut_first = shape_.cut_first;
@@ -201,7 +201,7 @@ void FrameBuilder::add_patch(FramePatch& patch) {
   std::copy(shape_.cut_triangle.begin(), shape_.cut_triangle.end(), patch.cut_triangle);
   for (std::size_t i = 0; i < shape_.node_count; ++i)
     for (std::size_t k = 0; k < 3; ++k) {
-      // Micrometres in 16 bits: half the bytes of a float, up to 32 mm; beyond, it is cut off.
+      // Micrometres in 16 bits: half the size of a float; clamped at 32 mm.
       const double um = 1e6 * static_cast<double>(shape_.displacement_m[i][k]);
       patch.displacement_um[i][k] =
           static_cast<std::int16_t>(std::clamp(std::round(um), -kMax_um, kMax_um));
@@ -215,8 +215,8 @@ void FrameBuilder::add_site(const model::contact::SphereContact& sphere_contact,
   put(site.shift_m, sphere_contact.shift_m);
   site.depth_m = static_cast<float>(sphere_contact.depth_m);
   site.state = static_cast<SiteState>(sphere_contact.state);
-  // Its own indentation, as the page adds the indentations up; what lies in another's indentation
-  // has none.
+  // Only the sphere's own indentation, because the page adds up all indentations. A sphere within
+  // the indentation of another has none.
   const bool is_held = sphere_contact.state == model::contact::ContactState::kHeld;
   const bool presses = sphere_contact.state == model::contact::ContactState::kTouching &&
                        sphere_contact.indentation_m > 0.0;

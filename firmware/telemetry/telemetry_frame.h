@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// telemetry_frame.h - from tick records to what a viewer shows: one hello, then a frame now and
-// then.
+// telemetry_frame.h - turns tick records into messages for viewers: one Hello, then Frames.
 #pragma once
 
 #include <vector>
@@ -28,16 +27,16 @@ struct HelloFacts {
 
 Hello make_hello(const model::scene::Scene& scene, const model::scene::Tissue& tissue,
                  const HelloFacts& facts);
-/// A sealed memory file with the meshes as telemetry_record.h lays them out.
+/// A sealed memory file of the meshes, laid out as telemetry_record.h says.
 model::Result<int> make_mesh_file(const model::scene::Scene& scene);
 
-/// One tick in the picture of the frame before it.
+/// One tick as a frame: what the tick does not hold comes from `picture`, the frame before it.
 Frame frame_of_tick(const Frame& picture, const LoggedTick& tick, std::int64_t time_ns);
 
-/// Gathers records; a frame shows the newest and the extremes since the frame before.
+/// Collects records; a frame has the newest values, and the extremes since the last frame.
 class FrameBuilder {
  public:
-  /// `indentations` and `shapes` outlive the builder; profiles are solved here, far from the loop.
+  /// `indentations` and `shapes` must outlive the builder, which solves profiles outside the loop.
   FrameBuilder(const model::contact::IndentationView& indentations, loop::ShapeSlot& shapes,
                bool non_rt)
       : indentations_(indentations), shapes_(shapes), non_rt_(non_rt) {}

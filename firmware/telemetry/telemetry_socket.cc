@@ -16,14 +16,14 @@ namespace {
 using model::Error;
 using model::Result;
 
-// Chosen: each costs a call a frame. More wait in the queue of the socket.
+// Chosen: each client costs a system call per frame. Further ones wait in the socket's queue.
 constexpr std::size_t kMaxClients = 16;
 
 }  // namespace
 
 Result<TelemetrySocket> TelemetrySocket::open(const std::string& path, const Hello& hello,
                                               int mesh_fd, std::optional<gid_t> viewers) {
-  // Nobody but this user can connect from the first moment; the group is let in last.
+  // From the first moment only this user can connect; the group is admitted last.
   const auto bound = model::io::bind_socket(path, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC);
   if (!bound) return bound.error();
   const int fd = *bound;
@@ -32,7 +32,7 @@ Result<TelemetrySocket> TelemetrySocket::open(const std::string& path, const Hel
     close(fd);
     return error;
   }
-  // Owner of the file from here on: an error below removes it.
+  // Owns the file from here on: an error below removes it.
   TelemetrySocket opened(model::io::SocketFile(path), hello, fd, mesh_fd,
                          {.user = std::nullopt, .group = viewers});
   if (viewers)
@@ -61,8 +61,8 @@ void TelemetrySocket::accept_clients() {
   while (clients_.size() < kMaxClients) {
     const int client = accept4(listen_fd_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
     if (client < 0) return;
-    shutdown(client, SHUT_RD);  // whatever it says is not listened to
-    // Who is at the other end is asked before it gets anything.
+    shutdown(client, SHUT_RD);  // nothing is read from a client
+    // The peer's user is checked before anything is sent.
     if (model::io::has_trusted_peer(client, trust_) && greet(client))
       clients_.push_back(client);
     else
@@ -71,7 +71,7 @@ void TelemetrySocket::accept_clients() {
 }
 
 bool TelemetrySocket::greet(int client_fd) const {
-  // sendmsg takes no const.
+  // msghdr takes no pointer to const.
   Hello hello = hello_;
   iovec bytes{.iov_base = &hello, .iov_len = sizeof hello};
   alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {};
@@ -82,7 +82,7 @@ bool TelemetrySocket::greet(int client_fd) const {
   message.msg_controllen = sizeof control;
   cmsghdr* rights = CMSG_FIRSTHDR(&message);
   rights->cmsg_level = SOL_SOCKET;
-  // The meshes go as a descriptor: megabytes that no message has to carry.
+  // The meshes are megabytes, so they are passed as a descriptor.
   rights->cmsg_type = SCM_RIGHTS;
   rights->cmsg_len = CMSG_LEN(sizeof(int));
   std::memcpy(CMSG_DATA(rights), &mesh_fd_, sizeof mesh_fd_);
@@ -94,7 +94,7 @@ void TelemetrySocket::send(const Frame& frame) {
   const auto gone = [&](int client) {
     if (::send(client, &frame, sizeof frame, MSG_DONTWAIT | MSG_NOSIGNAL) == sizeof frame)
       return false;
-    // A viewer that is slow loses this frame; one that has gone is forgotten.
+    // A slow viewer loses this frame; a viewer that has gone is removed.
     if (errno == EAGAIN || errno == EWOULDBLOCK || errno == ENOBUFS) {
       ++dropped_frames_;
       return false;

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// telemetry_socket.h - hands messages to any user listens, and never waits for anyone.
+// telemetry_socket.h - sends messages to connected viewers and never waits for one.
 //
-// A SOCK_SEQPACKET unix socket with permissions 0600, for the same user and root, or with 0660 for
-// the members of a group too. A new client gets the hello and the mesh file, then every frame that
-// fits into its buffer; what does not fit is dropped and counted. Nothing is ever read from a
-// client.
+// A SOCK_SEQPACKET unix socket: permissions 0600 for the same user and root, or 0660 for the
+// members of a group, too. A new client gets the Hello and the mesh file, then every frame that
+// fits into its buffer; the others are dropped and counted. Nothing is read from a client.
 #pragma once
 
 #include <cstdint>
@@ -20,15 +19,15 @@ namespace tact::firmware::telemetry {
 
 class TelemetrySocket {
  public:
-  /// Listens at `path`, for the members of the group `viewers` too. An error if another tactd does
-  /// so already. Takes over `mesh_fd` unless it fails.
+  /// Listens at `path`, also for members of the group `viewers`. An error if another tactd already
+  /// does. Takes ownership of `mesh_fd` on success.
   static model::Result<TelemetrySocket> open(const std::string& path, const Hello& hello,
                                              int mesh_fd, std::optional<gid_t> viewers = {});
   TelemetrySocket(TelemetrySocket&& other) noexcept;
   TelemetrySocket& operator=(TelemetrySocket&&) = delete;
   ~TelemetrySocket();
 
-  /// Takes in new clients, then offers the frame to all.
+  /// Accepts new clients, then sends the frame to all.
   void send(const Frame& frame);
   std::uint64_t dropped_frames() const { return dropped_frames_; }
 

@@ -16,7 +16,7 @@ namespace {
 
 using model::Vec3;
 
-/// A field of the header, whether it ends with a zero or not.
+/// A field of the header, with or without a terminating zero.
 template <std::size_t n>
 std::string text_of(const char (&field)[n]) {
   return model::io::on_one_line({field, strnlen(field, n)});
@@ -42,7 +42,7 @@ std::string tick_csv_head(const LogHeader& header) {
       "force_x_N,force_y_N,force_z_N,torque_x_Nm,torque_y_Nm,torque_z_Nm,"
       "wanted_x_N,wanted_y_N,wanted_z_N,wanted_x_Nm,wanted_y_Nm,wanted_z_Nm,"
       "rms_force_N,given_energy_J,contact_losses,wanted_grip_N,grip_N,clutches,margin_us";
-  // From the one table of names, so that columns and record cannot differ.
+  // From the table of phase names, so that columns and record agree.
   for (const char* phase : loop::kPhaseName)
     fmt::format_to(std::back_inserter(out), ",{}_us", phase);
   return out + '\n';
@@ -77,11 +77,11 @@ model::Result<std::string> write_tick_csv(const std::string& log_path,
   auto log = TickLogReader::open(log_path);
   if (!log) return log.error();
   const std::string head = tick_csv_head(log->header());
-  // After the log was opened: a log that cannot be read leaves an older table as it is.
+  // Only after the log was opened: an unreadable log leaves an older table unchanged.
   auto out = model::io::FileWriter::replace(csv_path, head);
   if (!out) return out.error();
   if (auto error = out->put(head)) return *error;
-  // Damaged ticks are left out: their numbers are missing in the first column.
+  // Damaged ticks are left out, so their numbers are missing in the first column.
   for (LoggedTick tick; log->next(tick);)
     if (auto error = out->put(tick_csv_row(tick))) return *error;
   if (auto error = out->finish()) return *error;

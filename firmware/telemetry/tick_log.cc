@@ -19,7 +19,7 @@ constexpr std::size_t kSummedBytes = sizeof(LogHeader) - 2 * sizeof(std::uint32_
 bool LogHeader::keep_overrides(const std::vector<std::string>& of_run) {
   std::string text;
   for (const std::string& one : of_run) text += one + '\n';
-  // One byte is kept for the end of the text.
+  // The field needs one byte for the terminating zero.
   if (text.size() >= sizeof overrides) return false;
   text.copy(overrides, text.size());
   return true;
@@ -38,7 +38,7 @@ Result<TickLogWriter> TickLogWriter::create(const std::string& path, const LogHe
   LogHeader full = header;
   std::memcpy(full.magic, kLogMagic, sizeof full.magic);
   full.header_bytes = sizeof(LogHeader);
-  // Sizes tell a build whose structs differ, where the version is the same.
+  // The size detects a build of the same version whose structs differ.
   full.tick_bytes = sizeof(LogRecord);
   full.header_crc = crc_of(&full, kSummedBytes);
   if (auto error = file->put({reinterpret_cast<const char*>(&full), sizeof full})) return *error;
@@ -56,10 +56,10 @@ LoggedTick LoggedTick::of(const loop::TickRecord& record, bool non_rt) {
 }
 
 void TickLogWriter::add(const LoggedTick& tick) {
-  // A log with a hole in it could not be replayed: after the first loss nothing more is written.
+  // A log with a gap cannot be replayed: after the first loss nothing more is written.
   if (trouble_) return;
   LogRecord record;
-  std::memcpy(&record.tick, &tick, sizeof tick);  // with its padding, which the sum counts
+  std::memcpy(&record.tick, &tick, sizeof tick);  // with its padding, which the CRC covers
   record.crc = crc_of(&record.tick, sizeof record.tick);
   put(&record, sizeof record, fmt::format("tick {}", tick.tick));
 }
@@ -74,7 +74,7 @@ void TickLogWriter::put(const void* bytes, std::size_t size, const std::string& 
 }
 
 std::optional<Error> TickLogWriter::close() {
-  // After a loss there is nothing to seal: the file stays unfinished, and readers say so.
+  // After a loss the file is not sealed, so readers report it as unfinished.
   if (file_ && !trouble_) trouble_ = file_->finish();
   file_.reset();
   return trouble_;
@@ -86,7 +86,7 @@ Result<TickLogReader> TickLogReader::open(const std::string& path) {
   LogHeader header;
   const std::size_t read = file->read(&header, sizeof header);
   TickLogReader reader(std::move(*file), header);
-  // What is asked first is told first: another file, another version, damage, another build.
+  // In the order of precedence: another file, another version, damage, another build.
   constexpr std::size_t kVersionAt = sizeof header.magic - 1;
   if (read < sizeof(LogStart) || std::memcmp(header.magic, kLogMagic, kVersionAt) != 0)
     return Error{path + ": is no tick log; name a file that tactd --record wrote"};
@@ -100,7 +100,7 @@ Result<TickLogReader> TickLogReader::open(const std::string& path) {
                  ": its header is damaged, so none of its ticks can be used; record it again"};
   if (header.tick_bytes != sizeof(LogRecord) || header.header_bytes != sizeof(LogHeader))
     return Error{path + ": was written by another version of tactd; replay it with that one"};
-  // A sound sum does not mean that texts end: who wrote the file may have been anybody.
+  // A correct CRC does not prove that texts are terminated: any program may have written the file.
   reader.header_.scene_hash[sizeof header.scene_hash - 1] = '\0';
   reader.header_.overrides[sizeof header.overrides - 1] = '\0';
   return reader;
@@ -110,7 +110,7 @@ bool TickLogReader::next(LoggedTick& tick) {
   while (header_.ticks == 0 || read_ < header_.ticks) {
     LogRecord record;
     const std::size_t bytes = file_.read(&record, sizeof record);
-    // Without a number of ticks the end of the file is the end; part of a tick never is.
+    // With ticks == 0 the records end with the file. A partial record is always damage.
     torn_ = torn_ || (bytes < sizeof record && (bytes > 0 || header_.ticks != 0));
     if (bytes < sizeof record) return false;
     ++read_;

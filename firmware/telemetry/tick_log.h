@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// tick_log.h - a run on disk, tick by tick: what came in and what went out.
+// tick_log.h - a run on disk, tick by tick: inputs and outputs.
 //
-// A header that names the scene (by hash) and the gate's force share, then one LoggedTick per tick
-// in the machine's own byte order, each with its CRC, and the seal of the whole file. From the
-// first tick on it is enough to compute every force again, bit for bit (replay.h). A black box
-// holds the last seconds before a fault, and pictures of them.
+// The header holds the scene's hash and the gate's force share. One LoggedTick per tick follows, in
+// the machine's own byte order, each with its CRC; then the seal of the whole file. A log from the
+// first tick on is enough to compute every force again, bit for bit (replay.h). A black box has the
+// last seconds before a fault, and frames of them for the viewer.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ struct LogHeader : LogStart {
   double force_share = 1.0;  // of the scene's limits; below 1 without hard real time
   std::uint8_t non_rt = 0;
   char scene_hash[23] = {};
-  char overrides[1024] = {};  // of the run, its law included; one a line
+  char overrides[1024] = {};  // --set values of the run, its law included; one per line
   char scene_name[64] = {}, law[64] = {}, revision[64] = {}, host[64] = {};
   char began_utc[24] = {};       // 2026-01-31T12:00:00Z
   std::uint32_t header_crc = 0;  // of all before it
@@ -39,9 +39,9 @@ struct LogHeader : LogStart {
 
 struct LoggedTick {
   std::uint64_t tick = 0;
-  std::uint8_t non_rt = 0;  // stamped on every record of a PC without hard real time
+  std::uint8_t non_rt = 0;  // set in every record of a PC without hard real time
   std::int64_t due_ns = 0;
-  std::int64_t margin_ns = 0;                              // of the tick before
+  std::int64_t margin_ns = 0;                              // time left of the tick before
   std::array<std::int32_t, loop::kPhaseCount> phase_ns{};  // publish and total of the tick before
   loop::TickInput input;
   loop::TickOutput output;
@@ -49,24 +49,24 @@ struct LoggedTick {
   static LoggedTick of(const loop::TickRecord& record, bool non_rt);
 };
 
-/// As it lies in the file.
+/// Layout in the file.
 struct LogRecord {
   LoggedTick tick;
   std::uint32_t crc = 0;  // of tick
   std::uint32_t pad = 0;
 };
 
-/// Writes in an ordinary thread. A full disk ends the log, never the run.
+/// Writes in an ordinary thread. A full disk ends the log, but not the run.
 class TickLogWriter {
  public:
   static model::Result<TickLogWriter> create(const std::string& path, const LogHeader& header);
   void add(const loop::TickRecord& record) { add(LoggedTick::of(record, non_rt_)); }
   void add(const LoggedTick& tick);
-  /// After the ticks that the header counts: a part of the recording.
+  /// After the ticks that the header announces: a part of the recording.
   void append(const std::string& bytes);
-  /// Since when it writes no more, and why.
+  /// The error after which nothing more is written, if any.
   const std::optional<model::Error>& trouble() const { return trouble_; }
-  /// Closes the file. An error if not everything reached the disk.
+  /// Closes the file. An error if data did not reach the disk.
   std::optional<model::Error> close();
 
  private:
@@ -84,9 +84,9 @@ class TickLogReader {
  public:
   static model::Result<TickLogReader> open(const std::string& path);
   const LogHeader& header() const { return header_; }
-  /// The next good tick; damaged ones are left out. False at the end.
+  /// The next good tick; skips damaged ones. False at the end.
   bool next(LoggedTick& tick);
-  /// After all ticks: empty, or what is damaged and how many ticks are good.
+  /// Call after the last tick: empty, or the damage and the number of good ticks.
   std::string damage();
 
  private:

@@ -28,16 +28,16 @@ constexpr std::array kEveryLoop{
     SYS_clock_nanosleep, SYS_clock_gettime, SYS_restart_syscall, SYS_rt_sigreturn,
     SYS_rt_sigprocmask,  SYS_getrusage,     SYS_madvise,         SYS_exit};
 
-// SYS_SECCOMP of the kernel's headers, which stand no glibc header beside them.
+// SYS_SECCOMP of the kernel's headers, which cannot be included together with those of glibc.
 constexpr int kSeccompCode = 1;
 
-// Read by a signal handler in the loop's thread: lock-free, and
-// in the default order, as nothing here is in a hurry.
+// Read by a signal handler in the loop's thread, so lock-free. The default memory order is enough:
+// the handler is not time-critical.
 std::atomic<loop::Requests*> filter_requests{nullptr};
 std::atomic<int> refused{-1};  // number of the first refused call
 thread_local bool in_loop = false;
 
-// What the caller of the refused call gets.
+// Sets the return value of the refused call.
 [[maybe_unused]] constexpr bool kCanAnswerRefusedCall =
 #if defined(__x86_64__) || defined(__aarch64__)
     true;
@@ -52,15 +52,15 @@ void answer([[maybe_unused]] ucontext_t& context, [[maybe_unused]] long long res
 #endif
 }
 
-// In the thread that called, lock-free stores only. A wait for a lock is answered with "try again":
-// glibc takes any other error for broken memory.
+// Runs in the calling thread; lock-free stores only. A lock wait returns EAGAIN, because glibc
+// takes any other error for corrupted memory.
 void on_refused(int, siginfo_t* info, void* context) {
-  if (info->si_code != kSeccompCode) return;  // somebody sent it; nothing was called
+  if (info->si_code != kSeccompCode) return;  // sent by kill(): no call was made
   answer(*static_cast<ucontext_t*>(context), info->si_syscall == SYS_futex ? -EAGAIN : -EPERM);
   loop::Requests* requests = filter_requests.load();
   if (requests == nullptr || !in_loop) return;
   int none = -1;
-  // The first call is the one to tell: what is refused after it may follow from it.
+  // Only the first call is reported: later refusals may be its consequence.
   refused.compare_exchange_strong(none, info->si_syscall);
   requests->trip(model::Fault::kForbiddenCall);
 }
@@ -70,7 +70,7 @@ struct Release {
 };
 using Context = std::unique_ptr<void, Release>;
 
-/// A call that two list is in the filter once: the second answer is EEXIST.
+/// EEXIST is no error: device and lines may list the same call.
 bool allow(void* filter, std::span<const int> calls) {
   for (const int call : calls) {
     const int failed = seccomp_rule_add(filter, SCMP_ACT_ALLOW, call, 0);
@@ -96,14 +96,14 @@ class Filter final : public CallFilter {
     filter_requests.store(&requests);
     struct sigaction action{};
     action.sa_sigaction = on_refused;
-    // SIGSYS tells which call it was (si_syscall); without a handler it would end the process.
+    // SIGSYS carries the call's number (si_syscall). Without a handler it would end the process.
     action.sa_flags = SA_SIGINFO;
     sigaction(SIGSYS, &action, nullptr);
   }
   ~Filter() override { filter_requests.store(nullptr); }
 
   int enter_thread() override {
-    const int refused_by_kernel = -seccomp_load(context_.get());  // frees memory behind the filter
+    const int refused_by_kernel = -seccomp_load(context_.get());  // frees memory, already filtered
     in_loop = refused_by_kernel == 0;
     return refused_by_kernel;
   }
@@ -120,20 +120,20 @@ Result<std::unique_ptr<CallFilter>> CallFilter::make(std::span<const int> of_dev
                                                      loop::Requests& requests) {
   if (!kCanAnswerRefusedCall) return no_filter("it is not made for this processor");
   if (loop::is_sanitized()) return no_filter("a sanitizer makes calls of its own");
-  // TRAP, not KILL: the call fails, and the loop lives to write zero force.
+  // TRAP, not KILL: the call fails, and the loop can still write zero force.
   Context context(seccomp_init(SCMP_ACT_TRAP));
   constexpr scmp_datum_t kWhole = ~scmp_datum_t{0},
                          kCommand = static_cast<unsigned>(FUTEX_CMD_MASK);
   std::array<int, kEveryLoop.size()> every{};
   for (std::size_t i = 0; i < every.size(); ++i) every[i] = static_cast<int>(kEveryLoop[i]);
-  // By argument: FUTEX_WAKE, whatever its flags, and a step down to SCHED_OTHER at the end.
+  // By argument: FUTEX_WAKE with any flags, and at the end the return to SCHED_OTHER.
   const bool good = context != nullptr && allow(context.get(), every) &&
                     allow(context.get(), of_device) && allow(context.get(), of_lines) &&
                     allow_with(context.get(), SYS_futex, 1, kCommand, FUTEX_WAKE) &&
                     allow_with(context.get(), SYS_sched_setscheduler, 1, kWhole, SCHED_OTHER);
   if (!good) return no_filter("libseccomp cannot make it");
   std::unique_ptr<CallFilter> filter(new Filter(std::move(context), requests));
-  int refused_by_kernel = 0;  // in a thread that ends at once: nothing takes a filter back
+  int refused_by_kernel = 0;  // tried in a short-lived thread, as a filter cannot be removed
   std::thread([&] {
     refused_by_kernel = filter->enter_thread();
     filter->leave_loop();
@@ -148,7 +148,7 @@ std::string refused_call() {
   char* name = seccomp_syscall_resolve_num_arch(SCMP_ARCH_NATIVE, call);
   std::string text =
       name == nullptr ? fmt::format("system call {}", call) : fmt::format("{}({})", name, call);
-  std::free(name);  // libseccomp's
+  std::free(name);  // allocated by libseccomp
   return text;
 }
 

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// call_filter.h - which system calls the loop's thread may make; any other ends in a stop
-// (seccomp).
+// call_filter.h - a seccomp filter: which system calls the loop's thread may make.
 //
 //     every loop      sleep and clock; return from a signal; the end of a thread
-//     its device      what Device::loop_calls and SafetyLines::loop_calls list
-//     any other       does not reach the kernel: the call fails, kForbiddenCall latches
+//     its device      the calls listed by Device::loop_calls and SafetyLines::loop_calls
+//     any other       fails before it reaches the kernel, and kForbiddenCall latches
 //
-// So no lock can be waited for and no file opened in the loop without being noticed: FUTEX_WAKE is
-// allowed, because others may wait for a lock of the heap when the thread ends, FUTEX_WAIT is not.
-// The filter belongs to the one thread that enters it, and stays with it to its end.
+// The loop can therefore neither wait for a lock nor open a file unnoticed. FUTEX_WAIT is refused;
+// FUTEX_WAKE is allowed, because other threads may wait for a heap lock when this thread ends. The
+// filter applies to the one thread that enters it, until that thread ends.
 //
 // Source: seccomp(2) SECCOMP_RET_TRAP, libseccomp 2.5.
 #pragma once
@@ -24,7 +23,7 @@ namespace tact::firmware::watch {
 
 class CallFilter {
  public:
-  /// Set-up. An error where there can be none: a sanitizer in the way, a kernel that refuses.
+  /// Set-up. An error under a sanitizer, or where the kernel refuses the filter.
   static model::Result<std::unique_ptr<CallFilter>> make(std::span<const int> of_device,
                                                          std::span<const int> of_lines,
                                                          loop::Requests& requests);
@@ -32,16 +31,16 @@ class CallFilter {
   CallFilter(const CallFilter&) = delete;
   CallFilter& operator=(const CallFilter&) = delete;
 
-  /// In the loop's thread, last before the loop; made filters are tried. 0, or the errno.
+  /// In the loop's thread, as the last step before the loop. 0, or the errno.
   virtual int enter_thread() = 0;
-  /// In the loop's thread, first after the loop: what it calls now is no fault any more.
+  /// In the loop's thread, as the first step after the loop: later calls are no longer a fault.
   virtual void leave_loop() = 0;
 
  protected:
   CallFilter() = default;
 };
 
-/// The first call that the newest filter refused, for a person; empty without one. Any thread.
+/// Name and number of the first refused call of the newest filter, or empty. Any thread.
 std::string refused_call();
 
 }  // namespace tact::firmware::watch

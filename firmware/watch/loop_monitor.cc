@@ -11,7 +11,7 @@ void LoopMonitor::start(const pc::RtSettings& loop) {
   thread_ = std::thread([this, loop] {
     pthread_setname_np(pthread_self(), "tact-watch");
     std::vector<pc::Shortfall> known;
-    // What is refused here was told before the loop (pc::probe_rt_threads).
+    // pc::probe_rt_threads has already reported what is refused here.
     enter_watch_thread(loop, known);
     run();
     pc::leave_rt_thread();
@@ -24,7 +24,7 @@ void LoopMonitor::stop() {
 }
 
 void LoopMonitor::run() RT_SAFE {
-  // Relaxed: join() orders whatever the end needs.
+  // Relaxed: join() orders all that the end needs.
   while (!ending_.load(std::memory_order_relaxed)) {
     clock_.sleep_until_ns(next_ns(clock_.now_ns()));
     check();
@@ -32,7 +32,7 @@ void LoopMonitor::run() RT_SAFE {
 }
 
 void LoopMonitor::check() RT_SAFE {
-  // The first fault stays (Requests::trip), so the order of these says which is told.
+  // Requests::trip keeps the first fault: a stall is reported in preference to a lost guardian.
   const model::Fault found = stall_.step(progress_);
   if (found != model::Fault::kNone) requests_.trip(found);
   if (guardian_lost_ != nullptr && guardian_lost_->load(std::memory_order_relaxed))
@@ -40,8 +40,8 @@ void LoopMonitor::check() RT_SAFE {
   if (requests_.fault.load(std::memory_order_relaxed) != model::Fault::kNone) lines_.drop();
 }
 
-// On one core the watch would else delay the loop's wake-up, each time by its own. What it is late
-// itself, less than half a period, does not add up.
+// Halfway between two deadlines, so that on a shared core the watch does not delay the loop's
+// wake-up. The schedule is absolute: its own delay, below half a period, does not accumulate.
 std::int64_t LoopMonitor::next_ns(std::int64_t now_ns) const RT_SAFE {
   const std::int64_t period_ns = stall_.period_ns();
   return loop::next_half_way_ns(now_ns + stall_.check_ns() - period_ns / 2, period_ns);

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// loop_monitor.h - the thread above the loop: when the loop cannot stop the force, it does.
+// loop_monitor.h - the watch: a thread that removes the force when the loop cannot.
 //
 // It wakes every 5 periods, halfway between two deadlines of the loop (release_schedule.h), above
-// the loop's priority and on another core where there is one. When the loop stalls, hangs in a call
-// or runs away (runaway.h), a call of it was refused (call_filter.h), or its guardian is lost:
+// the loop's priority and, if possible, on another core. It acts when the loop stalls, hangs in a
+// call or runs away (runaway.h), when call_filter.h refused a call, or when the guardian is lost:
 //
-//     the fault is set for the loop   zero force in the first tick to come, latched until the end
-//     enable and heartbeat drop       by this thread itself, at this check and every one after
+//     it sets the fault               the loop's next tick gives zero force and latches the fault
+//     it drops enable and heartbeat   itself, at this check and at every later one
 //
-// It cannot write to the device: a call of the loop may be under way there. Without an enable line
-// the drives' own watchdogs have to act. No lock, no heap: only Progress, Requests and the lines.
+// It does not write to the device, because the loop may be inside a device call. Without an enable
+// line the drives' own watchdogs must act. No lock, no heap: only Progress, Requests and the lines.
 #pragma once
 
 #include <thread>
@@ -23,8 +23,8 @@ namespace tact::firmware::watch {
 
 class LoopMonitor {
  public:
-  /// `guardian_lost`: of the process that zeroes the device after this one (firmware/guardian);
-  /// null: there is none.
+  /// `guardian_lost`: set when the process that zeroes the device after a crash has ended
+  /// (firmware/guardian); null without a guardian.
   LoopMonitor(const StallDetector& stall, const loop::Progress& progress, loop::Requests& requests,
               hal::SafetyLines& lines, const std::atomic<bool>* guardian_lost = nullptr)
       : stall_(stall),
@@ -38,7 +38,7 @@ class LoopMonitor {
 
   void start(const pc::RtSettings& loop);
   void stop();
-  /// One check, at any time.
+  /// One check; may be called at any time.
   void check() RT_SAFE;
 
  private:

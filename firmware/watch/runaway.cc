@@ -13,8 +13,8 @@ namespace {
 std::atomic<loop::Requests*> runaway_requests{nullptr};
 static_assert(std::atomic<loop::Requests*>::is_always_lock_free);
 
-// In whatever thread; lock-free stores only. A loop that does not sleep must end: nothing else
-// would give its core back.
+// Runs in any thread; lock-free stores only. The loop must end, because nothing else would free the
+// core of a loop that does not sleep.
 void on_runaway(int) {
   loop::Requests* requests = runaway_requests.load();
   if (requests == nullptr) return;
@@ -29,7 +29,7 @@ std::optional<pc::Shortfall> lift_rttime_limit() {
   getrlimit(RLIMIT_RTTIME, &limit);
   if (limit.rlim_cur == RLIM_INFINITY && limit.rlim_max == RLIM_INFINITY) return std::nullopt;
   const rlimit none{.rlim_cur = RLIM_INFINITY, .rlim_max = RLIM_INFINITY};
-  // Only who may raise a hard limit gets through here; else as much as the hard one allows.
+  // Raising a hard limit takes a privilege; without it the soft limit is raised to the hard one.
   if (setrlimit(RLIMIT_RTTIME, &none) == 0) return std::nullopt;
   const rlimit most{.rlim_cur = limit.rlim_max, .rlim_max = limit.rlim_max};
   setrlimit(RLIMIT_RTTIME, &most);
@@ -46,17 +46,17 @@ RunawayGuard::RunawayGuard(loop::Requests& requests, rlim_t longest_us) {
   runaway_requests.store(&requests);
   struct sigaction action{};
   action.sa_handler = on_runaway;
-  // The signal may meet any thread: its calls go on as if nothing had been.
+  // The signal may arrive in any thread: SA_RESTART repeats its interrupted call.
   action.sa_flags = SA_RESTART;
   sigaction(SIGXCPU, &action, nullptr);
-  // The soft limit sends the signal; the hard one would kill, and stays where it was.
+  // The soft limit sends the signal. The hard limit, which kills, is left as it was.
   getrlimit(RLIMIT_RTTIME, &before_);
   const rlimit ours{.rlim_cur = std::min(longest_us, before_.rlim_max),
                     .rlim_max = before_.rlim_max};
   setrlimit(RLIMIT_RTTIME, &ours);
 }
 
-// The handler stays: a signal that is still on its way must not end the process.
+// The handler stays installed: a signal still pending must not end the process.
 RunawayGuard::~RunawayGuard() {
   setrlimit(RLIMIT_RTTIME, &before_);
   runaway_requests.store(nullptr);

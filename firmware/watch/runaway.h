@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// runaway.h - a real-time thread that never sleeps: it would hold its core until the power is cut.
+// runaway.h - stops a real-time thread that never sleeps and would hold its core forever.
 //
-// RLIMIT_RTTIME counts the CPU time that a SCHED_FIFO thread takes without a sleep; beyond the soft
-// limit the kernel sends SIGXCPU. Here that trips the fault and ends the loop. The kernel counts in
-// its own ticks (1 to 10 ms), and not on a core that runs without them (nohz_full): there the watch
-// sees that the loop no longer ticks.
+// RLIMIT_RTTIME limits the CPU time that a SCHED_FIFO thread takes without a sleep. Beyond the soft
+// limit the kernel sends SIGXCPU; here its handler trips a fault and ends the loop. The kernel
+// counts in its timer ticks (1 to 10 ms). A nohz_full core has none: there the watch detects that
+// the loop no longer ticks.
 //
 // Source: setrlimit(2), RLIMIT_RTTIME.
 #pragma once
@@ -18,11 +18,11 @@
 
 namespace tact::firmware::watch {
 
-/// A limit that a session hands down ends a real-time process without a word, so it is lifted, or
-/// told when that is not allowed. Before any real-time thread starts.
+/// Removes an inherited limit, at which the kernel kills a real-time process without a message;
+/// returns a shortfall if that is not allowed. Call before any real-time thread starts.
 std::optional<pc::Shortfall> lift_rttime_limit();
 
-/// While it lives, 50 ms without a sleep end in a stop. One at a time.
+/// During its lifetime, 50 ms of CPU time without a sleep stop the loop. One instance at a time.
 class RunawayGuard {
  public:
   static constexpr rlim_t kLongest_us = 50'000;

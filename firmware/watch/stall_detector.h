@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// stall_detector.h - has the loop stopped ticking? Pure: one look at its progress per check.
+// stall_detector.h - has the loop stopped ticking? Pure: reads the loop's progress once per check.
 //
-// A check is a wake-up of the watch itself, every 5 periods. What counts is how often the watch ran
-// without seeing a tick, not the time: when the whole process or PC stood still, both did, and the
-// loop's own late watch judges that (overrun_counter.h).
+// The watch checks every 5 periods. The detector counts checks without a tick, not time: when the
+// whole process or PC stood still, neither ran, and the loop detects that case itself
+// (overrun_counter.h).
 //
-//     hard real time   20 periods, as for samples and late ticks
-//     elsewhere        250 ms, as a stock kernel stalls
+//     hard real time   20 periods, as for missing samples and late ticks
+//     elsewhere        250 ms, because a stock kernel causes stalls of its own
 #pragma once
 
 #include "firmware/loop/progress.h"
@@ -24,10 +24,10 @@ class StallDetector {
 
   std::int64_t period_ns() const RT_SAFE { return period_ns_; }
   std::int64_t check_ns() const RT_SAFE { return check_ns_; }
-  /// From the last tick to the fault at most, when the watch itself runs on time.
+  /// Longest time from the last tick to the fault, when the watch itself runs on time.
   std::int64_t longest_ns() const { return (most_checks_ + 1) * check_ns_; }
 
-  /// One check. The fault stands as long as the stall.
+  /// One check. Returns the fault at every check of the stall, kNone otherwise.
   model::Fault step(const loop::Progress& progress) RT_SAFE {
     const std::uint64_t ticks = progress.ticks();
     if (ticks != before_ || !progress.running()) {

@@ -14,18 +14,18 @@ using Eigen::Vector3d;
 // Shares of the body height; Winter's are marked W.
 constexpr double kAnkle = 0.039, kKnee = 0.285, kHip = 0.530, kShoulder = 0.818;  // W, heights
 constexpr double kChin = 0.870;                                                   // W, height
-// Chosen (body_plan.h): the back bends here; the origin of W is about a bench above the floor.
+// Chosen (body_plan.h): where the back bends; the origin of W is about a bench above the floor.
 constexpr double kBackHeight = 0.630, kOriginHeight = 0.600;
 constexpr double kHeadRadius = 0.044;
 
-// Chosen: the right hand comes to the device, the face looks at the tool.
+// Chosen, so that the right hand reaches the device and the face looks at the tool.
 constexpr double kStandsAt_m = 0.40;  // x of the pelvis, for 1.75 m
 constexpr double kLooksDown_rad = 0.75;
 
 }  // namespace
 
 BodyPlan make_body_plan(double height_m) {
-  // A height that is none must not make a figure without size: a common one instead.
+  // An invalid height gives a common one, so that the figure has a size.
   const double h = std::clamp(std::isfinite(height_m) ? height_m : 1.75, 1.2, 2.2);
   return {.height_m = h,
           .lumbar_m = (kBackHeight - kHip) * h,
@@ -45,8 +45,8 @@ BodyPlan make_body_plan(double height_m) {
 
 Pose standing_pelvis(const BodyPlan& plan) {
   const double h = plan.height_m;
-  // A little lower than straight legs, so that the knees are bent and the hips can move; a little
-  // to the left, so that the right hand is in front of the body.
+  // A little lower than with straight legs, so that the knees are bent and the hips can move; a
+  // little to the left, so that the right hand is in front of the body.
   return {.position_m = {kStandsAt_m * h / 1.75, -0.05 * h, (kHip - kOriginHeight - 0.018) * h}};
 }
 
@@ -98,7 +98,7 @@ Chain arm_chain(const BodyPlan& plan) {
     return Bone{
         .length_m = length_m, .rest = rest, .hinge = axis, .lo_rad = lo_rad, .hi_rad = hi_rad};
   };
-  // Limits and cones: chosen, as the table in body_plan.h has them.
+  // Limits and cones: chosen, as in the table of body_plan.h.
   return {.bones = {bend(plan.lumbar_m, up, Vector3d::UnitY(), -0.60, 0.15),
                     ball(plan.thorax_m, up, 0.40), ball(plan.clavicle_m, Vector3d::UnitY(), 0.35),
                     ball(plan.upper_arm_m, along, 1.60),
@@ -122,7 +122,7 @@ std::array<Capsule, kCapsules> capsules(const BodyPlan& plan) {
   const auto arm = [h](FigureJoint a, FigureJoint b, double ra, double rb, double depth = 1.0) {
     return Capsule{a, b, ra * h, rb * h, depth, true};
   };
-  // Radii as shares of the height, and how flat front to back: drawn by eye.
+  // Radii as shares of the height, and flattening front to back: chosen by eye.
   return {part(kPelvis, kBack, 0.080, 0.078, 0.72),
           part(kBack, kChest, 0.080, 0.070, 0.70),
           part(kLeftHip, kRightHip, 0.060, 0.060, 0.90),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// body_plan.h - how long an operator's bones are, how the body stands at the device, and which
-// capsules draw it. Everything is a share of one number, the body height H.
+// body_plan.h - lengths of an operator's bones, the standing pose at the device, and the capsules
+// that draw the body. All lengths are shares of the body height H.
 //
 //     Segment lengths and joint heights: R. Drillis, R. Contini, Body Segment Parameters (1966), as
 //     printed in D. Winter, Biomechanics and Motor Control of Human Movement, 4th ed. (2009),
@@ -27,7 +27,7 @@ using pose::Pose;
 enum class FigureJoint : std::uint8_t {
   kPelvis,
   kBack,   // the trunk bends here
-  kChest,  // both collar bones and the neck begin here
+  kChest,  // origin of both collar bones and of the neck
   kHead,
   kCrown,  // upper end of the head's capsule
   kLeftShoulder,
@@ -65,16 +65,16 @@ struct BodyPlan {
   double half_hips_m, thigh_m, calf_m, foot_m;
 };
 
-/// For a height of 1.2 to 2.2 m; outside it the nearest of them.
+/// For a height of 1.2 to 2.2 m; other heights are clamped.
 BodyPlan make_body_plan(double height_m);
 
-/// Where the pelvis of a standing operator is: upright, the right hand in front of the device.
+/// Pose of a standing operator's pelvis: upright, the right hand in front of the device.
 Pose standing_pelvis(const BodyPlan& plan);
-/// Where a standing operator's right or left ankle is; feet point along -x.
+/// Position of a standing operator's right or left ankle; feet point along -x.
 Eigen::Vector3d standing_ankle_m(const BodyPlan& plan, bool right);
-/// In the pelvis's axes, upright.
+/// Position of a joint in the pelvis's axes, upright.
 Eigen::Vector3d upright_m(const BodyPlan& plan, FigureJoint joint);
-/// A head that looks down at the device, in the pelvis's axes.
+/// Rotation of a head that looks down at the device, in the pelvis's axes.
 Eigen::Quaterniond looking_down();
 
 /// The seven joints from pelvis to finger tips, in the pelvis's axes. Sub-root: the shoulder.
@@ -82,15 +82,15 @@ Eigen::Quaterniond looking_down();
 ///     1 thorax    ball    cone 0.40
 ///     2 clavicle  ball    cone 0.35
 ///     3 upper arm ball    cone 1.60 about forward and down
-///     4 forearm   hinge   0.05 .. 2.50        0 is left out: a straight arm does not move
+///     4 forearm   hinge   0.05 .. 2.50        excludes 0, where CCD cannot move a straight arm
 ///     5 palm      ball    cone 1.10
 ///     6 fingers   hinge   0.10 .. 1.70        towards the palm
 Chain arm_chain(const BodyPlan& plan);
 inline constexpr std::size_t kThoraxBone = 1, kShoulderBone = 3, kElbowBone = 4, kHandBone = 5,
                              kFingerBone = 6, kArmBones = 7;
-/// The posture to which the arm goes back as far as the tool lets it.
+/// The rest posture, which the arm approaches as far as the tool permits.
 std::array<JointState, kArmBones> arm_at_rest();
-/// In a bone's rest axes of the arm: along the bone, and to where elbow and fingers bend.
+/// In a bone's rest axes of the arm: direction along the bone, and direction of bending.
 Eigen::Vector3d arm_along();
 Eigen::Vector3d arm_bends_to();
 
@@ -99,7 +99,7 @@ struct Capsule {
   FigureJoint a, b;
   double radius_a_m, radius_b_m;
   double depth_ratio = 1.0;
-  bool holds_tool = false;  // of the arm that holds the tool
+  bool holds_tool = false;  // part of the arm that holds the tool
 };
 inline constexpr std::size_t kCapsules = 22;
 std::array<Capsule, kCapsules> capsules(const BodyPlan& plan);

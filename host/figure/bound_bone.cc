@@ -24,13 +24,13 @@ const Pose& BoundBone::follow(const TrackedBody& body, const Pose& neutral, doub
   const bool good = is_good(body.pose);
   if (body.state == BodyState::kTracked && good) {
     if (!offset_) {
-      // TR-5, once: later poses of the tracker move the bone from here.
+      // TR-5, once: later poses of the tracker move the bone relative to this one.
       offset_ = pose::bind(body.pose, neutral);
       shown_ = target_ = neutral;
     }
     const Pose next = pose::drive(body.pose, *offset_);
     if (mode_ == Mode::kNeutral) shown_ = neutral;
-    // Back from a gap, or a jump of the tracker: the bone glides there, or a limb would fly.
+    // After a gap or a jump of the tracker the bone fades, so that the limb does not jump.
     if (mode_ != Mode::kFollows || is_step_too_fast(target_, next, dt_s))
       begin_fade(next, kReturn_s);
     mode_ = Mode::kFollows;
@@ -52,7 +52,7 @@ const Pose& BoundBone::follow(const TrackedBody& body, const Pose& neutral, doub
 }
 
 void BoundBone::begin_fade(const Pose& to, double least_s) {
-  // From what is seen now, wherever an earlier fade had come to.
+  // Starts from the pose shown now, even in the middle of an earlier fade.
   from_ = shown_;
   faded_from_ = share_;
   faded_s_ = 0.0;
@@ -62,7 +62,7 @@ void BoundBone::begin_fade(const Pose& to, double least_s) {
 Pose BoundBone::faded(const Pose& to, double to_share, double dt_s) {
   faded_s_ = std::min(faded_s_ + dt_s, fade_s_);
   const double t = faded_s_ / fade_s_;
-  const double part = t * t * (3.0 - 2.0 * t);  // at rest at both ends
+  const double part = t * t * (3.0 - 2.0 * t);  // zero speed at both ends
   share_ = faded_from_ + part * (to_share - faded_from_);
   return t < 1.0 ? pose::between(from_, to, part) : to;
 }

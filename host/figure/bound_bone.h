@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// bound_bone.h - one bone that follows its tracker: bound once, then driven; it holds, fades and
-// returns with the tracker's state, and never jumps.
+// bound_bone.h - one bone that follows its tracker: bound once, then driven; it holds or fades with
+// the tracker's state, and never jumps.
 //
 //     first good pose    TR-5 against the neutral pose, so the bone stays where it is
 //     kTracked           TR-6
 //     kHeld              the bone holds
-//     kLost, kAbsent     fades to the neutral pose over 1 s
-//     back again, or a step faster than a body moves: fades in over 0.3 s
+//     kLost, kAbsent     fades to the neutral pose in 1 s
+//     tracked again, or a step faster than a body moves: fades in over 0.3 s
 //
-// A fade takes longer where the way is long: its mean speed stays below kGlide_mps. A pose that is
-// not finite counts as held. Time comes as dt_s, s, >= 0. For display, not for the force loop.
+// A long fade takes more time, so that its mean speed stays below kGlide_mps. A pose that is not
+// finite counts as held. Time comes as dt_s, s, >= 0. For display, not for the force loop.
 #pragma once
 
 #include <optional>
@@ -35,9 +35,9 @@ bool is_good(const Pose& pose);
 
 class BoundBone {
  public:
-  /// The bone now. `neutral` is where it is without a tracker, and the binding pose.
+  /// The bone's pose now. `neutral`: its pose without a tracker, also the binding pose.
   const Pose& follow(const TrackedBody& body, const Pose& neutral, double dt_s);
-  /// How much of it the tracker has: 0 neutral .. 1 follows or holds; a fade goes between.
+  /// Influence of the tracker: 0 neutral, 1 follows or holds; intermediate during a fade.
   double share() const { return share_; }
   const Pose& now() const { return shown_; }
   const std::optional<Pose>& offset() const { return offset_; }
@@ -46,7 +46,7 @@ class BoundBone {
   enum class Mode : std::uint8_t { kNeutral, kFollows, kHolds, kFades };
 
   void begin_fade(const Pose& to, double least_s);
-  /// Between the pose where the fade began and `to`, and the share likewise.
+  /// Interpolates pose and share between the start of the fade and `to`.
   Pose faded(const Pose& to, double to_share, double dt_s);
 
   std::optional<Pose> offset_;  // TR-5

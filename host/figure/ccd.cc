@@ -12,26 +12,26 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using std::numbers::pi;
 
-constexpr double kNoDirection_m2 = 1e-24;  // a square below this has no direction, CC-3 and CC-6
-constexpr double kParallel = 1e-12;        // sine below this is parallel, CC-4
-constexpr double kLimitSlack_rad = 1e-9;   // rounding of a state that a former call returned
-constexpr double kSubChainShare = 0.98;    // of its length that the sub chain is trusted with
+constexpr double kNoDirection_m2 = 1e-24;  // a smaller square has no direction, CC-3 and CC-6
+constexpr double kParallel = 1e-12;        // a smaller sine is parallel, CC-4
+constexpr double kLimitSlack_rad = 1e-9;   // rounding of a state that an earlier call returned
+constexpr double kSubChainShare = 0.98;    // share of its length up to which the sub chain is used
 
 double angle_between(const Vector3d& a, const Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-/// A unit vector across the unit vector v, for turns by pi that do not name their axis.
+/// A unit vector perpendicular to the unit vector v: the axis of a turn by pi.
 Vector3d axis_across(const Vector3d& v) {
   const Vector3d across = v.cross(Vector3d::UnitZ());
   return (across.norm() > kParallel ? across : Vector3d(v.cross(Vector3d::UnitX()))).normalized();
 }
 
-/// Of a length above zero that is a number.
+/// True for a finite vector of a length above zero.
 bool has_direction(const Vector3d& v) { return v.allFinite() && v.squaredNorm() > 0.0; }
 
 bool is_valid(const Bone& bone, const JointState& joint) {
-  // Of each test the positive form: a NaN fails it.
+  // Conditions are written so that a NaN fails them.
   if (!(bone.length_m > 0.0 && std::isfinite(bone.length_m))) return false;
   if (!has_direction(bone.rest)) return false;
   if (bone.kind == JointKind::kHinge) {
@@ -51,7 +51,7 @@ bool is_valid(const Chain& chain, std::span<const JointState> joints) {
   return true;
 }
 
-/// A chain while it moves: bones with unit directions, states, and the points that follow.
+/// A chain in motion: bones with unit directions, states, and the resulting points.
 class Mover {
  public:
   Mover(const Chain& chain, std::span<const JointState> joints)
@@ -63,7 +63,7 @@ class Mover {
     follow(0);
   }
 
-  /// Turns joint i so that the end points at the target; false if there is no direction to turn.
+  /// Turns joint i so that the end points at the target; false without a direction.
   bool turn(std::size_t i, const Vector3d& target_m) {
     const Vector3d ve = points_m_.back() - points_m_[i], vd = target_m - points_m_[i];
     if (!have_directions(ve, vd)) return false;
@@ -101,11 +101,11 @@ class Mover {
     const Vector3d from = ve.stableNormalized(), to = vd.stableNormalized();
     const Vector3d across = from.cross(to);
     const bool parallel = across.norm() < kParallel;
-    // Points there already. Opposite: any axis across will do, but it has to be named.
+    // Parallel: nothing to turn. Opposite: any perpendicular axis will do.
     if (parallel && from.dot(to) > 0.0) return false;
     const AngleAxisd world = parallel ? AngleAxisd(pi, axis_across(from))
                                       : AngleAxisd(angle_between(from, to), across.normalized());
-    // The same turn in the parent's axes, before the joint's own.
+    // The same turn in the parent's axes, applied before the joint's own.
     const Quaterniond q =
         (parent_[i].conjugate() * world * parent_[i] * joints_[i].rotation).normalized();
     joints_[i].rotation = within_cone(bones_[i], q);
@@ -115,7 +115,7 @@ class Mover {
   /// Forward kinematics from joint i outwards.
   void follow(std::size_t i) {
     for (; i < bones_.size(); ++i) {
-      // Normalized at each joint: a product of many rotations would slowly leave length 1.
+      // Normalized at each joint, because a product of many rotations would drift from length 1.
       const Quaterniond here = (parent_[i] * rotation_of(bones_[i], joints_[i])).normalized();
       points_m_[i + 1] = points_m_[i] + here * (bones_[i].length_m * bones_[i].rest);
       if (i + 1 < bones_.size()) parent_[i + 1] = here;
@@ -124,18 +124,18 @@ class Mover {
 
   std::vector<Bone> bones_;
   std::vector<JointState> joints_;
-  std::vector<Quaterniond> parent_;  // n; the axes in which joint i turns, in the world
+  std::vector<Quaterniond> parent_;  // n; world rotation of the axes in which joint i turns
   std::vector<Vector3d> points_m_;   // n + 1
 };
 
-/// CC-8: can the lengths from `root` on span this distance at all?
+/// CC-8: true if the lengths from `root` on cannot span this distance.
 bool out_of_reach(std::span<const Bone> bones, double distance_m, double tolerance_m) {
   double sum_m = 0.0, longest_m = 0.0;
   for (const Bone& bone : bones) {
     sum_m += bone.length_m;
     longest_m = std::max(longest_m, bone.length_m);
   }
-  // One bone longer than all others together leaves a hole around the root.
+  // A bone longer than all others together leaves an unreachable sphere around the root.
   const double hole_m = std::max(2.0 * longest_m - sum_m, 0.0);
   return distance_m > sum_m + tolerance_m || distance_m < hole_m - tolerance_m;
 }
@@ -158,7 +158,7 @@ double swing_rad(const Bone& bone, const JointState& joint) {
 
 Quaterniond within_cone(const Bone& bone, const Quaterniond& q) {
   const Vector3d bone_now = q * bone.rest;
-  // How far the bone points from rest; its turn about itself is free (CC-7).
+  // Angle of the bone from rest; its turn about itself is free (CC-7).
   const double swing = angle_between(bone.rest, bone_now);
   if (bone.kind == JointKind::kHinge || swing <= bone.cone_rad) return q;
   const Vector3d across = bone.rest.cross(bone_now);
@@ -177,7 +177,7 @@ std::size_t choose_root(const Chain& chain, std::span<const JointState> joints,
   if (points_m.empty() || sub_root >= joints.size()) return 0;
   double sum_m = 0.0;
   for (std::size_t i = sub_root; i < joints.size(); ++i) sum_m += chain.bones[i].length_m;
-  // Nearly stretched the sub chain would take many sweeps for a little way: the chest then helps.
+  // Nearly stretched, the sub chain would need many sweeps for a small gain, so the chest helps.
   return (target_m - points_m[sub_root]).norm() <= kSubChainShare * sum_m ? sub_root : 0;
 }
 
@@ -192,7 +192,7 @@ ReachResult reach(const Chain& chain, std::span<const JointState> start, const R
   bool there = error_m() <= goal.tolerance_m;
   while (!there && out.sweeps < goal.sweeps) {
     ++out.sweeps;
-    // CC-3: the outermost first, as it moves least of the body.
+    // CC-3: the outermost first, because it moves the least of the body.
     for (std::size_t i = start.size(); i-- > goal.root && !there;) {
       if (!mover.turn(i, goal.target_m)) continue;
       ++out.updates;

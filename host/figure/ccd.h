@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // ccd.h - bends a chain of bones until its end reaches a target: cyclic coordinate descent, started
-// at the shoulder or hip (sub-root) instead of the chest, because most actions move no more.
+// at the shoulder or hip (sub-root) instead of the chest, because most movements need no more.
 //
 //     p_0 .. p_n   joints and end E, m; bone i runs from p_i to p_(i+1)                    CC-1
 //     e = |E - target| <= eps ends, at the start and after every joint                     CC-2
 //     a sweep turns the joints n-1 .. root, the outermost first, each so that              CC-3
-//     ve = E - p_i points along vd = target - p_i, then puts it back within its limits
+//     ve = E - p_i points along vd = target - p_i, then clamps it to its limits
 //
 //     ball:  angle = atan2(|ve x vd|, ve.vd) about ve x vd; the bone stays within `cone` of
 //            its rest direction, the turn about the bone itself is free             CC-4, CC-7
@@ -15,9 +15,9 @@
 //     A joint's rotation is child <- parent, applied to the rest direction, which is given in the
 //     parent's axes; a hinge turns about an axis fixed in the parent's axes.               CC-9
 //
-// Every state this returns has the bone lengths and keeps the limits, whether it reached or not.
-// A straight chain that points at its target does not move (every angle is zero): give elbow and
-// knee limits that leave out 0, 0.05 rad are enough. For display rate, not for the force loop.
+// Every returned state keeps the bone lengths and limits, even if the target was not reached. A
+// straight chain that points at its target does not move (every angle is zero), so elbow and knee
+// need limits that exclude 0; 0.05 rad are enough. For display rate, not for the force loop.
 // Source: CC-1 to CC-9. Rotations are applied at once, as in the classical method.
 #pragma once
 
@@ -60,7 +60,7 @@ struct Reach {
   Eigen::Vector3d target_m = Eigen::Vector3d::Zero();
   double tolerance_m = 1e-3;  // eps > 0; a millimetre is enough for display
   int sweeps = 20;            // the cap, 0 .. kMaxSweeps
-  std::size_t root = 0;       // joints before it stay as they are
+  std::size_t root = 0;       // joints before it do not move
 };
 
 enum class ReachStatus : std::uint8_t { kConverged, kMaxIterations, kUnreachable, kInvalid };
@@ -70,18 +70,18 @@ struct ReachResult {
   std::vector<JointState> joints;         // n
   std::vector<Eigen::Vector3d> points_m;  // n + 1
   double error_m = 0.0;                   // e
-  int sweeps = 0;                         // begun
-  int updates = 0;                        // joints turned; one without a direction is left out
+  int sweeps = 0;                         // started
+  int updates = 0;                        // joints turned; a joint without a direction is skipped
 };
 
-/// Where the joints and the end are; empty if the chain or a state is not valid.
+/// Positions of the joints and the end; empty if the chain or a state is invalid.
 std::vector<Eigen::Vector3d> joint_points_m(const Chain& chain, std::span<const JointState> joints);
 /// Child <- parent, CC-9; a hinge's axis has length 1 here.
 Eigen::Quaterniond rotation_of(const Bone& bone, const JointState& joint);
-/// Angle of a bone: that of the hinge, or how far a ball is from rest.
+/// Angle of a hinge, or the angle of a ball from rest.
 double swing_rad(const Bone& bone, const JointState& joint);
-/// A ball's rotation that takes the bone beyond its cone goes back along the great circle through
-/// rest, which has length 1 here (CC-7); a hinge has no cone.
+/// Limits a ball's rotation to its cone, along the great circle through rest, which must have
+/// length 1 here (CC-7); a hinge has no cone.
 Eigen::Quaterniond within_cone(const Bone& bone, const Eigen::Quaterniond& q);
 
 /// The sub-root if the target is within 0.98 of the sub chain's length, else 0, the chest.
@@ -89,7 +89,7 @@ std::size_t choose_root(const Chain& chain, std::span<const JointState> joints,
                         std::size_t sub_root, const Eigen::Vector3d& target_m);
 
 /// CC-2 .. CC-8. kUnreachable: too far from the root, or too near, for these lengths; limits are
-/// not looked at. kInvalid: no length, a start outside its limits, a number that is not finite.
+/// ignored. kInvalid: a length of 0, a start outside its limits, a number that is not finite.
 ReachResult reach(const Chain& chain, std::span<const JointState> start, const Reach& goal);
 
 }  // namespace tact::host::figure

@@ -14,12 +14,12 @@ using Eigen::AngleAxisd;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr double kLongestStep_s = 0.1;  // what came before is old; a fade goes on from there
+constexpr double kLongestStep_s = 0.1;  // limits a fade's progress after a pause
 constexpr double kWaitForShoulder_s = 1.0;
 
-constexpr double kElbowHint = 0.35;  // by eye: the left elbow's is then down and outward
+constexpr double kElbowHint = 0.35;  // chosen by eye: the left elbow points down and outward
 
-/// The part of a rotation that is at most `most_rad`.
+/// The rotation, limited to an angle of `most_rad`.
 Quaterniond at_most(const Quaterniond& q, double most_rad) {
   const double angle_rad = q.angularDistance(Quaterniond::Identity());
   return angle_rad > most_rad ? Quaterniond::Identity().slerp(most_rad / angle_rad, q) : q;
@@ -33,7 +33,7 @@ Pose placed(const Pose& pose, const Vector3d& by_m) {
   return {.rotation = pose.rotation, .position_m = pose.position_m + by_m};
 }
 
-/// From the default place to the one where the right shoulder is there.
+/// The shift from the default place that moves the right shoulder to `shoulder_m`.
 Vector3d to_shoulder(const BodyPlan& plan, const Vector3d& shoulder_m) {
   return shoulder_m - standing_pelvis(plan).position_m -
          upright_m(plan, FigureJoint::kRightShoulder);
@@ -59,15 +59,15 @@ void Figure::go_on_with(const Vector3d& tool_grip_m) {
 }
 
 const FigurePose& Figure::update(double time_s, const Pose& tool, const TrackedOperator& bodies) {
-  // A step back is another run of the clock: nothing that was bound belongs to it.
+  // A step back is another clock: all bindings are invalid.
   if (begun_ && time_s < time_s_) *this = Figure(settings_);
-  // After a pause of the page nothing may jump by what a long step would allow.
+  // Limited, so that nothing jumps after a pause of the page.
   dt_s_ = begun_ ? std::clamp(time_s - time_s_, 0.0, kLongestStep_s) : 0.0;
   time_s_ = time_s;
   begun_ = true;
   if (is_good(tool)) tool_ = tool;
   if (!may_bind_) settle(bodies);
-  // In this order: the arm begins at the trunk, the head at the chest that the arm has bent.
+  // In this order: the arm starts at the trunk, the head at the chest that the arm has bent.
   pose_trunk(bodies);
   pose_arm(tool_, bodies);
   pose_head();
@@ -78,8 +78,8 @@ const FigurePose& Figure::update(double time_s, const Pose& tool, const TrackedO
   return pose_;
 }
 
-/// Before anything is bound the figure glides to where its right shoulder meets the tracked one.
-/// It waits a moment for the shoulder to be seen.
+/// Before any body is bound, moves the figure so that its right shoulder meets the tracked one.
+/// Waits up to kWaitForShoulder_s for the shoulder.
 void Figure::settle(const TrackedOperator& bodies) {
   const auto is_seen = [](const TrackedBody& body) {
     return body.state == BodyState::kTracked && is_good(body.pose);
@@ -93,7 +93,7 @@ void Figure::settle(const TrackedOperator& bodies) {
       pose_.shoulder_too_far = !((by_m - start_m_).norm() <= kMaxPosition_m);
       place_goal_m_ = pose_.shoulder_too_far ? start_m_ : by_m;
     } else if (shoulder.state == BodyState::kAbsent || waited_s_ > kWaitForShoulder_s) {
-      // A description without a shoulder, or one that hides: stand where untracked figures do.
+      // No shoulder in the description, or not seen in time: use the untracked place.
       place_goal_m_ = start_m_;
     } else {
       return;
@@ -105,13 +105,13 @@ void Figure::settle(const TrackedOperator& bodies) {
   const double way_m = way.norm();
   const double way_s = way_m > 0.0 ? std::max(kReturn_s, way_m / kGlide_mps) : 0.0;
   const double t = way_s > waited_s_ ? waited_s_ / way_s : 1.0;
-  // 3 t^2 - 2 t^3: at rest at both ends.
+  // 3 t^2 - 2 t^3: zero speed at both ends.
   place_m_ = start_m_ + t * t * (3.0 - 2.0 * t) * way;
   may_bind_ = t >= 1.0;
 }
 
 const Pose& Figure::follow(BodyRole role, const TrackedOperator& bodies, const Pose& neutral) {
-  // Before it stands where it shall, binding would fix the wrong offset.
+  // Before the figure is at its place, binding would store the wrong offset.
   const TrackedBody absent{};
   return bones_[static_cast<std::size_t>(role)].follow(may_bind_ ? bodies[role] : absent, neutral,
                                                        dt_s_);
@@ -128,7 +128,7 @@ void Figure::pose_trunk(const TrackedOperator& bodies) {
                                upright(FigureJoint::kRightShoulder, Quaterniond::Identity()));
   const Pose head = follow(BodyRole::kHead, bodies, upright(FigureJoint::kHead, looking_down()));
   const double by_shoulder = share(BodyRole::kShoulder);
-  // The shoulder says more of the trunk: the head leads only as far as the shoulder does not.
+  // The shoulder has precedence: the head leads the trunk only by the remaining share.
   const double by_head = (1.0 - by_shoulder) * share(BodyRole::kHead);
   arm_.lean(TrunkEnd::kChest,
             pose::to_local(pelvis_, head.position_m) - plan_.neck_m * Vector3d::UnitZ(), by_head);
@@ -138,13 +138,13 @@ void Figure::pose_trunk(const TrackedOperator& bodies) {
 void Figure::pose_arm(const Pose& tool, const TrackedOperator& bodies) {
   using enum FigureJoint;
   const Vector3d grip_m = pose::to_world(tool, settings_.grip_m);
-  // Hand and wrist are bound to the hand as the tool turns it.
+  // Hand and wrist are bound to the hand's pose at the tool.
   const Pose held{.rotation = tool.rotation * holding_hand(), .position_m = grip_m};
   const Pose wrist = follow(BodyRole::kWrist, bodies, held);
   const Pose hand = follow(BodyRole::kHand, bodies, held);
-  // A tracker on the hand knows its turn better than one on the wrist.
+  // A tracker on the hand is more accurate than one on the wrist.
   const Quaterniond turn = wrist.rotation.slerp(share(BodyRole::kHand), hand.rotation);
-  // Bound to where the arm had it in the frame before; from a lost one the arm goes back to rest.
+  // Bound to the elbow of the last frame; after a loss the arm returns to rest.
   const Pose elbow = follow(BodyRole::kElbow, bodies, {.position_m = pose_[kRightElbow]});
   ArmGoal goal{.grip_m = pose::to_local(pelvis_, grip_m),
                .hand = (pelvis_.rotation.conjugate() * turn).normalized()};
@@ -163,23 +163,23 @@ void Figure::pose_head() {
   const Quaterniond thorax = pelvis_.rotation * arm_.axes(kThoraxBone),
                     free = thorax * looking_down();
   const Vector3d up = thorax * Vector3d::UnitZ(), chest_m = pose_[FigureJoint::kChest];
-  // The neck points to the tracked head; it has its own length.
+  // The neck points to the tracked head and keeps its own length.
   const Quaterniond neck = Quaterniond::FromTwoVectors(up, head.position_m - chest_m);
   pose_[FigureJoint::kHead] =
       chest_m + at_most(part_of(neck, by_tracker), kNeckCone_rad) * (plan_.neck_m * up);
-  // Turned at most so far from the trunk's own axes.
+  // The turn from the trunk's own axes is limited.
   const Quaterniond turn = thorax.conjugate() * free.slerp(by_tracker, head.rotation);
   pose_.head = (thorax * at_most(turn, kHeadTurn_rad)).normalized();
   pose_[FigureJoint::kCrown] =
       pose_[FigureJoint::kHead] + pose_.head * (plan_.head_m * Vector3d::UnitZ());
 }
 
-/// Untracked it rests on the bench's edge and moves with the trunk.
+/// Without a tracker the left hand rests on the bench's edge and moves with the trunk.
 void Figure::pose_left_arm(const TrackedOperator& bodies) {
   using enum FigureJoint;
   const Quaterniond thorax = pelvis_.rotation * arm_.axes(kThoraxBone);
   const Vector3d shoulder_m = pose_[kChest] - thorax * (plan_.clavicle_m * Vector3d::UnitY());
-  // At rest, in the thorax's axes, by eye.
+  // The rest pose in the thorax's axes, chosen by eye.
   const auto bone = [](double length_m, const Vector3d& along) -> Vector3d {
     return length_m * along.normalized();
   };
@@ -189,7 +189,7 @@ void Figure::pose_left_arm(const TrackedOperator& bodies) {
                  fingers_m = bone(plan_.fingers_m, {-0.75, 0.30, -0.55});
   const Pose hand = follow(BodyRole::kLeftHand, bodies,
                            {.rotation = thorax, .position_m = shoulder_m + thorax * wrist_m});
-  // Down and outward, and in the plane of the arm at rest: so binding the hand moves no elbow.
+  // Down and outward, in the plane of the resting arm, so that binding the hand moves no elbow.
   const Vector3d hint = elbow_m - kElbowHint * wrist_m;
   const Limb arm = pose_limb({.upper_m = plan_.upper_arm_m, .lower_m = plan_.forearm_m}, shoulder_m,
                              hand.position_m, thorax * hint, thorax * Vector3d::UnitX());
@@ -208,14 +208,14 @@ void Figure::place_leg(bool right, const TrackedOperator& bodies) {
   const Vector3d standing_m = standing_ankle_m(plan_, right) + place_m_;
   const BodyRole ankle = right ? BodyRole::kRightAnkle : BodyRole::kLeftAnkle;
   const Pose foot = follow(ankle, bodies, {.position_m = standing_m});
-  // The knee is hinted at: forward of the leg, or where the tracked leg has it.
+  // Hint for the knee: forward of the leg, or the position of the tracked leg.
   const Vector3d forward = pelvis_.rotation * -Vector3d::UnitX();
   const Vector3d knee_hint_m = 0.5 * (hip_m + foot.position_m) + 0.1 * forward;
   const Pose shin =
       follow(right ? BodyRole::kRightLeg : BodyRole::kLeftLeg, bodies, {.position_m = knee_hint_m});
   const Limb leg = pose_limb({.upper_m = plan_.thigh_m, .lower_m = plan_.calf_m}, hip_m,
                              foot.position_m, shin.position_m - hip_m, forward);
-  // Untracked, the foot stands where the figure puts it: that is no trouble to tell.
+  // Without a tracker the figure sets the foot itself, so there is nothing to report.
   pose_.leg_reached[right ? 1 : 0] = share(ankle) == 0.0 || leg.missed_m <= kLimbTolerance_m;
   pose_[pick(kRightHip, kLeftHip)] = hip_m;
   pose_[pick(kRightKnee, kLeftKnee)] = leg.middle_m;

@@ -2,22 +2,22 @@
 // figure.h - the operator at the device: trackers move the body, the tool moves the right arm.
 //
 //     waist            the pelvis                         TR-6
-//     shoulder, head   the trunk leans so that the right shoulder, else the chest, comes there;
+//     shoulder, head   the trunk leans so that the right shoulder, else the chest, reaches it;
 //                      the neck does the rest, within a cone
-//     hand, wrist      how the right hand is turned; where it is, the tool alone says
-//     elbow            where the right elbow is about the line from shoulder to wrist
-//     left hand        wrist and turn of the left hand; the elbow bends down and outward
+//     hand, wrist      rotation of the right hand; its position comes from the tool only
+//     elbow            direction of the right elbow around the line from shoulder to wrist
+//     left hand        position and rotation of the left hand; the elbow bends down and outward
 //                                                         TR-6, CC-10
 //     leg, ankle       knee hint and foot, left and right  TR-6, CC-10
-//     tool             not asked: the device's own encoders know better
+//     tool             not used: the device's own encoders are more accurate
 //
-// A bone is bound when its body is first tracked (TR-5): the operator stands as the neutral figure
-// does. The figure then stands where its right shoulder meets the tracked one, if that is within
+// A bone is bound when its body is first tracked (TR-5), while the operator stands like the neutral
+// figure. The figure is placed so that its right shoulder meets the tracked one, if that is within
 // kMaxPosition_m of the default. A bone without a tracker stays neutral; the head looks down at
-// the device, the feet stand. A body that is held, lost or back: bound_bone.h.
+// the device, the feet stand. bound_bone.h describes a body that is held, lost or tracked again.
 //
-// Time is an argument, s, of any clock; a step back begins again, binding and all. No number that
-// is not finite comes out. Frame W, m. For display, not for the force loop. Source: CC-10,
+// Time is an argument, s, of any clock; a step back resets the figure, with its bindings. All
+// results are finite. Frame W, m. For display, not for the force loop. Source: CC-10,
 // TR-1 to TR-6.
 #pragma once
 
@@ -30,9 +30,9 @@
 
 namespace tact::host::figure {
 
-/// A hand takes a tool at this share of the tool's height above its tip, within these bounds.
+/// The hand grips a tool at this share of the tool's height above its tip, within these bounds.
 inline constexpr double kGripHeight = 0.8, kMinGrip_m = 0.02, kMaxGrip_m = 0.3;
-/// Where, in the tool's axes, m: its tip is their origin, its handle points along +z.
+/// The grip in the tool's axes, m: the tip is their origin, the handle points along +z.
 inline Eigen::Vector3d grip_m(double tool_height_m) {
   return {0.0, 0.0, std::clamp(kGripHeight * tool_height_m, kMinGrip_m, kMaxGrip_m)};
 }
@@ -47,14 +47,14 @@ struct FigureSettings {
 enum class FigureTrouble : std::uint8_t { kNone, kHeld, kLost, kOutOfReach };
 
 struct FigurePose {
-  double height_m = 0.0;  // of the body that it draws; 0: none yet
+  double height_m = 0.0;  // of the body; 0: none yet
   std::array<Eigen::Vector3d, kFigureJoints> joint_m{};
-  Eigen::Quaterniond head = Eigen::Quaterniond::Identity();  // its -x is where the face looks
-  Eigen::Vector3d grip_m = Eigen::Vector3d::Zero();          // where the finger tips shall be
+  Eigen::Quaterniond head = Eigen::Quaterniond::Identity();  // the face looks along its -x
+  Eigen::Vector3d grip_m = Eigen::Vector3d::Zero();          // target of the finger tips
   ArmWork arm;
-  std::array<bool, 2> leg_reached{true, true};  // left, right: within kLimbTolerance_m; or free
-  bool left_hand_reached = true;                // likewise
-  bool shoulder_too_far = false;  // the tracked one does not say where the figure stands
+  std::array<bool, 2> leg_reached{true, true};   // left, right: within kLimbTolerance_m; or free
+  bool left_hand_reached = true;                 // likewise
+  bool shoulder_too_far = false;                 // the tracked one was ignored
   FigureTrouble trouble = FigureTrouble::kNone;  // the worst
   std::string words;                             // "head lost (silent)"; empty if there is none
 
@@ -67,17 +67,17 @@ struct FigurePose {
 };
 
 inline constexpr double kMaxPosition_m = 0.5;
-inline constexpr double kLimbTolerance_m = 0.01;  // a straight limb, a little noise: no trouble
+inline constexpr double kLimbTolerance_m = 0.01;  // allows a straight limb with a little noise
 inline constexpr double kNeckCone_rad = 0.8, kHeadTurn_rad = 1.4;
-inline constexpr double kRelax_s = 1.5;  // in which the arm goes two thirds of its way to rest
+inline constexpr double kRelax_s = 1.5;  // time constant of the arm's return to rest
 
 class Figure {
  public:
   explicit Figure(const FigureSettings& settings = {});
 
-  /// One frame. `tool` is the tool's pose in W; one that is not finite leaves the last one.
+  /// One frame. `tool`: the tool's pose in W; if it is not finite, the last one is kept.
   const FigurePose& update(double time_s, const Pose& tool, const TrackedOperator& bodies);
-  /// Another run of the device, maybe another tool: the clock begins again, what is bound stays so.
+  /// Starts another run of the device, maybe with another tool: the clock restarts, bindings stay.
   void go_on_with(const Eigen::Vector3d& tool_grip_m);
   const FigurePose& pose() const { return pose_; }
   const BodyPlan& plan() const { return plan_; }
@@ -99,11 +99,11 @@ class Figure {
   std::array<BoundBone, kBodyRoles> bones_{};
   FigurePose pose_;
   Pose pelvis_, tool_;
-  Eigen::Vector3d start_m_ = Eigen::Vector3d::Zero();  // where it stands untracked
-  Eigen::Vector3d place_m_ = Eigen::Vector3d::Zero();  // both from the default place
+  Eigen::Vector3d start_m_ = Eigen::Vector3d::Zero();  // its place without a tracked shoulder
+  Eigen::Vector3d place_m_ = Eigen::Vector3d::Zero();  // both relative to the default place
   std::optional<Eigen::Vector3d> place_goal_m_;        // of place_m_
-  double waited_s_ = 0.0;                              // for the shoulder, then on the way there
-  bool may_bind_ = false;                              // it stands where it shall
+  double waited_s_ = 0.0;                              // for the shoulder, then during the move
+  bool may_bind_ = false;                              // the figure has reached its place
   double time_s_ = 0.0, dt_s_ = 0.0;
   bool begun_ = false;
 };

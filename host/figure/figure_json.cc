@@ -9,7 +9,7 @@
 namespace tact::host::figure {
 namespace {
 
-/// To a tenth of a millimetre; a figure beyond 100 m is no longer in the picture.
+/// To a tenth of a millimetre; clamped at 99 m, far outside the view.
 void put(std::string& out, const Eigen::Vector3d& at_m) {
   const Eigen::Vector3d p_m = at_m.cwiseMax(-99.0).cwiseMin(99.0);
   fmt::format_to(std::back_inserter(out), "{:.4f},{:.4f},{:.4f}", p_m.x(), p_m.y(), p_m.z());
@@ -37,7 +37,7 @@ nlohmann::json skeleton_json(const BodyPlan& plan) {
 
 std::string figure_json(const FigurePose& pose, std::uint64_t tick, bool head_tracked) {
   std::string out;
-  // Once, and never longer: every number has a bounded width, and the words come from a table.
+  // One allocation: every number has a bounded width, and the words come from a table.
   out.reserve(kMaxFigureJsonBytes);
   fmt::format_to(std::back_inserter(out), "{{\"kind\":\"figure\",\"tick\":{},\"joint_m\":[", tick);
   for (std::size_t i = 0; i < kFigureJoints; ++i) {

@@ -8,8 +8,8 @@
 //                "full_chain":false,"trouble":0,"words":"head lost (silent)",
 //                "head_tracked":false}
 //
-// A frame of the figure is a message of its own, after the frame that it belongs to: so a frame
-// with a full patch keeps its length. trouble: 0 none, 1 held, 2 lost, 3 out of reach.
+// The figure is a separate message after its frame, so that the length of a frame with a full patch
+// does not grow. trouble: 0 none, 1 held, 2 lost, 3 out of reach.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -22,7 +22,7 @@ namespace tact::host::figure {
 inline constexpr std::size_t kMaxFigureJsonBytes = 1024;
 
 nlohmann::json skeleton_json(const BodyPlan& plan);
-/// `head_tracked`: the head's pose is the tracker's, so a view may go with it.
+/// `head_tracked`: the head's pose is the tracker's, so a view may follow it.
 std::string figure_json(const FigurePose& pose, std::uint64_t tick, bool head_tracked);
 
 }  // namespace tact::host::figure

@@ -41,14 +41,14 @@ void report(const TrackedOperator& bodies, FigurePose& pose) {
   pose.trouble = FigureTrouble::kNone;
   pose.words.clear();
   const auto say = [&pose](FigureTrouble trouble, const std::string& words) {
-    // The worst one is told; of two alike the first.
+    // Reports the worst; of equal ones the first.
     if (trouble > pose.trouble) pose.words = words;
     pose.trouble = std::max(pose.trouble, trouble);
   };
   for (std::size_t i = 0; i < kBodyRoles; ++i) {
     const TrackedBody& body = bodies.bodies[i];
     const auto role = static_cast<BodyRole>(i);
-    // "Tracked" with a pose that is none: bound_bone.h holds it, so it is told as held.
+    // "Tracked" with an invalid pose: bound_bone.h holds the bone, so it is reported as held.
     const bool bad = body.state == BodyState::kTracked && !is_good(body.pose);
     const auto words = [&](const char* what) {
       const TrackingTrouble why = bad ? TrackingTrouble::kInvalid : body.trouble;

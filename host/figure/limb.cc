@@ -24,8 +24,8 @@ Limb pose_limb(const LimbBones& bones, const Vector3d& root_m, const Vector3d& e
   const Vector3d y = across(hint, x, otherwise);
   const double l1 = bones.upper_m, l2 = bones.lower_m;
   const double d = std::clamp(distance_m, std::abs(l1 - l2), l1 + l2);
-  // 16 A^2 = (L1+L2+D) (L1+L2-D) (D+(L1-L2)) (D-(L1-L2)); a factor is exactly 0 where the limb is
-  // straight or folded. The law of cosines through acos has half its digits left there.
+  // 16 A^2 = (L1+L2+D) (L1+L2-D) (D+(L1-L2)) (D-(L1-L2)); a factor is exactly 0 for a straight or
+  // folded limb, where acos of the law of cosines would lose half of its digits.
   const double product = ((l1 + l2) + d) * ((l1 + l2) - d) * (d + (l1 - l2)) * (d - (l1 - l2));
   const double along_m = d > 0.0 ? 0.5 * ((l1 - l2) * (l1 + l2) / d + d) : 0.0;
   const double across_m = d > 0.0 ? 0.5 * std::sqrt(std::max(product, 0.0)) / d : l1;

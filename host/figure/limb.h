@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// limb.h - two bones in space: root and end are known, and to which side the middle joint bends.
+// limb.h - two bones in space, from root, end and a hint for the side of the middle joint.
 //
-//     x = (end - root) / |end - root|      y = the part of the hint across x, of length 1
+//     x = (end - root) / |end - root|      y = part of the hint perpendicular to x, of length 1
 //     D = |end - root|, kept within |L1 - L2| .. L1 + L2 ,   A  area of the triangle, m^2
 //     middle joint - root = (L1^2 - L2^2 + D^2)/(2 D) x + 2 A/D y                            CC-10
 //
@@ -20,17 +20,17 @@ struct LimbBones {
 
 struct Limb {
   Eigen::Vector3d middle_m = Eigen::Vector3d::Zero();
-  Eigen::Vector3d end_m = Eigen::Vector3d::Zero();  // the wanted one, or the nearest in reach
-  double missed_m = 0.0;                            // from there to the wanted one
+  Eigen::Vector3d end_m = Eigen::Vector3d::Zero();  // the wanted end, or the nearest in reach
+  double missed_m = 0.0;                            // its distance from the wanted end
 };
 
-/// The part of `v` across the unit vector `along`, of length 1; of `otherwise` if there is none.
+/// The part of `v` perpendicular to the unit vector `along`, of length 1; if zero, of `otherwise`.
 Eigen::Vector3d across(const Eigen::Vector3d& v, const Eigen::Vector3d& along,
                        const Eigen::Vector3d& otherwise);
 
-/// `hint` is a direction from the root, `otherwise` one for a limb that lies along it. An end at
-/// the root gives no direction: the limb goes down, -z, then. An end that is not finite: no limb,
-/// both points at the root.
+/// `hint` is a direction from the root, `otherwise` a substitute if the hint lies along the limb.
+/// An end at the root gives no direction: the limb then points down, -z. If the end is not finite,
+/// both points are at the root.
 Limb pose_limb(const LimbBones& bones, const Eigen::Vector3d& root_m, const Eigen::Vector3d& end_m,
                const Eigen::Vector3d& hint, const Eigen::Vector3d& otherwise);
 

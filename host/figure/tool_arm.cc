@@ -11,9 +11,9 @@ namespace {
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-// Chosen below kGripTolerance_m: what the wrist misses, step 4 need not make good.
+// Chosen below kGripTolerance_m, so that step 4 need not correct the wrist's error.
 constexpr double kWristTolerance_m = 0.3e-3;
-constexpr double kNoSide_m = 1e-3;  // an elbow nearer to the line from shoulder to wrist has none
+constexpr double kNoSide_m = 1e-3;  // an elbow nearer to the line from shoulder to wrist is ignored
 
 Chain first_bones(const Chain& chain, std::size_t n) {
   Chain out{.base_m = chain.base_m, .bones = {}};
@@ -21,7 +21,7 @@ Chain first_bones(const Chain& chain, std::size_t n) {
   return out;
 }
 
-/// The part of a turn about the unit vector `axis` that keeps `bone` within `cone_rad` of `rest`.
+/// The turn about the unit vector `axis`, limited to keep `bone` within `cone_rad` of `rest`.
 double turn_within(double turn_rad, const Vector3d& axis, const Vector3d& bone,
                    const Vector3d& rest, double cone_rad) {
   const Vector3d b = bone.normalized(), r = rest.normalized();
@@ -35,7 +35,7 @@ double turn_within(double turn_rad, const Vector3d& axis, const Vector3d& bone,
                                -half_rad, half_rad);
 }
 
-/// The rotation that takes two directions across each other to two others.
+/// The rotation that maps two perpendicular directions to two others.
 Quaterniond turn_from_to(const Vector3d& a, const Vector3d& b, const Vector3d& to_a,
                          const Vector3d& to_b) {
   Eigen::Matrix3d from, to;
@@ -47,7 +47,7 @@ Quaterniond turn_from_to(const Vector3d& a, const Vector3d& b, const Vector3d& t
 }  // namespace
 
 Quaterniond holding_hand() {
-  // By eye: the palm from the operator's side (-x), the finger tips down.
+  // Chosen by eye: the palm from the operator's side (-x), the finger tips down.
   const Vector3d palm = Vector3d(-0.85, -0.45, -0.28).normalized();
   const Vector3d down(-0.05, -0.15, -1.0);
   const Vector3d curl = (down - down.dot(palm) * palm).normalized();
@@ -67,7 +67,7 @@ ToolArm::ToolArm(const BodyPlan& plan, RootRule rule)
 
 void ToolArm::relax(double share) {
   const double s = std::clamp(share, 0.0, 1.0);
-  // Slerp towards rest does not leave the cone: the bone's angle from rest shrinks.
+  // Slerp towards rest stays in the cone: the bone's angle from rest decreases.
   const auto go = [s](JointState& joint, const JointState& rest) {
     joint.angle_rad += s * (rest.angle_rad - joint.angle_rad);
     joint.rotation = joint.rotation.slerp(s, rest.rotation).normalized();
@@ -87,13 +87,13 @@ void ToolArm::lean(TrunkEnd end, const Vector3d& target_m, double share) {
       reach(chain, start, {.target_m = target_m, .tolerance_m = 1e-3, .sweeps = kSweeps});
   for (std::size_t i = 0; i < result.joints.size(); ++i) {
     trunk_[i].angle_rad += share * (result.joints[i].angle_rad - trunk_[i].angle_rad);
-    // Between two states within the cone slerp may leave it.
+    // Slerp between two states within the cone may leave it.
     trunk_[i].rotation = within_cone(
         chain.bones[i], trunk_[i].rotation.slerp(share, result.joints[i].rotation).normalized());
   }
 }
 
-/// The trunk as the trackers have it, bent as the arm did in the frame before.
+/// Sets the trunk to the trackers' pose plus the arm's bend of the last frame.
 void ToolArm::bend_trunk() {
   for (std::size_t i = 0; i < kShoulderBone; ++i) {
     const Bone& bone = chain_.bones[i];
@@ -114,10 +114,10 @@ ArmWork ToolArm::hold(const ArmGoal& goal) {
   ArmWork work;
   if (!goal.grip_m.allFinite() || !goal.hand.coeffs().allFinite()) return work;
   bend_trunk();
-  // The fingers begin curled, so that step 4 finds the same grip from frame to frame.
+  // The fingers start curled, so that step 4 finds the same grip in each frame.
   joints_[kFingerBone] = rest_[kFingerBone];
   const Vector3d wrist_m = wrist_for(goal);
-  // Classical CCD (kAlwaysFullChain) goes without, as it is there to be compared with.
+  // Not for classical CCD (kAlwaysFullChain), which serves for comparison.
   if (rule_ != RootRule::kAlwaysFullChain) work.updates += point_two_bones(wrist_m);
   take(run(to_wrist_, wrist_m, kWristTolerance_m, root_for(to_wrist_, wrist_m), work));
   if (goal.elbow_m) work.updates += swivel(*goal.elbow_m);
@@ -148,8 +148,8 @@ ReachResult ToolArm::run(const Chain& chain, const Vector3d& target_m, double to
   return result;
 }
 
-/// Step 4. It goes on from where the arm alone came to an end, so the trunk bends no more than the
-/// rest of the way asks for.
+/// Step 4. Continues from the result of the arm alone, so that the trunk bends only for the
+/// remaining distance.
 ReachResult ToolArm::grip(const Vector3d& grip_m, ArmWork& work) {
   const std::size_t root = root_for(chain_, grip_m);
   ReachResult result = run(chain_, grip_m, kGripTolerance_m, root, work);
@@ -158,25 +158,25 @@ ReachResult ToolArm::grip(const Vector3d& grip_m, ArmWork& work) {
   take(result);
   ReachResult whole = run(chain_, grip_m, kGripTolerance_m, 0, work);
   work.out_of_reach = whole.status == ReachStatus::kUnreachable;
-  // The arm alone may have come nearer than the whole body in its sweeps.
+  // Within its sweeps, the arm alone may have come nearer than the whole body.
   return whole.error_m < result.error_m ? whole : result;
 }
 
 int ToolArm::point_two_bones(const Vector3d& wrist_m) {
   const auto start = std::span(joints_).first(kHandBone);
-  // Too far for the arm: the trunk has to help, and two bones know nothing of it.
+  // Beyond the arm's reach the trunk must help, for which this formula has no solution.
   if (rule_ != RootRule::kFormulaAlone && root_for(to_wrist_, wrist_m) != kShoulderBone) return 0;
   const std::vector<Vector3d> at_m = joint_points_m(to_wrist_, start);
   const Vector3d to_target = wrist_m - at_m[kShoulderBone];
   if ((wrist_m - at_m.back()).norm() <= kWristTolerance_m || to_target.norm() < 1e-6) return 0;
 
   const Bone &upper = chain_.bones[kShoulderBone], &lower = chain_.bones[kElbowBone];
-  // D^2 = L1^2 + L2^2 + 2 L1 L2 cos(flexion), because the hinge is across both bones
+  // D^2 = L1^2 + L2^2 + 2 L1 L2 cos(flexion), because the hinge is perpendicular to both bones
   const double l1 = upper.length_m, l2 = lower.length_m;
   const double cosine = (to_target.squaredNorm() - l1 * l1 - l2 * l2) / (2.0 * l1 * l2);
   const double flexion_rad = std::acos(std::clamp(cosine, -1.0, 1.0));
   joints_[kElbowBone].angle_rad = std::clamp(flexion_rad, lower.lo_rad, lower.hi_rad);
-  // The shortest turn of the shoulder, in its parent's axes.
+  // The smallest rotation of the shoulder, in its parent's axes.
   const Quaterniond parent = axes(kShoulderBone - 1);
   JointState& shoulder = joints_[kShoulderBone];
   const Quaterniond bent = shoulder.rotation * rotation_of(lower, joints_[kElbowBone]);
@@ -197,7 +197,7 @@ int ToolArm::swivel(const Vector3d& elbow_m) {
     return from_m - from_m.dot(axis) * axis;
   };
   const Vector3d now = beside(at_m[kElbowBone]), wanted = beside(elbow_m);
-  // A straight arm, or a tracker on the line, has no side.
+  // A straight arm, or a tracker on the line, gives no direction.
   if (now.norm() < kNoSide_m || wanted.norm() < kNoSide_m) return 0;
   double turn_rad = std::atan2(axis.dot(now.cross(wanted)), now.dot(wanted));
   const Quaterniond parent = axes(kShoulderBone - 1);
@@ -215,7 +215,7 @@ void ToolArm::take(const ReachResult& result) {
 }
 
 Vector3d ToolArm::wrist_for(const ArmGoal& goal) const {
-  // Backwards from the grip: less the curled fingers, less the palm.
+  // Backwards from the grip: subtract the curled fingers, then the palm.
   const double curl_rad = joints_[kFingerBone].angle_rad;
   const Vector3d palm = goal.hand * arm_along();
   const Vector3d fingers =

@@ -13,9 +13,9 @@ using tracking::BodyRole;
 using tracking::Look;
 using tracking::TrackedOperator;
 
-/// Up to the "To" before a capital letter.
+/// The part before a "To" that a capital letter follows.
 std::string_view own_name(std::string_view device) {
-  // PLUS writes FROMToTO: the capital behind "To" tells it from a name such as "Tool".
+  // PLUS writes FROMToTO; the capital after "To" distinguishes it from a name such as "Tool".
   for (std::size_t at = 1; at + 2 < device.size(); ++at)
     if (device.substr(at, 2) == "To" && std::isupper(static_cast<unsigned char>(device[at + 2])))
       return device.substr(0, at);
@@ -53,7 +53,7 @@ std::optional<BodyRole> role_of(std::string_view device) {
 void IgtlBodies::take(BodyRole role, const pose::Pose& pose, double sent_s, double now_s) {
   std::optional<Body>& body = bodies_[static_cast<std::size_t>(role)];
   if (!body) body.emplace();
-  // A time that stands while the place moves is no time of the pose: from now on arrival counts.
+  // A constant time with a changing position is not the pose's time: from now on arrival counts.
   const bool stands = sent_s == body->sent_s && pose.position_m != body->position_m;
   body->has_clock = body->has_clock && sent_s > 0.0 && !stands;
   body->sent_s = sent_s;
@@ -73,7 +73,7 @@ TrackedOperator IgtlBodies::at(double now_s) const {
 TrackedOperator joined(const TrackedOperator& first, const TrackedOperator& second) {
   TrackedOperator out = first;
   for (std::size_t i = 0; i < out.bodies.size(); ++i)
-    // Absent alone: a body that the description knows and has lost is still its own.
+    // Only absent ones: a lost body of the description has precedence all the same.
     if (out.bodies[i].state == tracking::BodyState::kAbsent) out.bodies[i] = second.bodies[i];
   return out;
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// igtl_bodies.h - poses by the name of their device in, the operator's bodies out.
+// igtl_bodies.h - the operator's bodies from poses that are identified by their device name.
 //
 // The name is that of a role, alone or as PLUS writes it: "head", "LeftLegToDevice". A pose is in
-// frame W. It is judged as one of a camera is (host/tracking/body_tracker.h): out of order, frozen,
-// jumps, silent. For display; no force depends on it. Pure: time is an argument.
+// frame W. It is checked like that of a camera (host/tracking/body_tracker.h): out of order,
+// frozen, jump, silent. For display; no force depends on it. Pure: time is an argument.
 #pragma once
 
 #include <array>
@@ -16,15 +16,15 @@
 
 namespace tact::host::igtl {
 
-/// "LeftLegToDevice" is left_leg; none: the name is that of no body.
+/// "LeftLegToDevice" gives left_leg; none: not the name of a body.
 std::optional<tracking::BodyRole> role_of(std::string_view device);
 
 class IgtlBodies {
  public:
-  /// `sent_s` of the sender's clock, 0 without one; `now_s` of the viewer's. A sender that gives
-  /// another pose the same time has no clock.
+  /// `sent_s` of the sender's clock, 0 without one; `now_s` of the viewer's. If another pose has
+  /// the same `sent_s`, the sender's time is no longer used.
   void take(tracking::BodyRole role, const pose::Pose& pose, double sent_s, double now_s);
-  /// Bodies that never came are absent.
+  /// Bodies that were never received are absent.
   tracking::TrackedOperator at(double now_s) const;
 
  private:
@@ -38,7 +38,7 @@ class IgtlBodies {
   std::array<std::optional<Body>, tracking::kBodyRoles> bodies_;
 };
 
-/// The bodies of both; a body that `first` does not know is that of `second`.
+/// The bodies of both; those absent in `first` are taken from `second`.
 tracking::TrackedOperator joined(const tracking::TrackedOperator& first,
                                  const tracking::TrackedOperator& second);
 

@@ -19,7 +19,7 @@ std::string frame_messages(const record::Frame& frame, double time_s) {
   const Vector3d force_N = Eigen::Vector3f(frame.force_N).cast<double>();
   const double parts_N[3] = {force_N.x(), force_N.y(), force_N.z()};
   if (!rotation || !position_m.allFinite() || !force_N.allFinite()) return {};
-  // Without a force there is no direction; the arrow then is kMinForce_N long along +z.
+  // Without a force there is no direction: the arrow is then kMinForce_N long along +z.
   const bool has_way = force_N.norm() > 0.0;
   const pose::Pose arrow{.rotation = has_way
                                          ? Quaterniond::FromTwoVectors(Vector3d::UnitZ(), force_N)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// igtl_frame.h - what a frame of tactd says, as OpenIGTLink messages.
+// igtl_frame.h - a frame of tactd as OpenIGTLink messages.
 //
 //     TRANSFORM ToolToDevice    the tool in frame W
 //     TRANSFORM ForceToDevice   at the tool's point, +z along the force, scaled by its newtons (at
@@ -14,15 +14,15 @@
 
 namespace tact::host::igtl {
 
-inline constexpr double kMinForce_N = 1e-3;  // of a transform that has an inverse
+inline constexpr double kMinForce_N = 1e-3;  // keeps the transform invertible
 
-/// The three messages, one behind the other. Empty: the frame has a number that is not finite.
+/// The three messages in sequence. Empty if a number of the frame is not finite.
 std::string frame_messages(const record::Frame& frame, double time_s);
 
-/// Of the device: off is not ready (13), stopped is disabled (15), ready and armed are good (1).
-/// Its subcode is the fault's number.
+/// Code by the device's state: off is not ready (13), stopped is disabled (15), ready and armed are
+/// good (1). The subcode is the fault's number.
 Status status_of(const record::Frame& frame);
-/// There is no tactd (7, time out).
+/// Without a tactd: time out (7).
 Status lost_status();
 
 }  // namespace tact::host::igtl

@@ -19,15 +19,15 @@ using model::Result;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kRetry{1000};
-// A peer writes these messages' names: without a bound it would fill memory and terminal.
-constexpr std::size_t kMaxTroubles = 16;  // told apart
+// Peers choose the names in these messages: without a bound they would fill memory and terminal.
+constexpr std::size_t kMaxTroubles = 16;  // reported separately
 
 double utc_s() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
 Result<tcp::endpoint> endpoint_of(const std::string& text) {
-  // The last one: an IPv6 address has others, in its brackets.
+  // The last colon, because an IPv6 address has others, in its brackets.
   const std::size_t colon = text.rfind(':');
   const std::string port = colon == std::string::npos ? "" : text.substr(colon + 1);
   std::uint16_t number = 0;
@@ -106,7 +106,7 @@ void IgtlLink::stop() {
   retry_.cancel(ignored);
   if (calling_) calling_->close(ignored);
   if (tracker_) tracker_->stop();
-  // stop() tells no event: erasing from the set while it is walked would be the end of both.
+  // stop() reports no event, so no session is erased from the set during this loop.
   for (const Session& client : clients_) client->stop();
   clients_.clear();
 }
@@ -114,7 +114,7 @@ void IgtlLink::stop() {
 void IgtlLink::welcome(tcp::socket socket) {
   if (clients_.size() >= kMaxClients)
     return refuse("more than 8 programs have come; one is sent away");
-  // The session holds its events, and they the place of the session, not the session.
+  // A strong pointer here would be a cycle: the session owns its events.
   auto place = std::make_shared<std::weak_ptr<IgtlSession>>();
   const auto session = std::make_shared<IgtlSession>(
       std::move(socket), events_of([this, place](const std::string& reason) {
@@ -124,7 +124,7 @@ void IgtlLink::welcome(tcp::socket socket) {
   *place = session;
   clients_.insert(session);
   session->start();
-  // At once: it need not wait a second to learn that there is no tactd.
+  // At once, so that the client need not wait a second for the status.
   session->send(igtl::status("Tact", utc_s(), last_));
 }
 
@@ -132,14 +132,14 @@ void IgtlLink::go_to_server() {
   calling_ = std::make_unique<tcp::socket>(io_);
   error_code ignored;
   calling_->open(server_->protocol(), ignored);
-  // The kernel's own six would keep a dead address for two minutes.
+  // The kernel's default of six would keep trying a dead address for two minutes.
   constexpr int kSyns = 2;  // some 7 s, where nothing answers
   static_cast<void>(
       setsockopt(calling_->native_handle(), IPPROTO_TCP, TCP_SYNCNT, &kSyns, sizeof kSyns));
   calling_->async_connect(*server_, [this](error_code wrong) {
     if (wrong == boost::asio::error::operation_aborted) return;
     if (wrong) {
-      // Once for each loss, not each second.
+      // Reported once per loss, not each second.
       if (!std::exchange(reported_away_, true))
         say_(fmt::format("OpenIGTLink: no server at {} ({}); asked again each second", server_name_,
                          wrong.message()));
@@ -191,7 +191,7 @@ void IgtlLink::add(const record::Frame& frame) {
   const Status status = status_of(frame);
   const bool is_due = now - sent_ >= kFrameGap;
   const bool reports = status != last_ || now - reported_ >= kStatusGap;
-  // A frame's messages are made for somebody only.
+  // Messages are made only if there is a client.
   if (clients_.empty() || (!is_due && !reports)) return;
   sent_ = now;
   const std::string messages = frame_messages(frame, utc_s());

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// igtl_link.h - OpenIGTLink in the viewer: who comes sees pose, force and status; trackers' poses
-// move the operator's figure.
+// igtl_link.h - OpenIGTLink in the viewer: sends pose, force and status to clients, and receives
+// poses of trackers, which move the operator's figure.
 //
-// It listens (3D Slicer comes), and goes to a server of trackers (PLUS) as its client, and comes
-// back until it is there. To that server it sends nothing. One thread, the viewer's. No force
-// depends on it.
+// It listens for clients (3D Slicer), and connects as a client to a server of trackers (PLUS), with
+// retries. It sends nothing to that server. Runs in the viewer's one thread. No force depends on
+// it.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -27,7 +27,7 @@
 namespace tact::host::igtl {
 
 struct IgtlOptions {
-  std::optional<std::uint16_t> port{};  // 0: any free one; none: nobody may come
+  std::optional<std::uint16_t> port{};  // 0: any free one; none: no listening
   std::string bind_address = "127.0.0.1";
   std::string from{};  // ADDRESS:PORT of a server of trackers; empty: none
 
@@ -46,17 +46,17 @@ class IgtlLink {
   IgtlLink(const IgtlLink&) = delete;
   IgtlLink& operator=(const IgtlLink&) = delete;
 
-  /// Listens. Error: what is wrong and what to do.
+  /// Listens. The error states the cause and the remedy.
   std::optional<model::Error> open(const IgtlOptions& options);
   void start();
   void stop();
 
-  /// To who has come, at most once in kFrameGap; the status when it changes and once in kStatusGap.
+  /// Sends to all clients, at most once per kFrameGap; the status at a change and per kStatusGap.
   void add(const record::Frame& frame);
-  /// tactd is gone, or silent.
+  /// Call when tactd has gone or is silent.
   void lose();
 
-  /// The bodies that trackers have sent, as they are now.
+  /// The bodies that trackers have sent, at present.
   tracking::TrackedOperator now() const;
 
   std::uint16_t port() const { return acceptor_.port(); }
@@ -88,7 +88,7 @@ class IgtlLink {
   IgtlBodies bodies_;
   Status last_ = lost_status();
   std::uint64_t refused_ = 0;
-  std::set<std::string> troubles_;  // told
+  std::set<std::string> troubles_;  // already reported
   bool reported_strange_ = false, reported_away_ = false;
 };
 

@@ -17,7 +17,7 @@ namespace tact::host::igtl {
 using boost::asio::ip::tcp;
 
 void notice_vanishing(tcp::socket& socket) {
-  // Linux's own keepalive begins after two hours.
+  // Linux's default keepalive starts after two hours.
   constexpr int kIdle_s = 5, kEvery_s = 2, kTimes = 3;
   static_assert(kVanished == std::chrono::seconds(kIdle_s + kTimes * kEvery_s));
   const auto set = [&socket](int level, int name, int value) {
@@ -34,7 +34,7 @@ IgtlSession::IgtlSession(tcp::socket socket, SessionEvents events)
 
 void IgtlSession::start() {
   Code ignored;
-  // Small messages at once: Nagle would hold a pose back for the answer to the one before.
+  // Small messages at once: Nagle would delay a pose until the previous one is acknowledged.
   socket_.set_option(tcp::no_delay(true), ignored);
   notice_vanishing(socket_);
   read_head_next();
@@ -48,7 +48,7 @@ void IgtlSession::stop() {
 }
 
 void IgtlSession::end(const std::string& reason) {
-  // A write and a read may both fail of one cause: it is told once.
+  // A write and a read may both fail by one cause: it is reported once.
   if (std::exchange(ended_, true)) return;
   stop();
   if (events_.ended) events_.ended(reason);
@@ -71,7 +71,7 @@ void IgtlSession::read_head_next() {
         self->head_ = std::move(*head);
         const std::uint64_t body = self->head_.body_bytes;
         const bool is_used = self->head_.type == "TRANSFORM" || self->head_.type == "POSITION";
-        // Before a byte of it is read: a length is a claim, and nothing is allocated for it.
+        // Before the body is read: the length is untrusted, and nothing is allocated for it.
         if (body > (is_used ? kMaxUsedBody : kMaxSkippedBody))
           return self->end(fmt::format("it announces a {} of {} bytes; nothing has so many",
                                        self->head_.type, body));
@@ -104,11 +104,11 @@ void IgtlSession::take_body(std::string_view body) {
     if (events_.refused)
       events_.refused(fmt::format("{} of \"{}\": {}", head_.type, head_.device, why));
   };
-  // First: with a wrong checksum every other complaint would be about noise.
+  // First: after a wrong checksum any other error would be misleading.
   if (crc64(body) != head_.crc) return refuse("its checksum is not that of its bytes");
   const auto content = content_of(head_, body);
   if (!content) return refuse(content.error().message);
-  if (!content->is_tracked) return;  // its sender does not see it
+  if (!content->is_tracked) return;  // the sender does not see the body
   const auto pose = pose_of(head_.type, content->bytes);
   if (!pose) return refuse(pose.error().message);
   if (events_.pose) events_.pose(head_, *pose);
@@ -116,7 +116,7 @@ void IgtlSession::take_body(std::string_view body) {
 
 void IgtlSession::send(const std::string& batch) {
   if (ended_) return;
-  // The newest takes the place of the one that waits: a pose grows old.
+  // The newest batch replaces the waiting one: old poses are useless.
   waiting_ = batch;
   if (on_its_way_.empty()) write_next();
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// igtl_session.h - one OpenIGTLink connection: messages in, judged; messages out, never waiting.
+// igtl_session.h - one OpenIGTLink connection: receives and checks messages, sends without waiting.
 //
-// In: a message that is not asked for is read away unkept, up to kMaxSkippedBody. One that is and
-// is damaged is left out; the connection goes on. Bytes that are no header, or a length that
-// nothing has, end it. Out: while one batch is on its way the next waits, and a newer one takes
-// its place: a slow client skips batches and costs no memory. One that reads nothing for
-// kTimeout is disconnected.
+// Receiving: a message of another type is read and discarded, up to kMaxSkippedBody. A damaged
+// message of a used type is ignored, and the connection is kept. Bytes that are no header, or an
+// excessive length, close it. Sending: while one batch is sent, the next waits, and a newer one
+// replaces it; a slow client thus skips batches and costs no memory. A client that reads nothing
+// for kTimeout is disconnected.
 #pragma once
 
 #include <array>
@@ -21,19 +21,19 @@
 namespace tact::host::igtl {
 
 inline constexpr std::size_t kMaxUsedBody = 4096;             // of a message that is used
-inline constexpr std::uint64_t kMaxSkippedBody = 256u << 20;  // of one that is read away, an image
+inline constexpr std::uint64_t kMaxSkippedBody = 256u << 20;  // of one that is discarded
 inline constexpr std::chrono::seconds kTimeout{10};
 
 struct SessionEvents {
   std::function<void(const MessageHead& head, const pose::Pose& pose)> pose;
-  /// What was left out; the connection goes on.
+  /// A message was ignored; the connection is kept.
   std::function<void(const std::string& message)> refused;
-  /// Once. Empty: the other side went.
+  /// Once. Empty reason: the peer closed the connection.
   std::function<void(const std::string& reason)> ended;
 };
 
-/// The kernel asks a peer that is silent whether it is still there; one that vanished without a
-/// word (a pulled cable, a power cut) ends the connection after kVanished.
+/// Sets TCP keepalive: a peer that vanished without closing (a pulled cable, a power cut) ends the
+/// connection after kVanished.
 void notice_vanishing(boost::asio::ip::tcp::socket& socket);
 inline constexpr std::chrono::seconds kVanished{11};
 
@@ -53,7 +53,7 @@ class IgtlSession : public std::enable_shared_from_this<IgtlSession> {
   void take_body(std::string_view body);
   void write_next();
   void end(const std::string& reason);
-  /// Of a read that failed: the other side went, or why.
+  /// After a failed read: the peer closed, or the reason.
   void end(const Code& wrong);
 
   boost::asio::ip::tcp::socket socket_;

@@ -21,12 +21,12 @@ using model::Result;
 
 constexpr double kFraction_s = 1.0 / 4294967296.0;
 // Of the matrix R^T R - 1, and of a quaternion's square length.
-constexpr double kMaxSkew = 0.01;  // of a rotation of floats; a matrix of another kind is far off
+constexpr double kMaxSkew = 0.01;  // allows float rounding; other matrices are far beyond
 constexpr double kFarthest_m = 1000.0;
 // The protocol's 64 bits of a unit: prefix, then pairs of unit and exponent.
 constexpr std::uint64_t kNewton = 0x0bull << 54 | 1ull << 50;  // no prefix, N to the power 1
 
-/// Big-endian, one after the other; beyond the end: 0, and `is_short`.
+/// Reads big-endian values in sequence; beyond the end 0, and `is_short`.
 class Reader {
  public:
   explicit Reader(std::string_view bytes) : bytes_(bytes) {}
@@ -40,7 +40,7 @@ class Reader {
   }
   double real32() { return static_cast<double>(std::bit_cast<float>(number<std::uint32_t>())); }
   std::string_view take(std::size_t count) {
-    // Once short, always: what follows would be read from the wrong place.
+    // Stays short, because later values would be read from the wrong position.
     is_short_ = is_short_ || count > bytes_.size();
     const std::string_view out = is_short_ ? std::string_view() : bytes_.substr(0, count);
     bytes_.remove_prefix(out.size());
@@ -81,7 +81,7 @@ class Writer {
   std::string bytes_;
 };
 
-/// A name ends at its first zero. Nothing: it has bytes that no name has.
+/// A name ends at its first zero. Nothing if it has bytes that are not printable ASCII.
 std::optional<std::string> name_in(std::string_view field) {
   const std::string_view name = field.substr(0, field.find('\0'));
   const bool is_plain = std::ranges::all_of(name, [](char c) { return c >= ' ' && c <= '~'; });
@@ -90,7 +90,7 @@ std::optional<std::string> name_in(std::string_view field) {
 
 std::string message(std::string_view type, std::string_view device, double time_s,
                     const std::string& body) {
-  // Before 1970 there is no time here: 0 means "none".
+  // Negative times become 0, which means "none".
   const double whole_s = std::floor(std::max(time_s, 0.0));
   return Writer()
       .number(std::uint16_t{1})
@@ -104,13 +104,13 @@ std::string message(std::string_view type, std::string_view device, double time_
       .str();
 }
 
-/// The value of a key; nothing if it is not there. Error: the parts do not fit.
+/// The value of a key; nothing if it is absent. Error: the sizes exceed the bytes.
 Result<std::optional<std::string_view>> metadata_value(std::string_view head, std::string_view data,
                                                        std::string_view wanted) {
   Reader sizes(head), texts(data);
   std::optional<std::string_view> found;
   const auto count = sizes.number<std::uint16_t>();
-  // A count is a claim: it ends where the bytes do.
+  // The count is untrusted: the loop also ends with the bytes.
   for (int i = 0; i < count && !sizes.is_short() && !texts.is_short(); ++i) {
     const auto key_bytes = sizes.number<std::uint16_t>();
     (void)sizes.number<std::uint16_t>();  // the value's character set
@@ -136,7 +136,7 @@ Result<pose::Pose> transform_in(std::string_view content) {
     for (double& number : column) number = in.real32();
   Matrix3d rotation;
   rotation << columns[0], columns[1], columns[2];
-  // A scale or a mirror would pass as a turn after normalizing: refused before.
+  // Checked before normalizing, which would turn a scale or a mirror into a rotation.
   const double skew = (rotation.transpose() * rotation - Matrix3d::Identity()).norm();
   if (!(skew <= kMaxSkew) || rotation.determinant() < 0.0)
     return Error{"its matrix is no rotation; send one without scale, shear or mirror"};
@@ -150,7 +150,7 @@ Result<pose::Pose> position_in(std::string_view content) {
   std::array<double, 4> wxyz{};
   for (const int at : {1, 2, 3}) wxyz[static_cast<std::size_t>(at)] = in.real32();
   const double rest = wxyz[1] * wxyz[1] + wxyz[2] * wxyz[2] + wxyz[3] * wxyz[3];
-  // Three numbers are those of a unit quaternion whose real part is not negative.
+  // Three numbers are a unit quaternion with a real part that is not negative.
   wxyz[0] = content.size() == 24 ? std::sqrt(std::max(0.0, 1.0 - rest)) : in.real32();
   const auto rotation = pose::rotation_from(wxyz);
   if (!rotation || !(std::abs(rest + wxyz[0] * wxyz[0] - 1.0) <= kMaxSkew))
@@ -196,7 +196,7 @@ Result<Content> content_of(const MessageHead& head, std::string_view body) {
   const auto status = metadata_value(body.substr(extended + content, index),
                                      body.substr(extended + content + index), "TransformStatus");
   if (!status) return status.error();
-  // PLUS writes "OK", or why it does not see the body; a sender without it is believed.
+  // PLUS writes "OK", or why it does not see the body; without the key the body counts as seen.
   out.is_tracked = !*status || **status == "OK";
   return out;
 }
@@ -213,7 +213,7 @@ std::string transform(std::string_view device, double time_s, const pose::Pose& 
                       double scale) {
   const Matrix3d axes = scale * pose.rotation.toRotationMatrix();
   Writer body;
-  // Column by column, and the origin last, as the protocol has it.
+  // Column by column, the origin last, as in the protocol.
   for (int column = 0; column < 3; ++column)
     for (int row = 0; row < 3; ++row) body.real32(axes(row, column));
   for (const double at_m : pose.position_m) body.real32(1e3 * at_m);

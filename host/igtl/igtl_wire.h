@@ -6,7 +6,7 @@
 //
 // Big-endian. Time is 32 bits of seconds and 32 of fractions, UTC; 0: none. The body's checksum is
 // CRC-64 (polynomial 0x42F0E1EBA9EA3693, from 0, not reflected). Lengths are mm there, m here.
-// A body of version 2 has an extended header before its content, and metadata behind it.
+// In version 2 an extended header precedes the content, and metadata follows it.
 // Source: OpenIGTLink protocol, version 3, http://openigtlink.org. Pure functions.
 #pragma once
 
@@ -30,26 +30,26 @@ struct MessageHead {
   std::uint64_t body_bytes = 0, crc = 0;
 };
 
-/// Of exactly kHeaderBytes. Error: these are not the bytes of a header.
+/// From exactly kHeaderBytes. Error: these are not the bytes of a header.
 model::Result<MessageHead> read_head(std::string_view bytes);
 std::uint64_t crc64(std::string_view bytes);
 
-/// What a message of a version has between its extended header and its metadata.
+/// The part of a body between its extended header and its metadata.
 struct Content {
   std::string_view bytes;
-  bool is_tracked = true;  // false: its metadata TransformStatus is there, and not OK
+  bool is_tracked = true;  // false: its metadata has a TransformStatus other than OK
 };
-/// Error: its parts do not fit into it.
+/// Error: the sizes of the parts exceed the body.
 model::Result<Content> content_of(const MessageHead& head, std::string_view body);
 
 /// Of a TRANSFORM or a POSITION with its orientation. Error: another size, a number that is not
 /// finite, or no rotation.
 model::Result<pose::Pose> pose_of(std::string_view type, std::string_view content);
 
-/// Whole messages, version 1. `time_s` UTC.
+/// Complete messages, version 1. `time_s` UTC.
 std::string transform(std::string_view device, double time_s, const pose::Pose& pose,
                       double scale = 1.0);
-/// Newtons.
+/// The force in newtons.
 std::string force_sensor(std::string_view device, double time_s, const double (&force_N)[3]);
 struct Status {
   std::uint16_t code = 0;  // 1 good; the table in README.md

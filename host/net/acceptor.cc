@@ -47,7 +47,7 @@ void Acceptor::accept_next() {
       arrived_(std::move(socket));
       return accept_next();
     }
-    // Out of descriptors, for example: wait for some to come back instead of spinning.
+    // For example without a free descriptor: pause before the next try instead of spinning.
     pause_.expires_after(kPauseAfterError);
     pause_.async_wait([this](error_code cancelled) {
       if (!cancelled) accept_next();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// acceptor.h - listens on one TCP endpoint and hands over who comes, also after a shortage of file
-// descriptors.
+// acceptor.h - listens on one TCP endpoint and hands over each connection, also after a shortage of
+// file descriptors.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -22,7 +22,7 @@ class Acceptor {
   bool is_listening() const { return acceptor_.is_open(); }
   std::uint16_t port() const;
 
-  /// Every connection, until stop().
+  /// Calls `arrived` for every connection, until stop().
   void start(Arrived arrived);
   void stop();
 

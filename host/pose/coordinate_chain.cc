@@ -10,7 +10,7 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
 Quaterniond canonical(const Quaterniond& q) {
-  // TR: of q and -q, which turn alike, always the same one, so that equal turns compare equal.
+  // TR-2: chooses one of q and -q, so that equal rotations compare equal.
   for (const double part : {q.w(), q.x(), q.y(), q.z()}) {
     if (part > 0.0) return q;
     if (part < 0.0) return Quaterniond(-q.coeffs());
@@ -20,7 +20,7 @@ Quaterniond canonical(const Quaterniond& q) {
 
 std::optional<Quaterniond> rotation_from(const std::array<double, 4>& wxyz) {
   const Quaterniond q(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
-  // A tracker's numbers may be huge or tiny: a plain norm would overflow or vanish.
+  // A tracker's numbers may be huge or tiny: a plain norm would overflow or underflow.
   const double length = q.coeffs().stableNorm();
   if (!(length > 0.0 && std::isfinite(length))) return std::nullopt;
   return canonical(Quaterniond(q.coeffs() / length));

@@ -19,14 +19,14 @@ using Eigen::Vector3d;
 constexpr double kFlat = 1e-10;  // lambda_2 / lambda_1 at or below: on a line, EP-2
 constexpr double kSpot = 1e-12;  // radius over distance from the origin at or below: one place
 
-// From EPnP alone: six points or more, sqrt(lambda_3 / lambda_1) and rms over the focal length.
-// epnp.h has the random views behind these three.
+// Limits for EPnP alone: number of points, sqrt(lambda_3 / lambda_1), rms over the focal length;
+// epnp.h has the evidence.
 constexpr std::size_t kSurePoints = 6;
 constexpr double kSureThickness = 0.3, kSure_rad = 0.0015;
-// A start this near to a polished pose would end there, too.
+// A start this near to a polished pose would converge to it.
 constexpr double kNear_rad = 0.1, kNear_ratio = 0.1;
 
-/// The points about their centroid, in units of their radius: the same numbers for any unit.
+/// The points relative to their centroid, in units of their radius: independent of the unit.
 struct Cloud {
   Vector3d centroid_m = Vector3d::Zero();
   double thickness = 0.0;  // sqrt(lambda_3 / lambda_1)
@@ -41,10 +41,10 @@ Cloud cloud_of(std::span<const Vector3d> points_m) {
     out.centroid_m += p / static_cast<double>(points_m.size());
     farthest_m = std::max(farthest_m, p.stableNorm());
   }
-  double radius_m = 0.0;  // the largest, so that squares neither overflow nor vanish
+  double radius_m = 0.0;  // the largest, so that squares neither overflow nor underflow
   for (const Vector3d& p : points_m)
     radius_m = std::max(radius_m, (p - out.centroid_m).stableNorm());
-  // Beside a far origin, points in one place differ by rounding alone.
+  // Far from the origin, points in one place differ only by rounding.
   if (!(radius_m > kSpot * farthest_m)) return out;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (const Vector3d& p : points_m) {
@@ -61,7 +61,7 @@ Cloud cloud_of(std::span<const Vector3d> points_m) {
   return out;
 }
 
-/// Four points far apart: the one farthest out, then three times the one farthest from those taken.
+/// Four points far apart: the outermost, then three times the one farthest from those chosen.
 std::array<std::size_t, 4> widest_four(std::span<const Vector3d> points) {
   // P3P on a small triangle amplifies the noise of the pixels.
   std::array<std::size_t, 4> taken{};
@@ -80,7 +80,7 @@ std::array<std::size_t, 4> widest_four(std::span<const Vector3d> points) {
   return taken;
 }
 
-/// What OpenCV takes.
+/// Points and pixels in OpenCV's types.
 struct Views {
   std::vector<cv::Point3d> points;
   std::vector<cv::Point2d> pixels;
@@ -96,7 +96,7 @@ void add_poses(const std::vector<cv::Mat>& turns, const std::vector<cv::Mat>& sh
   for (std::size_t i = 0; i < turns.size(); ++i) {
     const Vector3d turn(turns[i].at<double>(0), turns[i].at<double>(1), turns[i].at<double>(2));
     const Vector3d t(shifts[i].at<double>(0), shifts[i].at<double>(1), shifts[i].at<double>(2));
-    // OpenCV may give NaN for a view without a solution.
+    // OpenCV may return NaN for a view without a solution.
     if (!turn.allFinite() || !t.allFinite()) continue;
     const double angle_rad = turn.norm();
     Pose pose{.rotation = Quaterniond::Identity(), .position_m = t};
@@ -105,7 +105,7 @@ void add_poses(const std::vector<cv::Mat>& turns, const std::vector<cv::Mat>& sh
   }
 }
 
-/// What OpenCV finds.
+/// The start poses that OpenCV computes.
 class Starts {
  public:
   Starts(const Camera& camera, std::span<const Vector3d> points,
@@ -134,7 +134,7 @@ class Starts {
       Views triangle;
       for (const std::size_t i : four)
         if (i != left_out) triangle.add(points_[i], pixels_px_[i]);
-      if (triangle.points.size() != 3) continue;  // two of the four are one point
+      if (triangle.points.size() != 3) continue;  // two of the four are the same point
       collect(poses, [&](auto& turns, auto& shifts) {
         cv::solveP3P(triangle.points, triangle.pixels, lens_, cv::noArray(), turns, shifts,
                      cv::SOLVEPNP_AP3P);
@@ -144,7 +144,7 @@ class Starts {
   }
 
  private:
-  /// OpenCV speaks of trouble by exceptions; what the other starts found remains.
+  /// OpenCV reports errors by exceptions; the results of the other starts are kept.
   static void collect(std::vector<Pose>& poses, auto solve) {
     try {
       std::vector<cv::Mat> turns, shifts;
@@ -159,7 +159,7 @@ class Starts {
   std::span<const Vector2d> pixels_px_;
 };
 
-/// In the valley of a pose that is polished already.
+/// True if `start` would converge to a pose that is already polished.
 bool is_near(const Pose& start, const Pose& polished) {
   return start.rotation.angularDistance(polished.rotation) < kNear_rad &&
          (start.position_m - polished.position_m).norm() < kNear_ratio * polished.position_m.norm();
@@ -181,7 +181,7 @@ PoseEstimate estimate_pose(const Camera& camera, std::span<const Vector3d> point
                            std::span<const Vector2d> pixels_px) {
   if (!is_valid(camera, points_m, pixels_px)) return {};
   if (points_m.size() < 4) return {.status = PoseStatus::kTooFewPoints};
-  // In units of the body's radius: a body in mm has the same numbers as one in m.
+  // In units of the body's radius, so that results do not depend on the unit.
   const Cloud cloud = cloud_of(points_m);
   if (cloud.points.empty()) return {.status = PoseStatus::kDegenerate};
 
@@ -192,12 +192,12 @@ PoseEstimate estimate_pose(const Camera& camera, std::span<const Vector3d> point
     for (const Pose& start : found) {
       const bool known =
           std::ranges::any_of(polished, [&](const Pose& pose) { return is_near(start, pose); });
-      // Polishing is what costs: a start in a known valley would end at the same pose.
+      // Polishing takes most of the time: skip a start that would end at a known pose.
       if (known) continue;
       const Pose pose = polish_pose(camera, cloud.points, pixels_px, start);
       polished.push_back(pose);
       const double rms_px = reprojection_rms_px(camera, cloud.points, pixels_px, pose);
-      // EP-9: the smallest rms; infinite where a point lies behind the camera.
+      // EP-9: the smallest rms; it is infinite if a point lies behind the camera.
       if (!(rms_px < out.rms_px)) continue;
       out = {.status = PoseStatus::kOk, .pose = pose, .rms_px = rms_px};
     }

@@ -9,8 +9,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// A camera 10 cm from where it is said to be can bend a body of 15 cm at 2 m by no more than two
-// pixels, if the other camera takes it for depth: the outlier limit of 3 px alone would let it in.
+// A camera displaced by 10 cm can shift the pixels of a body of 15 cm at 2 m by only two pixels, if
+// the other camera takes it for depth: the outlier limit of 3 px alone would accept that.
 constexpr double kAgree_ratio = 1.0 / 3.0, kWorse_ratio = 2.0;
 // Tangents compare between cameras of different focal length; pixels do not.
 constexpr Camera kTangents{.fx_px = 1.0, .fy_px = 1.0};
@@ -27,7 +27,7 @@ std::vector<MarkerView> marker_views(std::span<const BodyView> views) {
   return out;
 }
 
-/// The poses that the views find alone, the one that explains all of them best first.
+/// The poses of the single views, ordered by how well they explain all views.
 std::vector<Pose> starts_of(std::span<const BodyView> views, std::span<const MarkerView> markers) {
   std::vector<std::pair<double, Pose>> starts;
   starts.reserve(views.size());
@@ -52,7 +52,7 @@ BodyView body_view(const Camera& camera, std::span<const Vector3d> points_m,
   for (std::size_t i = 0; i < points_m.size(); ++i) {
     const double off_px =
         reprojection_rms_px(camera, points_m.subspan(i, 1), pixels_px.subspan(i, 1), alone);
-    // A marker that this view alone calls wrong would spoil the other view, too.
+    // An outlier of this view would distort the joint pose, too.
     if (!(off_px <= outlier_px)) continue;
     out.points_m.push_back(points_m[i]);
     out.tangents.emplace_back((pixels_px[i].x() - camera.cx_px) / camera.fx_px,
@@ -69,7 +69,7 @@ BodyView body_view(const Camera& camera, std::span<const Vector3d> points_m,
 PoseEstimate joint_pose(std::span<const BodyView> views) {
   if (views.empty()) return {};
   const std::vector<MarkerView> markers = marker_views(views);
-  // One start is enough as a rule; a mirrored one (epnp.h) ends in a valley that the others
+  // One start usually suffices; a mirrored one (epnp.h) converges to a pose that the other views
   // contradict.
   for (const Pose& start : starts_of(views, markers)) {
     const Pose pose = polish_pose(markers, start);

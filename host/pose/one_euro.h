@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// one_euro.h - a calm pose for display that does not lag behind a fast hand: the one-euro filter
-// [1].
+// one_euro.h - smooths a pose for display without lag behind a fast hand: the one-euro filter [1].
 //
 //     x'  = low(x' , (x - x_) / T, f_d)          the speed, smoothed
 //     f_c = f_min + beta |x'|                     the cutoff grows with it
@@ -10,8 +9,8 @@
 //     x  raw, m or rad     x_  filtered     T  time since the sample before, s, > 0
 //     f_min, f_d, f_c  Hz     beta  1/m or 1/rad
 //
-// A position takes the same alpha for its three axes, from the length of its velocity. A rotation
-// is turned by the share alpha along the shorter way, and x' is its rotation vector over time.
+// A position has the same alpha for its three axes, from the magnitude of its velocity. A rotation
+// moves by the share alpha along the shorter way, and x' is its rotation vector over time.
 //
 // [1] G. Casiez, N. Roussel, D. Vogel, ACM CHI (2012) 2527-2530.
 #pragma once
@@ -37,7 +36,7 @@ class PoseFilter {
                       const OneEuroSettings& rotation = kRotationFilter)
       : position_(position), rotation_(rotation) {}
 
-  /// The filtered pose at `time_s`. The first one, and one that is not later, comes out as it is.
+  /// The filtered pose at `time_s`. The first pose, or one that is not later, is returned as it is.
   Pose next(const Pose& raw, double time_s);
   void reset() { has_last_ = false; }
 

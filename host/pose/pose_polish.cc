@@ -14,11 +14,11 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
-constexpr double kStill = 1e-12;  // a step below this ends it: rad, and shift over distance
-constexpr double kFine = 1e-8;    // a step below this that does not shrink is rounding
-// At the bottom rms is flat: a pose moves by 1e-8 while rms moves by rounding.
+constexpr double kStill = 1e-12;  // a smaller step has converged: rad, and shift over distance
+constexpr double kFine = 1e-8;    // a smaller step that no longer shrinks is rounding
+// Near the minimum rms is flat: a pose moves by 1e-8 while rms changes only by rounding.
 constexpr double kRounding = 1.0 + 1e-12;
-// 2^-16 of a step: a way down that is not found by then is rounding.
+// 2^-16 of a step: if rms has not fallen by then, the difference is rounding.
 constexpr int kHalvings = 16;
 
 Vector2d pixel_of(const Camera& camera, const Vector3d& x) {
@@ -36,7 +36,7 @@ Pose moved(const Pose& pose, const Vector6d& step) {
   return out;
 }
 
-/// (camera <- tracker): E^-1 of a view, once instead of for each point.
+/// (camera <- tracker): E^-1 of a view, computed once for all points.
 struct Sight {
   explicit Sight(const Pose& eye) : turn(eye.rotation.conjugate()), eye_m(eye.position_m) {}
   Vector3d operator()(const Vector3d& x_m) const { return turn * (x_m - eye_m); }
@@ -73,7 +73,7 @@ Vector6d gauss_newton_step(std::span<const MarkerView> views, const Pose& pose) 
       residual.segment<2>(row) = view.pixels_px[i] - pixel_of(camera, x);
     }
   }
-  // Not the normal equations: they would square the condition of a flat or distant body.
+  // QR, because the normal equations would square the condition number of a flat or distant body.
   return jacobian.colPivHouseholderQr().solve(residual);
 }
 
@@ -85,7 +85,7 @@ double reprojection_rms_px(std::span<const MarkerView> views, const Pose& pose) 
     const Sight sight(view.eye);
     for (std::size_t i = 0; i < view.points_m.size(); ++i) {
       const Vector3d x = sight(to_world(pose, view.points_m[i]));
-      // Behind the camera the projection is a mirror image with a good rms: never accepted.
+      // Behind the camera the projection is a mirror image with a good rms: always refused.
       if (!(x.z() > 0.0)) return std::numeric_limits<double>::infinity();
       sum_px2 += (pixel_of(view.camera, x) - view.pixels_px[i]).squaredNorm();
     }
@@ -103,7 +103,7 @@ Pose polish_pose(std::span<const MarkerView> views, const Pose& start) {
   Pose pose = start;
   double best_px = reprojection_rms_px(views, pose);
   double last_size = std::numeric_limits<double>::infinity();
-  // A start behind the camera has no way down that could be measured.
+  // A start behind the camera has an infinite rms, so no descent can be measured.
   if (!std::isfinite(best_px)) return pose;
   for (int i = 0; i < kPolishSteps; ++i) {
     Vector6d step = gauss_newton_step(views, pose);
@@ -115,7 +115,7 @@ Pose polish_pose(std::span<const MarkerView> views, const Pose& start) {
       next = moved(pose, step);
       next_px = reprojection_rms_px(views, next);
     }
-    if (!(next_px <= kRounding * best_px)) return pose;  // no way down
+    if (!(next_px <= kRounding * best_px)) return pose;  // no descent
     pose = next;
     best_px = std::min(best_px, next_px);
     const double distance_m = (pose.position_m - views.front().eye.position_m).norm();

@@ -11,9 +11,9 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// P3P takes four: a fifth that agrees is the first that proves anything.
+// P3P uses four markers, so a fifth that agrees is the first evidence.
 constexpr std::size_t kMinInliers = 5;
-constexpr double kConfidence = 0.999;  // that a draw without outliers was among the rounds
+constexpr double kConfidence = 0.999;  // that at least one draw has no outlier
 
 bool all_within(const Camera& camera, std::span<const Vector3d> points_m,
                 std::span<const Vector2d> pixels_px, const Pose& pose, double outlier_px) {
@@ -25,8 +25,8 @@ bool all_within(const Camera& camera, std::span<const Vector3d> points_m,
   return true;
 }
 
-/// Those that agree about a pose; none if too few do. In normalised coordinates, so that pixels and
-/// tangents are alike to OpenCV.
+/// The markers that agree with one pose; none if there are too few. In normalised coordinates, so
+/// that pixels and tangents are treated alike.
 Markers agreeing(const Camera& camera, std::span<const Vector3d> points_m,
                  std::span<const Vector2d> pixels_px, double outlier_px) {
   std::vector<cv::Point3d> points;
@@ -36,7 +36,7 @@ Markers agreeing(const Camera& camera, std::span<const Vector3d> points_m,
     tangents.emplace_back((pixels_px[i].x() - camera.cx_px) / camera.fx_px,
                           (pixels_px[i].y() - camera.cy_px) / camera.fy_px);
   }
-  // The smaller one gives the larger tangent: no good marker is lost to unequal axes.
+  // The smaller focal length gives the larger tangent, so no good marker is lost by unequal axes.
   const double f_px = std::min(camera.fx_px, camera.fy_px);
   std::vector<int> chosen;
   try {
@@ -49,7 +49,7 @@ Markers agreeing(const Camera& camera, std::span<const Vector3d> points_m,
     return {};
   }
   Markers out;
-  // Half of all or fewer may agree about a wrong pose.
+  // Half of all or fewer may agree with a wrong pose.
   if (chosen.size() < kMinInliers || 2 * chosen.size() <= points.size()) return out;
   for (const int i : chosen) {
     out.points_m.push_back(points_m[static_cast<std::size_t>(i)]);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// robust_pose.h - a pose that one wrong marker does not bend.
+// robust_pose.h - a pose that is robust against a wrong marker.
 //
-// estimate_pose on all markers. If one of them lies farther from its computed pixel than
+// Runs estimate_pose on all markers. If one of them lies farther from its computed pixel than
 // `outlier_px` and there are more than kMinForOutliers, RANSAC of OpenCV (P3P on four markers,
-// kRansacRounds at most, the same draws in every run) finds those that agree; the pose is estimated
-// and polished on them. They must be five or more and more than half of all. A pose whose rms is
-// above `outlier_px` is none: with few markers a wrong one shows, but cannot be found.
+// kRansacRounds at most, the same draws in every run) finds a consistent subset, and the pose is
+// estimated and polished on it. It must have five markers or more, and more than half of all. A
+// pose with an rms above `outlier_px` is rejected: with few markers an outlier cannot be found.
 #pragma once
 
 #include <vector>
@@ -14,7 +14,7 @@
 
 namespace tact::host::pose {
 
-/// Markers of one body and where a camera sees them, in the same order.
+/// Markers of one body and their pixels, in the same order.
 struct Markers {
   std::vector<Eigen::Vector3d> points_m;
   std::vector<Eigen::Vector2d> pixels_px;

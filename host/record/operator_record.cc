@@ -19,7 +19,7 @@ constexpr std::array<std::uint8_t, 2> kLegReached{kLeftLegReached, kRightLegReac
 
 std::uint32_t crc_of(const OperatorRecord& record) {
   boost::crc_32_type crc;
-  // The pads count, too: every record begins with them at zero.
+  // Includes the padding, which is zero in every record.
   crc.process_bytes(&record, offsetof(OperatorRecord, crc));
   return crc.checksum();
 }
@@ -38,7 +38,7 @@ std::optional<pose::Pose> take(const T (&position_m)[3], const T (&wxyz)[4]) {
   std::ranges::transform(position_m, p, [](T m) { return static_cast<double>(m); });
   std::ranges::transform(wxyz, q, [](T part) { return static_cast<double>(part); });
   pose::Pose out{.rotation = {q[0], q[1], q[2], q[3]}, .position_m = {p[0], p[1], p[2]}};
-  // Floats of a unit quaternion are off by 1e-7; 1e-3 is damage.
+  // Float rounding of a unit quaternion is 1e-7; 1e-3 is damage.
   const bool is_turn = std::abs(out.rotation.norm() - 1.0) < 1e-3;
   if (!is_turn || !out.position_m.allFinite()) return std::nullopt;
   return out;
@@ -47,7 +47,7 @@ std::optional<pose::Pose> take(const T (&position_m)[3], const T (&wxyz)[4]) {
 std::optional<tracking::TrackedBody> take(const BodyRecord& record) {
   const auto raw = take(record.raw_position_m, record.raw_rotation_wxyz);
   const auto shown = take(record.shown_position_m, record.shown_rotation_wxyz);
-  // An enum from a file may hold any byte.
+  // An enum from a file may hold any value.
   if (!raw || !shown || record.state > kLastState || record.trouble > kLastTrouble) return {};
   if (!std::isfinite(record.rms_px) || !std::isfinite(record.age_s)) return {};
   return tracking::TrackedBody{
@@ -98,7 +98,7 @@ std::string operator_record(const tracking::TrackedOperator& tracked,
 }
 
 std::optional<tracking::TrackedOperator> operator_of(const OperatorRecord& record) {
-  // The checksum first: it finds damage; the checks behind it find what another program wrote.
+  // The CRC detects damage; the checks after it detect invalid data of another writer.
   if (crc_of(record) != record.crc || !std::isfinite(record.time_s)) return std::nullopt;
   tracking::TrackedOperator out{.time_s = record.time_s};
   for (std::size_t i = 0; i < tracking::kBodyRoles; ++i) {
@@ -133,7 +133,7 @@ std::optional<figure::FigurePose> figure_of(const OperatorRecord& record,
     out.leg_reached[i] = (figure.flags & kLegReached[i]) != 0;
   out.shoulder_too_far = (figure.flags & kShoulderTooFar) != 0;
   out.left_hand_reached = (figure.flags & kLeftHandMissed) == 0;
-  // Trouble and words are not in the file: they follow from the rest.
+  // Trouble and words are not in the file; report() derives them.
   report(bodies, out);
   return out;
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// operator_record.h - the tracked operator in a recording: one record of fixed size behind each
+// operator_record.h - the tracked operator in a recording: one record of fixed size after each
 // frame of a recording of version 9 (firmware/telemetry/recording_format.h).
 //
-// Of each body the raw pose, as solved, and the one that was shown, both in the device's frame W.
-// Behind them the figure as it was shown: where it stood and how it was bound began before the
-// recording did, so a figure posed again from the bodies alone would be another one.
-// Little-endian, CRC-32 as the frames have; a damaged record costs this frame's operator only.
+// For each body the raw pose as solved and the pose that was shown, both in the device's frame W.
+// Then the figure as it was shown: its position and its bound bones have a history from before the
+// recording, so a figure posed again from the bodies alone would differ. Little-endian, CRC-32 as
+// for frames; a damaged record loses only the operator of this frame.
 #pragma once
 
 #include <cstdint>
@@ -35,7 +35,7 @@ enum FigureFlag : std::uint8_t {
   kLeftHandMissed = 8,
 };
 
-/// FigurePose; its trouble and its words follow from it and the bodies.
+/// FigurePose without its trouble and words, which follow from it and the bodies.
 struct FigureRecord {
   double height_m = 0.0;  // 0: no figure was shown
   float joint_m[figure::kFigureJoints][3] = {};
@@ -52,7 +52,7 @@ struct OperatorRecord {
   double time_s = 0.0;
   BodyRecord body[tracking::kBodyRoles] = {};  // by BodyRole
   FigureRecord figure = {};
-  std::uint32_t crc = 0;  // of all before it
+  std::uint32_t crc = 0;  // of all bytes before it
   std::uint32_t pad = 0;
 };
 
@@ -62,13 +62,13 @@ static_assert(sizeof(FigureRecord) == 8 + (3 * figure::kFigureJoints + 8) * 4 + 
 static_assert(sizeof(FigureRecord) % 8 == 0);
 static_assert(sizeof(OperatorRecord) == 1496);  // as host/PROTOCOL.md has it
 
-/// The bytes behind one frame; `figure` may be null.
+/// The bytes after one frame; `figure` may be null.
 std::string operator_record(const tracking::TrackedOperator& tracked,
                             const figure::FigurePose* figure = nullptr);
-/// Nothing if the checksum differs or a number makes no sense.
+/// Nothing if the checksum differs or a value is invalid.
 std::optional<tracking::TrackedOperator> operator_of(const OperatorRecord& record);
-/// The figure that was shown with these bodies, to a millionth; nothing if none was, or a number is
-/// not finite.
+/// The figure that was shown with these bodies, to a relative 1e-6; nothing if there was none, or a
+/// number is not finite.
 std::optional<figure::FigurePose> figure_of(const OperatorRecord& record,
                                             const tracking::TrackedOperator& bodies);
 

@@ -16,11 +16,11 @@ using firmware::telemetry::crc_of;
 using model::Error;
 using model::Result;
 
-/// What stands before the first frame.
+/// The data before the first frame.
 struct Setup {
   Hello hello;
   MeshBytes mesh;
-  std::size_t operator_bytes = 0;  // behind each frame
+  std::size_t operator_bytes = 0;  // after each frame
 };
 
 using model::io::SealedFile;
@@ -30,11 +30,11 @@ bool read(SealedFile& in, T& value) {
   return in.read(&value, sizeof value) == sizeof value;
 }
 
-/// How a recording and a tick log begin.
+/// The first bytes of a recording or a tick log.
 using Magic = std::array<char, sizeof kRecordingMagic>;
 
-/// A black box holds a recording behind its ticks: goes there and reads its magic. The byte at
-/// which it starts; Error: why there is none.
+/// A black box contains a recording after its ticks: seeks to it and reads its magic. Returns its
+/// byte offset; the error says why there is none.
 Result<std::uint64_t> skip_ticks(SealedFile& in, Magic& magic) {
   const std::uint64_t file_bytes = in.size_bytes();
   firmware::telemetry::LogStart log;
@@ -58,7 +58,7 @@ Result<std::uint64_t> skip_ticks(SealedFile& in, Magic& magic) {
   const Error no_pictures{
       "this black box is cut off before its pictures, or its header is damaged; tactd --replay "
       "FILE --csv FILE writes its ticks"};
-  // Divided, not multiplied: a damaged header must not overflow into a place that fits.
+  // Divided, not multiplied: the product of a damaged header could overflow to a valid offset.
   if (log.tick_bytes == 0 || log.ticks > file_bytes / log.tick_bytes ||
       log.header_bytes + log.ticks * log.tick_bytes >= file_bytes)
     return no_pictures;
@@ -71,7 +71,7 @@ Error damaged(const Error& error) {
   return Error{error.message + "; nothing of it can be shown, record again"};
 }
 
-/// How many bytes of an operator are behind each frame; nothing: a version that is not read here.
+/// Bytes of the operator record after each frame; nothing: an unsupported version.
 std::optional<std::size_t> operator_bytes_of(std::uint32_t version) {
   switch (version) {
     case kRecordingVersion:
@@ -83,7 +83,7 @@ std::optional<std::size_t> operator_bytes_of(std::uint32_t version) {
   }
 }
 
-/// Error: why it cannot be used.
+/// The error says why the file cannot be used.
 Result<Setup> read_setup(SealedFile& in, const Magic& magic) {
   Setup setup;
   FileHeader header;
@@ -111,7 +111,7 @@ Result<Setup> read_setup(SealedFile& in, const Magic& magic) {
   }
   constexpr const char* kCutOff =
       "the file ends before its first frame; nothing of it can be shown, record again";
-  // Before the memory is taken: a length in a file is a claim.
+  // Checked before allocating, because a length in a file may be wrong.
   if (!read(in, setup.hello) || header.mesh_bytes > in.size_bytes()) return Error{kCutOff};
   setup.mesh.resize(header.mesh_bytes);
   if (in.read(setup.mesh.data(), setup.mesh.size()) < setup.mesh.size()) return Error{kCutOff};
@@ -124,12 +124,12 @@ Result<Setup> read_setup(SealedFile& in, const Magic& magic) {
   return setup;
 }
 
-/// The operator of a frame; false if he is lost, and then his figure holds.
+/// Adds the operator of a frame; false if its record is damaged.
 bool add_operator(const OperatorRecord& tracked, Recording& recording) {
   const std::optional<tracking::TrackedOperator> seen = operator_of(tracked);
   recording.operators.push_back(seen.value_or(tracking::TrackedOperator{}));
   std::optional<figure::FigurePose> figure;
-  // A frame whose operator is damaged shows him as he was, instead of a blink.
+  // A damaged operator record repeats the last figure, so that it does not flicker.
   if (seen)
     figure = figure_of(tracked, *seen);
   else if (!recording.figures.empty())
@@ -138,7 +138,7 @@ bool add_operator(const OperatorRecord& tracked, Recording& recording) {
   return seen.has_value();
 }
 
-/// All that is good from byte `start` on. Empty, or what is damaged, "; " at its end.
+/// Reads all good frames from byte `start` on. Empty, or the damage, with "; " at its end.
 std::string read_frames(SealedFile& in, std::uint64_t start, std::size_t operator_bytes,
                         Recording& recording) {
   const std::uint64_t file_bytes = in.size_bytes();
@@ -151,7 +151,7 @@ std::string read_frames(SealedFile& in, std::uint64_t start, std::size_t operato
   OperatorRecord tracked;
   for (std::uint64_t i = 0; i < records && read(in, record); ++i) {
     if (operator_bytes > 0 && !read(in, tracked)) break;
-    // Frames have one size, so the next begins where it should, whatever this one holds.
+    // Frames have one size, so the next one is found even if this one is damaged.
     if (crc_of(record.frame) != record.crc || check_frame(record.frame, recording.hello)) {
       if (damaged++ == 0) first_damaged = start + i * stride;
       continue;

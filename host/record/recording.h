@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // recording.h - a run of tactd in one file, and the last minutes of it in memory.
 //
-// The file is laid out in firmware/telemetry/recording_format.h; a black box of tactd holds one,
-// too. A damaged or cut-off file gives what is good of it and one message about the rest. With a
-// tracker it also keeps the operator and the figure that was shown, frame by frame
+// The file's layout is in firmware/telemetry/recording_format.h; a black box of tactd contains a
+// recording, too. Of a damaged or truncated file the good part is read, with one message about the
+// rest. With a tracker it also has the operator and the figure shown, frame by frame
 // (operator_record.h).
 #pragma once
 
@@ -33,24 +33,23 @@ struct Recording {
   Hello hello;
   MeshBytes mesh;
   std::vector<Frame> frames;
-  std::vector<tracking::TrackedOperator> operators;  // of each frame; none without a tracker
-  std::vector<std::optional<figure::FigurePose>>
-      figures;  // as they were shown; as many as operators
+  std::vector<tracking::TrackedOperator> operators;        // one per frame; empty without a tracker
+  std::vector<std::optional<figure::FigurePose>> figures;  // as shown; one per operator
 
-  /// None without a tracker.
+  /// Null without a tracker.
   const tracking::TrackedOperator* operator_at(std::size_t frame) const {
     return operators.empty() ? nullptr : &operators[frame];
   }
-  /// None where none was shown.
+  /// Null if no figure was shown.
   const figure::FigurePose* figure_at(std::size_t frame) const {
     return frame < figures.size() && figures[frame] ? &*figures[frame] : nullptr;
   }
-  /// Of the first figure.
+  /// Of the first figure in the recording.
   std::optional<double> body_height_m() const;
   double length_s() const;
 };
 
-/// No Result: a damaged file gives what is good of it and says what is not, both at once.
+/// Not a Result: a damaged file gives both its good part and a message.
 struct ReadResult {
   Recording recording;
   bool usable = false;  // scene and at least one frame are good
@@ -58,13 +57,13 @@ struct ReadResult {
 };
 ReadResult read_recording(const std::string& path);
 
-/// Writes one file, at most a second behind the frames. Never overwrites a file.
+/// Writes one file, with a delay of at most a second. Never overwrites a file.
 class RecordingWriter {
  public:
-  /// Error: what went wrong, and what to do. After one nothing more is written.
+  /// The error states the cause and the remedy. After an error nothing more is written.
   std::optional<model::Error> open(const std::string& path, const Hello& hello,
                                    const MeshBytes& mesh, bool is_tracked = false);
-  /// `tracked` and the figure that is shown with it only if is_tracked.
+  /// `tracked` and the shown figure are used only if is_tracked.
   std::optional<model::Error> write(const Frame& frame,
                                     const tracking::TrackedOperator* tracked = nullptr,
                                     const figure::FigurePose* figure = nullptr);
@@ -91,7 +90,7 @@ struct KeptFrame {
   std::unique_ptr<const KeptOperator> person;  // none without a tracker
 };
 
-/// A part of a run. Frames and meshes are shared by all who hold some of them.
+/// A part of a run. Frames and meshes are shared between its holders.
 struct Snapshot {
   Hello hello;
   std::shared_ptr<const MeshBytes> mesh;
@@ -99,14 +98,14 @@ struct Snapshot {
   bool is_tracked = false;
 };
 
-/// The newest frames, oldest first, bounded in time, with the operator where one is tracked.
+/// The newest frames, oldest first, of a limited time span, with the operator if tracked.
 class RecentFrames {
  public:
   void restart(double frame_rate_Hz);
   void add(const Frame& frame, const tracking::TrackedOperator* tracked = nullptr,
            const figure::FigurePose* figure = nullptr);
   const std::deque<std::shared_ptr<const KeptFrame>>& frames() const { return frames_; }
-  /// Whether a tracker was there at any of them.
+  /// True if any of them has a tracked operator.
   bool is_tracked() const { return is_tracked_; }
 
   static constexpr double kKeep_s = 300.0;

@@ -44,7 +44,7 @@ const char* name_of(tracking::BodyState state) {
   return "unknown";
 }
 
-/// Bounded here as well: an array is not read on the word of a check elsewhere.
+/// Bounds the count again, so that the array access does not rely on an earlier check.
 std::size_t sites_of(const Hello& hello) {
   return std::min<std::size_t>(hello.site_count, firmware::telemetry::kMaxSites);
 }
@@ -58,7 +58,7 @@ void put(std::string& out, std::span<const float> values) {
 }
 void put(std::string& out, float value) { put(out, std::span(&value, 1)); }
 
-/// Cuts so far, vertices told one by one, and the largest displacement of those.
+/// Number of cuts so far, of displaced vertices, and their largest displacement.
 void put_patch(std::string& out, const firmware::telemetry::FramePatch& patch) {
   const auto n = std::min<std::size_t>(patch.vertex_count, firmware::telemetry::kMaxPatchVertices);
   double most_um = 0.0;
@@ -74,7 +74,7 @@ void put_body(std::string& out, const tracking::TrackedBody& body) {
                  p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z(), body.rms_px, body.age_s);
 }
 
-/// Which bodies were ever there.
+/// Collects which bodies appear.
 class Present {
  public:
   void add(const tracking::TrackedOperator& person) {
@@ -115,7 +115,7 @@ std::string csv_header(const Hello& hello, const std::vector<tracking::BodyRole>
       "torque_x_Nm,torque_y_Nm,torque_z_Nm,wanted_x_N,wanted_y_N,wanted_z_N,"
       "worst_margin_us,median_tick_us,peak_force_N,rms_force_N,given_energy_J,grip_force_N,"
       "contact_losses,cut_triangles,patch_vertices,patch_most_m";
-  // Counted from 1, as people do; the rings from 0, which is the contact itself.
+  // Sites count from 1; rings from 0, which is the contact point itself.
   for (std::size_t i = 1; i <= sites_of(hello); ++i) {
     fmt::format_to(std::back_inserter(out),
                    ",site{0}_state,site{0}_x_m,site{0}_y_m,site{0}_z_m,site{0}_normal_x,"
@@ -182,7 +182,7 @@ void append_csv_row(std::string& out, const Frame& frame, const Hello& hello,
     put(out, std::span(site.profile_m).first(rings_of(hello)));
     put(out, site.tilt);
   }
-  // A frame without an operator has the columns all the same: rows have one length.
+  // Without an operator the columns are still written: all rows have the same length.
   const tracking::TrackedOperator none;
   for (const tracking::BodyRole role : bodies)
     put_body(out, (tracked != nullptr ? *tracked : none)[role]);

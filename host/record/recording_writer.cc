@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What writes a recording, and what keeps the last minutes for one.
+// Writes a recording, and keeps the last minutes in memory.
 #include <algorithm>
 
 #include "host/record/operator_record.h"
@@ -8,7 +8,7 @@
 namespace tact::host::record {
 namespace {
 
-// A crash loses a second at most, and a disk is not asked at each frame.
+// A crash loses a second at most, without a write to the disk for each frame.
 constexpr std::int64_t kFlush_ns = 1'000'000'000;
 
 using model::Error;
@@ -68,7 +68,7 @@ std::optional<Error> RecordingWriter::close() {
 void RecentFrames::restart(double frame_rate_Hz) {
   frames_.clear();
   is_tracked_ = false;
-  // The rate comes from a Hello: bounded, so that it bounds the memory.
+  // The rate comes from a Hello; its bounds limit the memory.
   capacity_ = static_cast<std::size_t>(std::clamp(frame_rate_Hz, 1.0, 1000.0) * kKeep_s);
 }
 
@@ -76,7 +76,7 @@ void RecentFrames::add(const Frame& frame, const tracking::TrackedOperator* trac
                        const figure::FigurePose* figure) {
   if (frames_.size() >= capacity_ && !frames_.empty()) frames_.pop_front();
   auto kept = std::make_shared<KeptFrame>(frame);
-  // Once tracked, every later frame has an operator: a recording's records have one size.
+  // After the first tracked frame every later frame has an operator: records have one size.
   is_tracked_ = is_tracked_ || tracked != nullptr;
   if (is_tracked_) {
     kept->person = std::make_unique<const KeptOperator>(

@@ -14,7 +14,7 @@ using model::Error;
 
 constexpr std::uint64_t kTripleBytes = 12;  // 3 floats or 3 uint32
 constexpr std::uint64_t kColorBytes = 3;    // red, green, blue
-// Chosen: far beyond an organ, and 48 MB of one mesh at most.
+// Chosen: far beyond an organ; limits one mesh to 48 MB.
 constexpr std::uint32_t kMaxElements = 4'000'000;  // vertices or triangles of one mesh
 
 std::optional<Error> check_header(const firmware::telemetry::MessageHeader& header,
@@ -31,7 +31,7 @@ std::optional<Error> check_header(const firmware::telemetry::MessageHeader& head
 }
 
 std::uint64_t mesh_size(const Hello& hello) {
-  // In 64 bits: four 32-bit counts of a stranger may overflow their own type.
+  // In 64 bits: the sum of four untrusted 32-bit counts may overflow 32 bits.
   const std::uint64_t triples = std::uint64_t{hello.organ_vertices} + hello.organ_triangles +
                                 hello.tool_vertices + hello.tool_triangles;
   return triples * kTripleBytes;
@@ -42,7 +42,7 @@ std::optional<Error> check_part(std::span<const std::byte> part, std::uint32_t v
   const std::size_t triangle_start = vertices * kTripleBytes;
   for (std::size_t at = 0; at < triangle_start; at += sizeof(float)) {
     float value_m = 0.0f;
-    // Copied: the bytes of a file or socket need not be aligned.
+    // Copied, because the bytes of a file or socket may be unaligned.
     std::memcpy(&value_m, &part[at], sizeof value_m);
     if (!std::isfinite(value_m))
       return Error{fmt::format("vertex {} of the {} mesh is not finite", at / kTripleBytes, name)};
@@ -63,7 +63,7 @@ std::optional<Error> check_patch(const firmware::telemetry::FramePatch& patch, c
       patch.cut_count > firmware::telemetry::kMaxCutsReported) {
     return Error{"a frame tells more displaced vertices or cuts than fit"};
   }
-  // The page indexes its mesh by these numbers.
+  // The page uses these numbers as indices into its mesh.
   if (patch.cut_total > hello.organ_triangles || patch.cut_count > patch.cut_total)
     return Error{"a frame tells more cuts than the organ has triangles"};
   const auto names_only = [](std::span<const std::uint32_t> ids, std::uint32_t below) {
@@ -131,7 +131,7 @@ std::optional<Error> check_frame(const Frame& frame, const Hello& hello) {
           check_header(frame.header, firmware::telemetry::MessageKind::kFrame)) {
     return error;
   }
-  // Enums are the only numbers of a frame that code branches on.
+  // Enums are the only values of a frame on which code branches.
   if (frame.state > firmware::loop::State::kStopped)
     return Error{"a frame has a state that is none"};
   for (const firmware::telemetry::FrameSite& site : frame.site)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// telemetry_check.h - are these bytes what tactd promises? Nothing from a socket or a file is used
-// before it passed here. Each check returns nothing, or an error that says what is wrong.
+// telemetry_check.h - validates bytes from a socket or a file before any use. Each check returns
+// nothing, or an error with the cause.
 #pragma once
 
 #include <cstddef>
@@ -21,8 +21,8 @@ using firmware::telemetry::Hello;
 /// Content of the memory file that comes with a Hello.
 using MeshBytes = std::vector<std::byte>;
 
-/// Are the meshes that this Hello announces so long, with colours of the organ's vertices or
-/// without?
+/// True if the meshes announced by this Hello have this size, with or without colours of the
+/// organ's vertices.
 bool is_mesh_size(const Hello& hello, std::uint64_t bytes);
 
 /// Header, counts, and finite lengths of a Hello.
@@ -32,7 +32,7 @@ std::optional<model::Error> check_hello(const Hello& hello);
 std::optional<model::Error> check_mesh(const Hello& hello, std::span<const std::byte> mesh);
 
 /// Header of a Frame, its states, and a patch that names existing vertices and triangles. Lengths
-/// and forces may be NaN: that is something to show, not to hide.
+/// and forces may be NaN, because such a fault must be shown.
 std::optional<model::Error> check_frame(const Frame& frame, const Hello& hello);
 
 /// A text of a wire struct: ends at the first NUL or with the array.

@@ -12,7 +12,7 @@
 namespace tact::host::run {
 namespace {
 
-/// Of a build, page/ beside the program; of an installed program, share/tact/page.
+/// In a build page/ next to the program, in an installation share/tact/page.
 std::string default_page() {
   std::error_code wrong;
   const auto installed = model::io::installed("page");
@@ -20,7 +20,7 @@ std::string default_page() {
   return (model::io::program_folder() / "page").string();
 }
 
-/// A replay meets nobody, and a registration needs the tracker for itself: neither goes with it.
+/// Not with --open, where no peer is needed, nor with --register, which needs the tracker alone.
 void add_igtl(CLI::App& app, igtl::IgtlOptions& options, CLI::Option* registration) {
   CLI::Option* open = app.get_option("--open");
   CLI::Option* port =
@@ -57,7 +57,7 @@ void add_page(CLI::App& app, Options& options) {
   app.add_flag("--json", options.json, "say what is ready or done as one line of JSON");
 }
 
-/// Whom to show: a tactd, or a recording of one.
+/// The source to show: a tactd, or a recording.
 void add_source(CLI::App& app, Options& options) {
   app.add_option("--socket", options.socket, "tactd's telemetry socket")->capture_default_str();
   app.add_option("--tactd-user", options.tactd_user,
@@ -94,7 +94,7 @@ void add_operator(CLI::App& app, Options& options) {
                  "the operator's body height, m; a recording with an operator has its own")
       ->capture_default_str()
       ->check(model::io::within(1.2, 2.2));
-  // A recording has its own operator.
+  // A recording contains its own operator.
   tracking->excludes(app.get_option("--open"));
   registration->needs(tracking)->excludes(app.get_option("--record"));
 }
@@ -102,7 +102,7 @@ void add_operator(CLI::App& app, Options& options) {
 }  // namespace
 
 std::optional<int> parse_options(int argc, char** argv, Options& options) {
-  // Before CLI11 looks: it shows what stands here as the default.
+  // Before CLI11 parses, because it shows this value as the default.
   options.socket = default_telemetry_path();
   CLI::App app{
       "tact-view: shows what tactd does in a browser: the deforming tissue, the tool, the force "

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tact-view: shows what tactd does in a browser, records it, replays it, writes it as CSV.
+// tact-view: shows tactd in a browser, records it, replays recordings and exports them as CSV.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -50,17 +50,17 @@ void warn_of_silence(double silence_s) {
   warn(fmt::format("no news from tactd for {:.1f} s: its force is not known", silence_s));
 }
 
-/// A file name with broken UTF-8 is repaired instead of throwing.
+/// Repairs a file name with broken UTF-8 instead of throwing.
 std::string to_text(const nlohmann::json& json) { return model::io::text_of(json); }
 
-/// The answers to requests: lines of standard input, by the program that gave --scenes.
+/// Reads the answers to requests, as lines of standard input, from the program that set --scenes.
 class Answers {
  public:
   Answers(boost::asio::io_context& io, server::ScenePicker& picker) : input_(io), picker_(picker) {}
 
   void start() {
     boost::system::error_code wrong;
-    input_.assign(::dup(STDIN_FILENO), wrong);  // a copy: closing it closes nobody's input
+    input_.assign(::dup(STDIN_FILENO), wrong);  // a copy, so that closing it keeps the input open
     read_next();
   }
 
@@ -69,7 +69,7 @@ class Answers {
     static constexpr std::size_t kMaxLine_bytes = 4096;  // as much as a pipe takes at once
     boost::asio::async_read_until(input_, boost::asio::dynamic_buffer(text_, kMaxLine_bytes), '\n',
                                   [this](boost::system::error_code wrong, std::size_t bytes) {
-                                    if (wrong) return;  // nobody is there who could answer
+                                    if (wrong) return;  // no program can answer any more
                                     picker_.refuse(text_.substr(0, bytes - 1));
                                     text_.erase(0, bytes);
                                     read_next();
@@ -90,7 +90,7 @@ class Recorder {
     if (path_.empty()) return;
     note(writer_.close());
     ++runs_;
-    // A new run of tactd has another scene: its frames do not fit behind the old ones.
+    // A new run of tactd has another scene, so it needs another file.
     note(writer_.open(runs_ == 1 ? path_ : fmt::format("{}.{}", path_, runs_), hello, mesh,
                       is_tracked_));
   }
@@ -139,13 +139,13 @@ int export_csv(const Options& options, const record::ReadResult& read) {
     fmt::print("{}: {} frames, {:.1f} s\n", options.export_csv, recording.frames.size(),
                recording.length_s());
   }
-  // What is good was written, but a script must hear that it is not all.
+  // The good part was written, but a script must learn that it is incomplete.
   return read.damage.empty() ? kGood : kCheckFailed;
 }
 
 void say_line(const std::string& line) {
   fmt::print("{}\n", line);
-  std::fflush(stdout);  // a program that reads it by a pipe needs it now, not at the end
+  std::fflush(stdout);  // for a program that reads it through a pipe
 }
 
 void say_ready(const Options& options, const server::ViewerServer& server) {
@@ -161,7 +161,7 @@ void say_ready(const Options& options, const server::ViewerServer& server) {
   }
 }
 
-/// Runs until a signal. `start` starts what feeds the view.
+/// Runs until a signal. `start` starts the source of the view.
 template <typename Start>
 int serve(const Options& options, boost::asio::io_context& io, server::ViewerServer& server,
           const Start& start) {
@@ -176,7 +176,7 @@ int serve(const Options& options, boost::asio::io_context& io, server::ViewerSer
   return kGood;
 }
 
-/// Whose tactd is believed, besides the same user's and root's.
+/// The user whose tactd is trusted, in addition to the same user and root.
 model::Result<model::io::Trust> trust_of(const Options& options) {
   if (options.tactd_user.empty()) return model::io::Trust{};
   const auto user = model::io::find_user(options.tactd_user);
@@ -186,7 +186,7 @@ model::Result<model::io::Trust> trust_of(const Options& options) {
   return trust;
 }
 
-/// What tactd tells goes to the page and into the recording, with the operator of that moment.
+/// Passes tactd's frames to page and recording, with the operator at that moment.
 TelemetryEvents show_and_record(server::LiveView& view, Recorder& recorder, OperatorInputs& inputs,
                                 const server::OperatorFigure& figure, server::ScenePicker& picker) {
   return {.hello =
@@ -197,7 +197,7 @@ TelemetryEvents show_and_record(server::LiveView& view, Recorder& recorder, Oper
               },
           .frame =
               [&](const record::Frame& frame) {
-                // Once a frame: page and recording show the same moment.
+                // Read once per frame, so that page and recording get the same poses.
                 const tracking::TrackedOperator* now = inputs.now();
                 inputs.add(frame);
                 view.add(frame, now);
@@ -217,7 +217,7 @@ TelemetryEvents show_and_record(server::LiveView& view, Recorder& recorder, Oper
 }
 
 int show_live(const Options& options) {
-  // Asked before the server starts: nobody should look on for an hour without a recording.
+  // Checked before the server starts, so that no run is shown without its recording.
   if (!options.record.empty() && exists(options.record))
     return fail(options.record +
                 ": exists already; a recording is never overwritten, choose another name");
@@ -257,12 +257,12 @@ int show_live(const Options& options) {
 }
 
 int show_recording(const Options& options, record::ReadResult read) {
-  // Outlives the view; a recording that has the operator has the height of the body, too.
+  // Outlives the view. A recording with an operator also has the body height.
   server::OperatorFigure figure(read.recording.body_height_m().value_or(options.height_m));
   server::LiveView view;  // outlives the sessions, which live in io
   boost::asio::io_context io(1);
   if (options.figure || !read.recording.operators.empty()) view.accompany(&figure);
-  // No hand to move: a recording has no tactd behind it.
+  // No hand to move, because a recording has no tactd.
   server::ViewerServer server(io, view, nullptr, warn);
   server::Playback playback(io, view, std::move(read.recording),
                             std::filesystem::path(options.open).filename().string());
@@ -291,7 +291,7 @@ int main(int argc, char** argv) {
     tact::host::run::Options options;
     if (const auto status = tact::host::run::parse_options(argc, argv, options)) return *status;
     return tact::host::run::serve_or_export(options);
-  } catch (const std::exception& error) {  // a library's, when memory or descriptors run out
+  } catch (const std::exception& error) {  // by a library, without memory or descriptors
     std::fprintf(stderr, "tact-view: %s\n", error.what());
     return 2;
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// operator_inputs.h - all that moves the operator's figure beside the tool: the tracker of a
-// description, and OpenIGTLink, which also tells others what tactd does. No force depends on it.
+// operator_inputs.h - the inputs that move the operator's figure in addition to the tool: a tracker
+// by its description, and OpenIGTLink, which also publishes tactd's state. No force depends on it.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -21,18 +21,18 @@ class OperatorInputs {
   using Say = std::function<void(const std::string& message)>;
   OperatorInputs(boost::asio::io_context& io, Say say) : io_(io), say_(std::move(say)) {}
 
-  /// What the options ask for, if anything. Error: what is wrong and what to do.
+  /// Opens the inputs of the options, if any. The error states the cause and the remedy.
   std::optional<model::Error> open(const Options& options);
   void start();
 
   bool is_there() const { return tracking_ || igtl_; }
-  /// Where the description has the right shoulder, frame W, m.
+  /// The right shoulder of the description, frame W, m.
   std::optional<Eigen::Vector3d> shoulder_m() const;
-  /// The bodies as they are now; of one role the description's goes first. Null: no input is there.
+  /// The present bodies; for one role the description has precedence. Null without any input.
   const tracking::TrackedOperator* now();
 
   std::optional<std::uint16_t> igtl_port() const;
-  /// What tactd does, for OpenIGTLink.
+  /// Publishes a frame of tactd by OpenIGTLink.
   void add(const record::Frame& frame);
   void lose();
 

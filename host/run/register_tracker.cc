@@ -31,7 +31,7 @@ double clock_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// Frames of tactd and poses of the tracker in, pairs of poses out; says what it waits for.
+/// Collects pairs of a frame of tactd and a pose of the tracker; reports what it waits for.
 class Collecting {
  public:
   Collecting(tracking::OperatorTracking& tracking, std::size_t wanted)
@@ -78,7 +78,7 @@ std::vector<std::size_t> worst_of(const tracking::Registration& fit) {
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::ranges::sort(
       order, [&](std::size_t a, std::size_t b) { return fit.residual_m[a] > fit.residual_m[b]; });
-  // Sorted first, so that the worst stay when three are named.
+  // Sorted first, so that truncating keeps the worst.
   std::erase_if(order, [&](std::size_t i) { return !(fit.residual_m[i] > tracking::kDoubtful_m); });
   order.resize(std::min(order.size(), kWorstNamed));
   return order;
@@ -118,7 +118,7 @@ int finish(const Options& options, const std::vector<tracking::PosePair>& poses)
     return kBadInput;
   }
   report(options, path, poses, *fit);
-  // Written all the same: a doubtful place is better than none, and the old file is kept as .bak.
+  // Written in any case: a doubtful registration is better than none; the old file becomes .bak.
   return fit->largest_m <= tracking::kDoubtful_m ? kGood : kCheckFailed;
 }
 
@@ -135,7 +135,7 @@ std::optional<Error> check(const std::string& path, const tracking::OperatorTrac
         "for recording under [input]",
         path)};
   }
-  // Its own section goes before the file that would be written: the work would have no effect.
+  // Its own section would have precedence over the written file, which would have no effect.
   if (tracking.setup().registered_by == path) {
     return Error{fmt::format(
         "{}: has a [registration] of its own, which would go first; remove it, then register",
@@ -150,7 +150,7 @@ int register_tracker(const Options& options) {
   boost::asio::io_context io(1);
   tracking::OperatorTracking tracking(io, say);
   std::optional<Error> error =
-      // In the tracker's own frame: the fit is from there to the device.
+      // In the tracker's own frame, because the fit goes from there to the device.
       tracking.open(options.tracking, tracking::OperatorTracking::Registered::kNo);
   if (!error) error = check(options.tracking, tracking);
   if (error) {

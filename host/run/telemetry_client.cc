@@ -27,8 +27,8 @@ namespace {
 using boost::system::error_code;
 using model::Error;
 
-constexpr std::chrono::milliseconds kRetry{50};  // a person waits for the first picture
-constexpr double kTimeout_s = 0.3;               // as the page has it (host/README.md)
+constexpr std::chrono::milliseconds kRetry{50};  // short, as a person waits for the first frame
+constexpr double kTimeout_s = 0.3;               // as on the page (host/README.md)
 constexpr int kMessagesPerTurn = 64;             // then other work gets a turn
 
 /// The descriptor in a control message, or -1. Any further ones are closed.
@@ -40,7 +40,7 @@ int take_descriptor(msghdr& message) {
     for (std::size_t i = 0; i < count; ++i) {
       int fd = -1;
       std::memcpy(&fd, CMSG_DATA(c) + i * sizeof(int), sizeof fd);
-      // Every descriptor that came is ours to close, or each message could take one of them.
+      // All received descriptors must be closed; otherwise each message could use one up.
       if (found < 0)
         found = fd;
       else
@@ -50,11 +50,11 @@ int take_descriptor(msghdr& message) {
   return found;
 }
 
-/// Copies instead of mapping: a file that shrinks later cannot hurt.
+/// Copies instead of mapping, so that a file that shrinks later does no harm.
 record::MeshBytes read_memory_file(int fd, const record::Hello& hello) {
   record::MeshBytes mesh;
   struct stat status{};
-  // Before the memory is taken: the size has to be the one that the Hello announces.
+  // Checked before allocating: the size must be the one that the Hello announces.
   if (fstat(fd, &status) != 0 || status.st_size < 0 ||
       !record::is_mesh_size(hello, static_cast<std::uint64_t>(status.st_size)))
     return mesh;
@@ -106,7 +106,7 @@ void TelemetryClient::stop() {
 void TelemetryClient::connect() {
   const auto address = model::io::socket_address(path_);
   if (!address) return lose(address.error().message);
-  // In a folder that others may write, anybody could have put a socket of this name.
+  // In a folder that other users may write to, any of them could have created this socket.
   if (const auto shared = model::io::check_socket_folder(path_, trust_))
     return lose(shared->message);
   const int fd = ::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
@@ -114,11 +114,11 @@ void TelemetryClient::connect() {
   if (::connect(fd, model::io::plain(*address), sizeof *address) != 0) {
     const int why = errno;
     ::close(fd);
-    // Nobody there is the normal case before tactd starts: no reason to give.
+    // Before tactd starts, a missing listener is normal and needs no message.
     const bool absent = why == ENOENT || why == ECONNREFUSED || why == EAGAIN;
     return lose(absent ? std::string() : fmt::format("{}: {}", path_, std::strerror(why)));
   }
-  // Asked of the kernel, after connecting: the file's owner says nothing of who listens.
+  // Asks the kernel for the peer's user: the file's owner is no proof of the listener.
   if (!model::io::has_trusted_peer(fd, trust_)) {
     ::close(fd);
     return lose(
@@ -139,7 +139,7 @@ void TelemetryClient::lose(const std::string& reason) {
   error_code ignored;
   socket_.close(ignored);
   silence_.cancel(ignored);
-  // What is told once: a loss, or a new reason; not the same one at each try.
+  // Reported once: a loss or a new reason, but not the same reason at each retry.
   const bool had_hello = has_hello_;
   has_hello_ = is_silent_ = false;
   if (had_hello || reason != last_reason_) events_.lost(reason);
@@ -157,7 +157,7 @@ void TelemetryClient::retry_later() {
 void TelemetryClient::wait_for_data() {
   socket_.async_wait(boost::asio::posix::descriptor_base::wait_read, [this](error_code wrong) {
     if (wrong) return;  // closed by stop()
-    // All that waits, in one turn: the newest frame is the one that a person should see.
+    // All pending messages in one turn, so that the newest frame is shown.
     for (int i = 0; i < kMessagesPerTurn && read_message(); ++i) {
     }
     if (socket_.is_open()) wait_for_data();
@@ -169,26 +169,26 @@ bool TelemetryClient::has_data() {
   return ::poll(&one, 1, 0) == 1;
 }
 
-/// From each message on: a tactd that stands still keeps its connection.
+/// Restarts the silence timer at each message; a silent tactd keeps its connection.
 void TelemetryClient::listen() {
   if (std::exchange(is_silent_, false) && events_.silent) events_.silent(0.0);
   const double timeout_s =
-      // Below 8 frames a second 0.3 s would end within a gap that is none.
+      // Below 8.3 frames a second 0.3 s would be less than 2.5 intervals.
       std::max(kTimeout_s, 2.5 / std::max(1.0, static_cast<double>(hello_.frame_rate_Hz)));
   silence_.expires_after(std::chrono::duration_cast<std::chrono::nanoseconds>(
       std::chrono::duration<double>(timeout_s)));
   silence_.async_wait([this, timeout_s](error_code wrong) {
     const bool came = silence_.expiry() > boost::asio::steady_timer::clock_type::now();
-    if (wrong || came || !socket_.is_open() || has_data()) return;  // it was we who did not look
+    if (wrong || came || !socket_.is_open() || has_data()) return;  // data waits, not yet read
     is_silent_ = true;
     if (events_.silent) events_.silent(timeout_s);
   });
 }
 
-/// One message. False when there is none left or the connection ended.
+/// Reads one message. False if none is left or the connection ended.
 bool TelemetryClient::read_message() {
   alignas(record::Frame)
-      // One byte more than the largest message: a longer one shows by its size.
+      // One byte more than the largest message, to detect a longer one.
       std::byte bytes[std::max(sizeof(record::Hello), sizeof(record::Frame)) + 1];
   alignas(cmsghdr) char control[CMSG_SPACE(4 * sizeof(int))];
   iovec part{.iov_base = bytes, .iov_len = sizeof bytes};
@@ -199,7 +199,7 @@ bool TelemetryClient::read_message() {
   message.msg_controllen = sizeof control;
   const ssize_t got = ::recvmsg(socket_.native_handle(), &message, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
   if (got < 0 && (errno == EAGAIN || errno == EINTR)) return false;
-  // 0: tactd closed its end.
+  // 0: tactd closed the connection.
   if (got <= 0) return lose({}), false;
 
   const int memory_file = take_descriptor(message);
@@ -242,7 +242,7 @@ std::optional<Error> TelemetryClient::take_frame(std::span<const std::byte> mess
 
 void TelemetryClient::move_hand(const double (&position_m)[3], const double (&rotation_rad)[3],
                                 double grip_ratio) {
-  // Never to hardware: a real hand is where it is.
+  // Never for hardware, whose hand is real.
   if (!has_hello_ || hello_.simulated == 0) return;
   const auto address = model::io::socket_address(std::string(record::text_of(hello_.hand_socket)));
   if (!address) return;
@@ -250,7 +250,7 @@ void TelemetryClient::move_hand(const double (&position_m)[3], const double (&ro
   std::copy(std::begin(position_m), std::end(position_m), target.position_m);
   std::copy(std::begin(rotation_rad), std::end(rotation_rad), target.rotation_rad);
   target.grip_ratio = grip_ratio;
-  // A full or missing socket drops the target: the next one is 16 ms away.
+  // A full or missing socket drops the target; the next one follows in 16 ms.
   (void)::sendto(hand_socket_, &target, sizeof target, MSG_DONTWAIT | MSG_NOSIGNAL,
                  model::io::plain(*address), sizeof *address);
 }

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// telemetry_client.h - the wire to tactd: one Hello with the meshes, then frames, for ever again.
+// telemetry_client.h - receives tactd's messages: one Hello with the meshes, then frames.
 //
-// Connects to tactd's socket and tries again twenty times a second while nobody is there or after
-// the connection ended. Every message is checked before it is passed on. The only thing that
-// travels the other way is a hand target for a simulated device; a force cannot be commanded from
-// here.
+// Connects to tactd's socket and retries twenty times a second, before tactd starts and after the
+// connection ended. Every message is checked before it is passed on. In the other direction it
+// sends only a hand target for a simulated device; it cannot command a force.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -29,13 +28,13 @@ struct TelemetryEvents {
   std::function<void(const record::Hello&, record::MeshBytes)> hello;
   std::function<void(const record::Frame&)> frame;
   std::function<void(const std::string& reason)> lost;  // once per loss; reason may be empty
-  /// Connected, but no frame for 0.3 s (2.5 periods, where those are longer). 0: one came again.
+  /// Connected, but no frame for 0.3 s (2.5 periods, if longer). 0: frames arrive again.
   std::function<void(double silence_s)> silent{};
 };
 
 class TelemetryClient {
  public:
-  /// `trust`: whose tactd is believed besides the same user's and root's.
+  /// `trust`: the user whose tactd is trusted, in addition to the same user and root.
   TelemetryClient(boost::asio::io_context& io, std::string path, TelemetryEvents events,
                   const model::io::Trust& trust = {});
   ~TelemetryClient();
@@ -45,7 +44,7 @@ class TelemetryClient {
   void start();
   void stop();
 
-  /// Where a simulated hand shall go, W. Dropped when the device is hardware or nobody listens.
+  /// Target of a simulated hand, W. Dropped for hardware or without a receiver.
   void move_hand(const double (&position_m)[3], const double (&rotation_rad)[3], double grip_ratio);
 
  private:
@@ -67,7 +66,7 @@ class TelemetryClient {
   int hand_socket_ = -1;
   record::Hello hello_;
   bool has_hello_ = false, is_silent_ = false;
-  std::string last_reason_ = "never";  // a reason is told once, not at every try
+  std::string last_reason_ = "never";  // a reason is reported once, not at every retry
 };
 
 }  // namespace tact::host::run

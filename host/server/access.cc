@@ -19,14 +19,14 @@ std::string_view name_of(std::string_view host) {
   return has_port ? host.substr(0, colon) : host;
 }
 
-/// What follows "http://" or "https://"; empty if neither does.
+/// The part after "http://" or "https://"; empty for any other URL.
 std::string_view behind_scheme(std::string_view url) {
   for (const std::string_view scheme : {"http://", "https://"})
     if (url.starts_with(scheme)) return url.substr(scheme.size());
   return {};
 }
 
-/// Takes the same time wherever the first difference is.
+/// Constant time: independent of the position of the first difference.
 bool same_secret(std::string_view a, std::string_view b) {
   return a.size() == b.size() && CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
 }
@@ -50,7 +50,7 @@ std::string_view value_in(std::string_view list, std::string_view name, char sep
 }  // namespace
 
 bool Access::host_allowed(std::string_view host) const {
-  // DNS rebinding needs no guard there: a name that was turned to us still lacks the token.
+  // On other addresses DNS rebinding is harmless: a foreign page still lacks the token.
   if (!loopback) return !host.empty();  // the token decides
   const std::string_view name = name_of(host);
   return name == "localhost" || name == "127.0.0.1" || name == "[::1]" || name == bind_address ||
@@ -69,7 +69,7 @@ bool Access::token_allowed(std::string_view authorization, std::string_view cook
 
 std::string Access::cookie() const {
   const bool is_tls = public_url.starts_with("https://");
-  // Secure only behind TLS: on plain http the browser would not send it back.
+  // Secure only with TLS: on plain http the browser would not send it back.
   return fmt::format("{}={}; HttpOnly; SameSite=Strict; Path=/{}", cookie_name, token,
                      is_tls ? "; Secure" : "");
 }
@@ -77,7 +77,7 @@ std::string Access::cookie() const {
 std::string_view authority_of(std::string_view url) {
   const std::string_view rest = behind_scheme(url);
   const std::string_view authority = rest.substr(0, rest.find('/'));
-  // A path would break the page's own links, which begin at the top.
+  // A path would break the page's own links, which are absolute.
   const bool is_whole = rest.size() - authority.size() <= 1;
   return is_whole && authority.find_first_of("?#@ ") == std::string_view::npos ? authority : "";
 }
@@ -92,7 +92,7 @@ std::string_view query_value(std::string_view query, std::string_view key) {
 
 model::Result<std::string> make_token() {
   std::array<unsigned char, 16> bytes{};
-  // Not std::random_device: who is let in hangs on it, and this says where it is from.
+  // Not std::random_device, whose source is unspecified; the token must be unpredictable.
   if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
     return model::Error{"the kernel gives no random numbers for the token"};
   std::string out;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// connection_slot.h - what every connection holds while it lasts, whatever it becomes: a request, a
-// download, a WebSocket. The server counts the copies and lets in no more than kMaxConnections.
+// connection_slot.h - a token that every connection holds during its lifetime, as a request, a
+// download or a WebSocket. The server counts the copies and admits at most kMaxConnections.
 #pragma once
 
 #include <memory>

@@ -19,7 +19,7 @@ namespace beast = boost::beast;
 namespace http = boost::beast::http;
 using beast::error_code;
 
-// Some hundred rows a turn: live frames of other browsers go between.
+// Some hundred rows per turn; live frames of other browsers are sent in between.
 constexpr std::size_t kFramesPerPart = 256;
 
 }  // namespace
@@ -34,7 +34,7 @@ Download::Download(beast::tcp_stream stream, ConnectionSlot slot, record::Snapsh
       bodies_(bodies_in(snapshot_)) {}
 
 void Download::wait_at_most(std::chrono::seconds timeout) {
-  // Two limits: 30 s for a part, five minutes for all.
+  // Two limits: 30 s per part, five minutes in total.
   stream_.expires_at(std::min(deadline_, std::chrono::steady_clock::now() + timeout));
 }
 
@@ -69,7 +69,7 @@ void Download::write_next() {
   static const record::KeptOperator kNobody;
   const auto& frames = snapshot_.frames;
   if (next_ == frames.size()) {
-    // The seal goes last: it tells a whole recording from one that was cut off on its way.
+    // The seal goes last: it distinguishes a complete recording from a truncated one.
     if (kind_ == DownloadKind::kCsv || std::exchange(is_sealed_, true)) return finish();
     return write_chunk(seal_.bytes());
   }
@@ -94,7 +94,7 @@ void Download::finish() {
   boost::asio::async_write(
       stream_, http::make_chunk_last(), [self = shared_from_this()](error_code, std::size_t) {
         error_code ignored;
-        // Says "that was all", so that the browser does not wait for a next answer.
+        // Ends the stream, so that the browser does not wait for more.
         self->stream_.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);
       });
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// download.h - sends the kept frames as a file, a few hundred at a time, so that making a long file
-// never holds up the live frames of other browsers. All downloads share their frames with the view
-// (record::Snapshot); one that is not read to its end in five minutes is given up, so that old
-// frames do not pile up.
+// download.h - sends the kept frames as a file, a few hundred at a time, so that a long file does
+// not delay the live frames of other browsers. All downloads share their frames with the view
+// (record::Snapshot). A download is aborted after five minutes, so that old frames do not
+// accumulate.
 #pragma once
 
 #include <boost/beast/core/tcp_stream.hpp>
@@ -19,8 +19,8 @@
 
 namespace tact::host::server {
 
-constexpr std::chrono::seconds kTimeout{30};           // for a browser that does not read
-constexpr std::chrono::seconds kLongestDownload{300};  // for one that reads slowly
+constexpr std::chrono::seconds kTimeout{30};           // for one part, if the browser does not read
+constexpr std::chrono::seconds kLongestDownload{300};  // in total, if it reads slowly
 
 enum class DownloadKind { kCsv, kRecording };
 
@@ -52,7 +52,7 @@ class Download : public std::enable_shared_from_this<Download> {
   boost::beast::http::response_serializer<boost::beast::http::empty_body> serializer_{header_};
   std::string part_;
   std::size_t next_ = 0;
-  model::io::Seal seal_;  // of a recording, so far
+  model::io::Seal seal_;  // over the recording sent so far
   bool is_sealed_ = false;
 };
 

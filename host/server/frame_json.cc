@@ -18,7 +18,7 @@
 namespace tact::host::server {
 namespace {
 
-// Beyond what a picture or a plot shows; the tool's place to a micrometre at 1 m.
+// Finer than the resolution of view and plots; the tool's position is exact to 1 um at 1 m.
 constexpr int kDigits = 4;
 constexpr int kPositionDigits = 6;
 
@@ -58,7 +58,7 @@ void put_site(std::string& out, std::size_t index, const firmware::telemetry::Fr
 
 /// RFC 4648, with padding.
 void put_base64(std::string& out, std::span<const std::uint8_t> bytes) {
-  std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');  // the library ends it with a zero
+  std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');  // EVP_EncodeBlock appends a zero
   text.resize(
       static_cast<std::size_t>(EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
                                                bytes.data(), static_cast<int>(bytes.size()))));
@@ -72,7 +72,7 @@ void put_patch(std::string& out, const firmware::telemetry::FramePatch& patch) {
       std::min<std::size_t>(patch.cut_count, firmware::telemetry::kMaxCutsReported);
   std::vector<std::uint8_t> bytes(n * (sizeof patch.vertex[0] + sizeof patch.displacement_um[0]));
   const std::size_t vertex_bytes = n * sizeof patch.vertex[0];
-  if (n > 0) {  // an empty vector has no address to copy to
+  if (n > 0) {  // memcpy must not get the null address of an empty vector
     std::memcpy(bytes.data(), patch.vertex, vertex_bytes);
     std::memcpy(bytes.data() + vertex_bytes, patch.displacement_um, bytes.size() - vertex_bytes);
   }
@@ -111,7 +111,7 @@ std::string frame_json(const record::Frame& frame, const record::Hello& hello) {
   const std::size_t rings = std::min<std::size_t>(hello.ring_count, firmware::telemetry::kMaxRings);
   bool first = true;
   for (std::size_t i = 0; i < sites; ++i) {
-    // A free site has nothing to show: the frame stays short (kMaxFrameJsonBytes).
+    // Free sites are omitted to keep the frame short (kMaxFrameJsonBytes).
     if (frame.site[i].state == firmware::telemetry::SiteState::kFree) continue;
     if (!first) out += ',';
     first = false;
@@ -159,7 +159,7 @@ std::string scene_json(const record::Hello& hello) {
         {"tool", record::text_of(hello.tool_material)},
         {"pieces", pieces}}},
   };
-  // A name with broken UTF-8 is repaired instead of throwing.
+  // Repairs a name with broken UTF-8 instead of throwing.
   return model::io::text_of(scene);
 }
 

@@ -17,10 +17,10 @@ namespace beast = boost::beast;
 namespace http = boost::beast::http;
 using beast::error_code;
 
-// Chosen: browsers send some hundred bytes; nobody has a body to send.
+// Chosen: browsers send some hundred bytes, and no request needs a body.
 constexpr std::uint32_t kMaxHeaderBytes = 8192;
 constexpr std::uint64_t kMaxBodyBytes = 1024;
-// A peer that goes on sending is read away for so long, or so much, then dropped.
+// After an error, incoming data is discarded up to these limits, then the connection is dropped.
 constexpr std::chrono::seconds kFarewell{2};
 constexpr std::size_t kMaxDrained_bytes = 1 << 20;
 
@@ -29,12 +29,12 @@ std::string_view view_of(beast::string_view text) { return {text.data(), text.si
 template <typename Message>
 void set_common(Message& message) {
   message.set(http::field::server, "tact-view");
-  // A scene must not come from a cache after tactd has begun another one.
+  // No cache: tactd may have started another scene meanwhile.
   message.set(http::field::cache_control, "no-store");
   message.set("X-Content-Type-Options", "nosniff");
   message.set("Referrer-Policy", "no-referrer");
   message.set("Cross-Origin-Resource-Policy", "same-origin");
-  // Nothing from elsewhere, no framing: a foreign page cannot put its script beside ours.
+  // No foreign sources and no framing, so a foreign page cannot inject a script.
   message.set("Content-Security-Policy",
               "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; "
               "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
@@ -68,7 +68,7 @@ HttpSession::HttpSession(beast::tcp_stream stream, ConnectionSlot slot, Site& si
     : stream_(std::move(stream)), slot_(std::move(slot)), site_(site) {}
 
 void HttpSession::read_next() {
-  // A parser reads one message; its limits have to be set again.
+  // A parser reads one message, so a new one with its limits is needed.
   parser_.emplace();
   parser_->header_limit(kMaxHeaderBytes);
   parser_->body_limit(kMaxBodyBytes);
@@ -80,10 +80,10 @@ void HttpSession::read_next() {
                    });
 }
 
-/// Who left, or was too slow, hears nothing more.
+/// A peer that left or was too slow gets no answer.
 void HttpSession::refuse(error_code wrong) {
   const bool is_http = wrong.category() == make_error_code(http::error::bad_method).category();
-  // A connection that ended, or timed out: nobody is there to read an answer.
+  // The connection ended or timed out: no peer would read an answer.
   if (!is_http || wrong == http::error::end_of_stream || wrong == http::error::partial_message)
     return;
   if (wrong == http::error::header_limit) {
@@ -112,7 +112,7 @@ void HttpSession::handle(const Request& request) {
         sorry(http::status::forbidden, "403: open this page by its address, not by another name"),
         request);
   }
-  // The page's own files are in the repository: no secret.
+  // The page's own files are public: they are in the repository.
   const bool is_public = site_.page.find(path) != nullptr;
   if (!is_public && !site_.access.token_allowed(view_of(request[http::field::authorization]),
                                                 view_of(request[http::field::cookie]))) {
@@ -131,7 +131,7 @@ void HttpSession::handle(const Request& request) {
 }
 
 void HttpSession::upgrade(const Request& request) {
-  // A browser lets any page open a WebSocket to us, with our cookie: Origin is what tells.
+  // Any page can open a WebSocket to this server with our cookie; only the Origin identifies it.
   if (!origin_matches(view_of(request[http::field::origin]), view_of(request[http::field::host]))) {
     return write(sorry(http::status::forbidden, "403: this WebSocket is for tact's own page only"),
                  request);
@@ -148,7 +148,7 @@ void HttpSession::download(const Request& request, std::string_view path, std::s
   set_common(header);
   header.set(http::field::content_type,
              kind == DownloadKind::kCsv ? "text/csv; charset=utf-8" : "application/octet-stream");
-  header.set(http::field::content_disposition, "attachment");  // the page knows a better name
+  header.set(http::field::content_disposition, "attachment");  // the page sets the file name
   header.keep_alive(false);
   header.chunked(true);
   record::Snapshot snapshot = site_.view.recent(tick_value(query, "from_tick", 0),
@@ -185,7 +185,7 @@ void HttpSession::write(Response response, const Request& request) {
   set_common(response_);
   response_.version(request.version());
   response_.keep_alive(request.keep_alive());
-  // HEAD: the length that GET would have, and no body.
+  // HEAD: the length of the GET response, without its body.
   if (request.method() == http::verb::head) {
     const std::size_t length = response_.body().size();
     response_.body().clear();
@@ -204,7 +204,7 @@ void HttpSession::send() {
   });
 }
 
-/// Takes what is still on its way: a socket closed upon unread bytes takes the answer back.
+/// Reads pending data first: closing a socket with unread data would discard the response.
 void HttpSession::leave() {
   error_code ignored;
   stream_.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);

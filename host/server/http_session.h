@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // http_session.h - one HTTP connection: page files, scene, meshes, downloads, and the upgrade to
-// the WebSocket. Read-only: GET and HEAD. What is no request, or too large, is answered with its
-// error and the end of the connection; one that is too slow with the end alone.
+// the WebSocket. Read-only: GET and HEAD. A malformed or oversized request gets an error and the
+// connection is closed; one that is too slow is closed without an answer.
 #pragma once
 
 #include <boost/beast/core/flat_buffer.hpp>
@@ -22,16 +22,16 @@
 
 namespace tact::host::server {
 
-/// What all connections share.
+/// Shared by all connections.
 struct Site {
   LiveView& view;
   PageFiles page;
   Access access;
   MoveHand move_hand;
-  Steer steer;                                // of a replay alone
-  AskScene ask_scene;                         // of a session in simulation, where it is offered
-  std::string scenes;                         // what may be asked for, as JSON; or empty
-  std::chrono::milliseconds request_timeout;  // for one whole request, from the last answer on
+  Steer steer;                                // only of a replay
+  AskScene ask_scene;                         // only of a simulation that offers scenes
+  std::string scenes;                         // the offered scenes, as JSON; or empty
+  std::chrono::milliseconds request_timeout;  // for one whole request, after the last response
 };
 
 class HttpSession : public std::enable_shared_from_this<HttpSession> {

@@ -34,7 +34,7 @@ std::optional<HandRequest> parse_hand(const std::string& text) {
     if (found == hand.end() || !found->is_number()) return std::nullopt;
     value[i] = found->get<double>();
     if (!std::isfinite(value[i])) return std::nullopt;
-    // The simulator clamps to its workspace; this keeps nonsense off its socket.
+    // The simulator clamps to its workspace; this rejects absurd values before its socket.
     if (i < 6 && std::abs(value[i]) > (i < 3 ? kFarthestHand_m : std::numbers::pi))
       return std::nullopt;
   }
@@ -52,7 +52,7 @@ LiveSession::LiveSession(beast::tcp_stream stream, ConnectionSlot slot, LiveView
       steer_(steer),
       ask_scene_(ask_scene) {}
 
-// The view holds a plain pointer.
+// The view holds a plain pointer to this session.
 LiveSession::~LiveSession() { view_.unsubscribe(*this); }
 
 void LiveSession::start(const Request& upgrade) {
@@ -75,14 +75,14 @@ void LiveSession::on_status(const Text& status) {
 }
 
 void LiveSession::on_frame(const Text& frame, const Text& beside) {
-  next_frame_ = frame;  // one that still waits is dropped: newer is better than complete
+  next_frame_ = frame;  // replaces a frame that still waits
   next_beside_ = beside;
   write_next();
 }
 
 void LiveSession::write_next() {
   if (writing_) return;
-  // The figure belongs to the frame that has just gone: nothing may come between.
+  // The overlay must directly follow its frame.
   if (due_beside_) {
     writing_ = std::move(due_beside_);
   } else if (next_status_) {
@@ -116,7 +116,7 @@ void LiveSession::take(const std::string& text) {
   if (message && message->is_object() && message->contains("seen") &&
       (*message)["seen"].is_number_unsigned()) {
     const std::uint64_t seen = (*message)["seen"].get<std::uint64_t>();
-    // Never back, and never more than were sent: a page cannot open its own window.
+    // Clamped to the frames sent and never lower, so that a page cannot widen its window.
     seen_frames_ = std::clamp(seen, seen_frames_, sent_frames_);
     write_next();
   }
@@ -124,7 +124,7 @@ void LiveSession::take(const std::string& text) {
     if (const std::optional<ReplayRequest> request = parse_replay(text)) steer_(*request);
   if (!move_hand_) return;
   if (const std::optional<HandRequest> hand = parse_hand(text)) move_hand_(*hand);
-  // Behind the hand's right: who may not move it chooses no scene.
+  // After the check above: a page that may not move the hand may not choose a scene.
   if (ask_scene_)
     if (const nlohmann::json request = object_in(text, "request"); !request.is_null())
       ask_scene_(request);

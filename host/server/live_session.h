@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // live_session.h - one browser's WebSocket: status and frames out, hand targets in.
 //
-// Each frame is one JSON text (frame_json.h), and what belongs to it (figure_json.h) is the text
-// that follows. The page answers {"seen": n} with the number of frames it took so far; at most
-// kMaxUnseen may be on the way, and of those that wait only the newest is kept. So a slow browser
-// sees fewer frames, never older ones, and holds up nobody. A page may send
+// Each frame is one JSON text (frame_json.h), followed by the text of its overlay (figure_json.h).
+// The page answers {"seen": n} with the number of frames it took so far. At most kMaxUnseen may be
+// unacknowledged; of those that wait only the newest is kept. So a slow browser gets fewer frames,
+// never older ones, and delays no other. A page may send
 // {"hand":{"x_m":..,"y_m":..,"z_m":..,"turn_x_rad":..,"turn_y_rad":..,"turn_z_rad":..,
-// "grip_ratio":..}} for a simulated device, and to a replay what replay_request.h says. Where the
-// scene of a simulation may be chosen (scene_picker.h) it may also send what is said there.
-// Nothing else is heard: no page arms, stops or resets a device.
+// "grip_ratio":..}} for a simulated device, the requests of replay_request.h to a replay, and those
+// of scene_picker.h to a simulation that offers scenes. Any other message is ignored: no page arms,
+// stops or resets a device.
 #pragma once
 
 #include <boost/beast/core/flat_buffer.hpp>
@@ -28,16 +28,16 @@
 
 namespace tact::host::server {
 
-/// Where a page wants the simulated hand, W.
+/// Target pose of the simulated hand, W.
 struct HandRequest {
   double position_m[3] = {};
-  double rotation_rad[3] = {};  // of the tool against its rest orientation, rotation vector
+  double rotation_rad[3] = {};  // of the tool relative to its rest orientation, rotation vector
   double grip_ratio = 0.0;      // 0 open, 1 closed
 };
 using MoveHand = std::function<void(const HandRequest&)>;
 using AskScene = std::function<void(const nlohmann::json& request)>;
 
-/// The hand target in a page's message; none if it has none, or a number is not sensible.
+/// The hand target in a page's message; none if it is missing or a number is out of range.
 std::optional<HandRequest> parse_hand(const std::string& text);
 
 class LiveSession final : public LiveListener, public std::enable_shared_from_this<LiveSession> {
@@ -67,7 +67,7 @@ class LiveSession final : public LiveListener, public std::enable_shared_from_th
   const Steer& steer_;
   const AskScene& ask_scene_;
   Text next_status_, next_frame_, next_beside_, writing_;
-  Text due_beside_;  // of the frame that was written last
+  Text due_beside_;  // overlay of the frame that was written last
   std::uint64_t sent_frames_ = 0, seen_frames_ = 0;
 };
 

@@ -36,7 +36,7 @@ void LiveView::begin(const record::Hello& hello, record::MeshBytes mesh, Link li
   mesh_ = std::make_shared<const record::MeshBytes>(std::move(mesh));
   ++scene_number_;
   if (overlay_source_)
-    // Before tell(): the status of a new scene has its figure.
+    // Before the status is published: that of a new scene contains the figure.
     figure_ = std::make_shared<const std::string>(
         model::io::text_of(overlay_source_->begin(hello, *mesh_)));
   recent_.restart(static_cast<double>(hello.frame_rate_Hz));
@@ -54,7 +54,7 @@ void LiveView::add(const record::Frame& frame, const tracking::TrackedOperator* 
   }
   recent_.add(frame, tracked, shown);
   newest_beside_ = beside;
-  // Kept above, but no JSON is made for nobody.
+  // The frame is kept above; without listeners no JSON is made.
   if (listeners_.empty()) return;
   const Text text = std::make_shared<const std::string>(frame_json(frame, hello_));
   for (LiveListener* listener : listeners_) listener->on_frame(text, beside);
@@ -71,12 +71,12 @@ void LiveView::lose(const std::string& reason) {
 void LiveView::subscribe(LiveListener& listener) {
   listeners_.insert(&listener);
   listener.on_status(status_);
-  // A replay may rest: without this the page would stay empty until somebody plays.
+  // A replay may be paused: without this a new page would stay empty.
   if (link_ == Link::kReplay && !recent_.frames().empty())
     listener.on_frame(
         std::make_shared<const std::string>(frame_json(recent_.frames().back()->frame, hello_)),
         newest_beside_);
-  // Once: a replay begins for its first page.
+  // Once: a replay starts with its first page.
   if (const auto then = std::exchange(watched_, nullptr)) then();
 }
 

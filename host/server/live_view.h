@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// live_view.h - what every browser sees now: link, scene, newest frame, and the last minutes.
+// live_view.h - the state that every browser shows: link, scene, newest frame, and the last
+// minutes.
 //
-// One thread. Telemetry or a replay writes; sessions listen. Texts are made once and shared.
 #pragma once
 
 #include <functional>
@@ -21,23 +21,23 @@ enum class Link { kWaiting, kLive, kLost, kReplay };
 class LiveListener {
  public:
   virtual void on_status(const Text& status) = 0;
-  /// `beside` belongs to the frame and may be null.
+  /// `beside` is the overlay of the frame and may be null.
   virtual void on_frame(const Text& frame, const Text& beside) = 0;
 
  protected:
   ~LiveListener() = default;
 };
 
-/// What is told beside every frame, made by who knows more than telemetry: the operator's figure.
+/// Adds an overlay to every frame from data that telemetry lacks: the operator's figure.
 class OverlaySource {
  public:
   virtual ~OverlaySource() = default;
-  /// For every scene; what it gives is the status's "figure".
+  /// Called for every scene; the result is the status's "figure".
   virtual nlohmann::json begin(const record::Hello& hello, const record::MeshBytes& mesh) = 0;
-  /// One JSON text for each frame. `shown` is the figure of a recording: it is told as it was.
+  /// One JSON text per frame. `shown` is the figure of a recording, which is passed on unchanged.
   virtual std::string with(const record::Frame& frame, const tracking::TrackedOperator* tracked,
                            const figure::FigurePose* shown = nullptr) = 0;
-  /// The one that was told last.
+  /// The figure reported last.
   virtual const figure::FigurePose& figure() const = 0;
 };
 
@@ -45,26 +45,26 @@ class LiveView {
  public:
   LiveView();
 
-  /// Before the first scene. It outlives the view; null: none.
+  /// Call before the first scene. The source must outlive the view; null: none.
   void accompany(OverlaySource* overlay_source) { overlay_source_ = overlay_source; }
 
   // From telemetry or a replay:
   void begin(const record::Hello& hello, record::MeshBytes mesh, Link link,
              const std::string& detail = {});
-  /// `tracked` is the operator at this frame, if there is a tracker; `shown` as in Companion.
+  /// `tracked`: the operator at this frame, null without a tracker; `shown`: as in OverlaySource.
   void add(const record::Frame& frame, const tracking::TrackedOperator* tracked = nullptr,
            const figure::FigurePose* shown = nullptr);
-  void rewind();  // a replay starts elsewhere: forget the frames
+  void rewind();  // drops the kept frames, when a replay jumps
   /// Of a replay: the status's "replay".
   void report_replay(const nlohmann::json& replay);
-  /// Of a session whose scene may be chosen: the status's "picker"; null: none.
+  /// Of a session with scenes to choose: the status's "picker"; null: none.
   void report_picker(const nlohmann::json& picker);
-  /// Once, as soon as somebody looks.
+  /// Called once, at the first subscription.
   void when_watched(std::function<void()> then);
   void lose(const std::string& reason);
 
   // For sessions:
-  /// Tells it the status, and of a replay, which may rest, the frame that is shown.
+  /// Sends the status, and the shown frame of a replay, which may be paused.
   void subscribe(LiveListener& listener);
   void unsubscribe(LiveListener& listener) { listeners_.erase(&listener); }
   const Text& status() const { return status_; }
@@ -84,12 +84,12 @@ class LiveView {
   std::uint64_t scene_number_ = 0;  // grows with every Hello: the page loads the scene again
   Link link_ = Link::kWaiting;
   std::string detail_;  // of the link
-  Text replay_;         // how it plays, if it is one
-  Text picker_;         // what may be chosen, if anything may
+  Text replay_;         // playback state; null for a live view
+  Text picker_;         // the offered scenes; null if there are none
   Text status_;
   std::function<void()> watched_;
   OverlaySource* overlay_source_ = nullptr;
-  Text figure_;         // of the companion, for this scene
+  Text figure_;         // of the overlay source, for this scene
   Text newest_beside_;  // of the newest frame
   record::RecentFrames recent_;
   std::set<LiveListener*> listeners_;

@@ -14,7 +14,7 @@ namespace {
 pose::Pose pose_of(const record::Frame& frame) {
   const float (&p)[3] = frame.tool_position_m;
   const float (&q)[4] = frame.tool_orientation;
-  // One that is no rotation stays none, and the figure leaves the tool where it was.
+  // An invalid rotation becomes the zero quaternion: the figure then keeps the tool's last pose.
   const auto turn = pose::rotation_from({static_cast<double>(q[0]), static_cast<double>(q[1]),
                                          static_cast<double>(q[2]), static_cast<double>(q[3])});
   return {.rotation = turn ? *turn : Eigen::Quaterniond(0.0, 0.0, 0.0, 0.0),
@@ -24,7 +24,7 @@ pose::Pose pose_of(const record::Frame& frame) {
 }  // namespace
 
 Eigen::Vector3d grip_of(const record::Hello& hello, const record::MeshBytes& mesh) {
-  // Behind the organ's vertices and triangles, 12 bytes each (telemetry_check.h).
+  // After the organ's vertices and triangles, 12 bytes each (telemetry_check.h).
   const std::size_t at = 12 * (std::size_t{hello.organ_vertices} + hello.organ_triangles);
   const std::size_t bytes = 12 * std::size_t{hello.tool_vertices};
   if (bytes == 0 || mesh.size() < at + bytes) return figure::FigureSettings{}.grip_m;
@@ -57,7 +57,7 @@ std::string OperatorFigure::with(const record::Frame& frame,
                                  const figure::FigurePose* shown) {
   static const tracking::TrackedOperator kNobody{};
   const double time_s = static_cast<double>(frame.time_ns) * 1e-9;
-  // A recording's figure is told as it was shown, not posed again.
+  // A recording's figure is shown as recorded, not posed again.
   reported_ = shown ? *shown : figure_.update(time_s, pose_of(frame), tracked ? *tracked : kNobody);
   const bool head_tracked =
       tracked && (*tracked)[tracking::BodyRole::kHead].state == tracking::BodyState::kTracked;

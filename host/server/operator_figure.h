@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// operator_figure.h - the operator's figure beside every frame: the tool from telemetry, the bodies
-// from a tracker or a recording, the hand at the handle of the tool's mesh. A recording that has
-// the figure itself is shown as it was. When tactd begins again, what is bound stays bound.
+// operator_figure.h - the operator's figure as the overlay of every frame: the tool from telemetry,
+// the bodies from a tracker or a recording, the hand at the handle of the tool's mesh. A recorded
+// figure is shown unchanged. When tactd restarts, bound bones stay bound.
 #pragma once
 
 #include <string>
@@ -18,11 +18,11 @@ class OperatorFigure final : public OverlaySource {
  public:
   explicit OperatorFigure(double height_m);
 
-  /// Where the right shoulder is while none is tracked, W, m. It begins the figure again.
+  /// Position of the right shoulder while none is tracked, W, m. Resets the figure.
   void put_shoulder_at(const Eigen::Vector3d& shoulder_m);
 
   nlohmann::json begin(const record::Hello& hello, const record::MeshBytes& mesh) override;
-  /// Without `tracked` the tool alone moves the figure.
+  /// Without `tracked` only the tool moves the figure.
   std::string with(const record::Frame& frame, const tracking::TrackedOperator* tracked,
                    const figure::FigurePose* shown = nullptr) override;
   const figure::FigurePose& figure() const override { return reported_; }

@@ -13,7 +13,7 @@ namespace {
 
 using model::Error;
 
-// Chosen: more is a wrong folder, such as /.
+// Chosen: a larger folder is the wrong one, such as /.
 constexpr std::uintmax_t kMaxPageBytes = 64 << 20;
 
 std::string mime_of(const std::filesystem::path& path) {
@@ -38,7 +38,7 @@ std::optional<Error> PageFiles::load(const std::string& folder) {
   std::error_code wrong;
   std::uintmax_t total_bytes = 0;
   files_.clear();
-  // Links are not followed: what is served is what is in the folder.
+  // Links are not followed: only files of this folder are served.
   for (fs::recursive_directory_iterator it(folder, wrong), end; !wrong && it != end;
        it.increment(wrong)) {
     if (it->is_symlink(wrong) || !it->is_regular_file(wrong)) continue;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// page_files.h - the page, read once into memory. A request is looked up by its exact path, so no
-// path, however written, can name another file.
+// page_files.h - the page's files, read once into memory. A request is looked up by its exact path,
+// so no path can name another file.
 #pragma once
 
 #include <map>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// page_message.h - a message of a page, before anybody believes what it says.
+// page_message.h - parses a message of a page, before any check of its content.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -12,11 +12,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::int64_t kPause_ns = 1'000'000'000;            // before it starts again
-constexpr std::int64_t kLongestGap_ns = 5'000'000'000;       // a gap in the file is not waited out
-constexpr std::int64_t kLongest_ns = std::int64_t{1} << 60;  // a clock beyond is a file's nonsense
-constexpr std::chrono::seconds kMaxLate{1};  // after a PC that slept: go on from now
-constexpr std::size_t kMaxStops = 32;        // told
+constexpr std::int64_t kPause_ns = 1'000'000'000;            // before a repetition
+constexpr std::int64_t kLongestGap_ns = 5'000'000'000;       // a longer gap is shortened to this
+constexpr std::int64_t kLongest_ns = std::int64_t{1} << 60;  // a later time in a file is invalid
+constexpr std::chrono::seconds kMaxLate{1};  // after a longer suspend the schedule restarts now
+constexpr std::size_t kMaxStops = 32;        // reported to the page
 
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
@@ -28,7 +28,7 @@ Playback::Playback(boost::asio::io_context& io, LiveView& view, record::Recordin
   const auto believed_ns = [](const record::Frame& frame) {
     return std::clamp(frame.time_ns, -kLongest_ns, kLongest_ns);
   };
-  // A clock that steps back in the file stands here: at_ns_ never falls, so it can be searched.
+  // Times that step back are held at the latest one: at_ns_ must be sorted for the search.
   std::int64_t latest_ns = 0;
   for (const record::Frame& frame : recording_.frames) {
     latest_ns = std::max(latest_ns, believed_ns(frame) - believed_ns(recording_.frames.front()));
@@ -74,9 +74,9 @@ void Playback::show(std::size_t frame) {
   view_.add(recording_.frames[frame], recording_.operator_at(frame), recording_.figure_at(frame));
 }
 
-/// What the view keeps begins here.
+/// Shows a frame out of sequence; the view's kept frames start again.
 void Playback::jump_to(std::size_t frame) {
-  // What is kept for "save" has to be one stretch of time.
+  // The frames kept for "save" must be one continuous stretch.
   if (frame != shown_ + 1) view_.rewind();
   show(frame);
 }
@@ -93,12 +93,12 @@ void Playback::schedule() {
   }
   const std::int64_t gap_ns =
       is_last() ? kPause_ns : std::min(at_ns_[shown_ + 1] - at_ns_[shown_], kLongestGap_ns);
-  // absolute: small delays do not add up
+  // Absolute times: small delays do not accumulate.
   due_ = std::max(due_, Clock::now() - kMaxLate) +
          std::chrono::nanoseconds(std::llround(static_cast<double>(gap_ns) / speed_ratio_));
   timer_.expires_at(due_);
-  // cancel() cannot call back a handler that is queued already: the number tells it that it is
-  // late.
+  // cancel() cannot remove a handler that is already queued; its outdated number makes it do
+  // nothing.
   timer_.async_wait([this, turn = ++turn_](boost::system::error_code wrong) {
     if (!wrong) play_next(turn);
   });
@@ -122,7 +122,7 @@ void Playback::steer(const ReplayRequest& request) {
     jump_to(static_cast<std::size_t>(std::clamp<std::int64_t>(wanted, 0, last)));
   }
   if (request.playing) {
-    // Play at the end means: again from the start.
+    // Play at the end starts again from the beginning.
     if (*request.playing && !playing_ && is_last() && !request.at_s) jump_to(0);
     playing_ = *request.playing;
   }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// playback.h - plays a recording, the operator in it too, into the view: with its own timing or
-// faster or slower, from where a page wants it, once or again and again.
+// playback.h - plays a recording, with its operator, into the view: at its own speed or another,
+// from a position that a page chooses, once or repeatedly.
 //
-// It begins when the first page looks, and rests on its last frame: what led to a fault is seen,
-// and so is the fault. All pages see the same.
+// It starts with the first page and stops at its last frame, so that a fault and the time before it
+// stay visible. All pages show the same frame.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -20,7 +20,7 @@ namespace tact::host::server {
 
 class Playback {
  public:
-  /// `recording` has a frame.
+  /// `recording` must have a frame.
   Playback(boost::asio::io_context& io, LiveView& view, record::Recording recording,
            std::string name);
 
@@ -41,10 +41,10 @@ class Playback {
   LiveView& view_;
   record::Recording recording_;
   std::string name_;
-  std::vector<std::int64_t> at_ns_;  // of each frame, since the first; never falls
+  std::vector<std::int64_t> at_ns_;  // of each frame, since the first; never decreases
   std::size_t shown_ = 0;
   std::chrono::steady_clock::time_point due_;
-  std::uint64_t turn_ = 0;  // of the timer: one that was overtaken does nothing
+  std::uint64_t turn_ = 0;  // identifies the valid timer; an older handler does nothing
   bool playing_ = true, repeats_ = false;
   double speed_ratio_ = 1.0;
 };

@@ -10,8 +10,8 @@
 namespace tact::host::server {
 namespace {
 
-constexpr double kLongest_s = 1e7;              // beyond any recording
-constexpr double kFastest_ratio = 20;           // and the slowest is its inverse
+constexpr double kLongest_s = 1e7;              // longer than any recording
+constexpr double kFastest_ratio = 20;           // the slowest is its inverse
 constexpr std::int64_t kMaxFrames = 1'000'000;  // of one step; fits an int
 
 bool take(const nlohmann::json& value, std::optional<bool>& into) {
@@ -23,12 +23,12 @@ bool take(const nlohmann::json& value, std::optional<bool>& into) {
 bool take(const nlohmann::json& value, double low, double high, std::optional<double>& into) {
   if (!value.is_number()) return false;
   into = value.get<double>();
-  return *into >= low && *into <= high;  // false for what is not finite
+  return *into >= low && *into <= high;  // false for a NaN or an infinity
 }
 
 bool take(const nlohmann::json& value, std::optional<int>& into) {
   if (!value.is_number_integer()) return false;
-  // Through a double: an integer of 64 bits would be cut to an int without a word.
+  // By double: a 64-bit integer would be truncated to int silently.
   const double frames = value.get<double>();
   if (std::abs(frames) > static_cast<double>(kMaxFrames)) return false;
   into = static_cast<int>(frames);
@@ -49,7 +49,7 @@ std::optional<ReplayRequest> parse_replay(const std::string& text) {
                           ? take(value, 1.0 / kFastest_ratio, kFastest_ratio, request.speed_ratio)
                       : key == "repeats" ? take(value, request.repeats)
                                          : false;
-    // One wrong key refuses all: half a request would play what nobody asked for.
+    // One wrong key refuses the whole request: part of it would do something else.
     if (!good) return std::nullopt;
   }
   return request;

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// replay_request.h - what a page may ask of a recording that is shown: where, whether and how fast
-// it plays.
+// replay_request.h - a page's request to a replay: position, pause and speed.
 //
 //     {"replay": {"playing": true, "at_s": 1.5, "step_frames": -1,
 //                 "speed_ratio": 0.25, "repeats": false}}
 //
-// Each key may be missing. It reaches a tact-view that replays and nothing behind it: there is no
-// tactd that could hear it.
+// Each key is optional. The request reaches only the tact-view that replays; there is no tactd.
 #pragma once
 
 #include <functional>
@@ -18,14 +16,14 @@ namespace tact::host::server {
 struct ReplayRequest {
   std::optional<bool> playing;
   std::optional<double> at_s;         // since the first frame
-  std::optional<int> step_frames;     // from the frame that is shown; the replay then rests
-  std::optional<double> speed_ratio;  // 1: as it was; > 0
-  std::optional<bool> repeats;        // at its end it begins again
+  std::optional<int> step_frames;     // relative to the shown frame; the replay then pauses
+  std::optional<double> speed_ratio;  // 1: as recorded; > 0
+  std::optional<bool> repeats;        // starts again at its end
 };
 
 using Steer = std::function<void(const ReplayRequest&)>;
 
-/// None if the message has no "replay", or one that is not sensible.
+/// None if the message has no "replay", or an invalid one.
 std::optional<ReplayRequest> parse_replay(const std::string& text);
 
 }  // namespace tact::host::server

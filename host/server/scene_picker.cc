@@ -51,7 +51,7 @@ std::string ScenePicker::list() const {
   return text_of(list);
 }
 
-/// Only what tactd has named may become a word of a command line.
+/// Only names that tactd has listed may become words of a command line.
 std::optional<Error> ScenePicker::check(const Choice& choice) const {
   const auto offer = offers_.find(choice.scene);
   if (offer == offers_.end())
@@ -70,7 +70,7 @@ void ScenePicker::ask(const json& request) {
   const json scene = request.value("scene", json());
   const Choice choice{scene.is_string() ? scene.get<std::string>() : "",
                       request.value("set", json::object())};
-  // Never of hardware: there a person starts tactd, with the device before the eyes.
+  // Never for hardware: an operator who sees the device must start tactd.
   if (!is_simulated()) {
     answer_ = "a scene is chosen here in simulation only";
   } else if (asked_) {

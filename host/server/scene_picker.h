@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// scene_picker.h - which scenes of a simulation a page may choose, what one asked for, and what
-// came of it, as the status's "picker".
+// scene_picker.h - the scenes of a simulation that a page may choose, the request of a page and its
+// result, as the status's "picker".
 //
 //     {"request": {"scene": "heart", "set": {"disc_stack.layers": 12}}}
 //
 // tact-view starts and sets nothing: a request becomes a line for the program that started it
-// (tools/run), which starts tactd again or answers why not. tactd alone checks the numbers; here
-// only names are compared with what it offers. One request at a time.
+// (tools/run), which starts tactd again or answers with the reason. Only tactd checks the numbers;
+// here only the names are compared with the offered ones. One request at a time.
 #pragma once
 
 #include <functional>
@@ -23,7 +23,7 @@ namespace tact::host::server {
 class ScenePicker {
  public:
   using Send = std::function<void(const std::string& line)>;
-  /// `view` outlives it.
+  /// `view` must outlive the picker.
   ScenePicker(LiveView& view, Send send) : view_(view), send_(std::move(send)) {}
 
   /// Offers the scenes of a folder: one file of `tactd SCENE --parameters --json` each.
@@ -31,11 +31,11 @@ class ScenePicker {
   /// The files as one JSON list, by name of the scene.
   std::string list() const;
 
-  /// Of a page.
+  /// A request of a page.
   void ask(const nlohmann::json& request);
-  /// After LiveView::begin: what was asked for may be what runs now.
+  /// Call after LiveView::begin: compares the scene that now runs with the request.
   void begin();
-  /// The program that started tact-view did not start what was asked for, and why.
+  /// The program that started tact-view refuses the request, with the reason.
   void refuse(const std::string& reason);
 
  private:
@@ -50,8 +50,8 @@ class ScenePicker {
   LiveView& view_;
   Send send_;
   std::map<std::string, nlohmann::json> offers_;  // the files, by name of the scene
-  Choice shown_;                                  // what runs
-  std::optional<Choice> asked_;                   // and does not run yet
+  Choice shown_;                                  // the scene that runs
+  std::optional<Choice> asked_;                   // the pending request
   std::string answer_;                            // why the last request was refused; or empty
 };
 

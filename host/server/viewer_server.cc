@@ -17,7 +17,7 @@ using model::Result;
 
 constexpr std::chrono::seconds kReportAgain{10};
 
-/// An address as a URL writes it. "All addresses" is not one: the machine's name is.
+/// An address as in a URL. The unspecified address becomes the machine's name.
 std::string url_name(const boost::asio::ip::address& address) {
   if (address.is_unspecified()) {
     char name[256] = {};
@@ -57,14 +57,14 @@ std::optional<Error> ViewerServer::open(const ViewerOptions& options) {
                     "without a path",
                     options.public_url)};
   }
-  // The page first: a server without it would only answer 404.
+  // The page first: without it the server would only answer 404.
   if (std::optional<Error> error = site_.page.load(options.page_folder)) return error;
   if (std::optional<Error> error = listen({address, options.port})) return error;
   site_.request_timeout = options.request_timeout;
   site_.access.loopback = address.is_loopback();
   site_.access.bind_address = url_name(address);
   site_.access.public_url = options.public_url;
-  // Cookies know no port: two tact-view on one PC would overwrite each other's.
+  // Browsers share cookies between ports: two tact-view would overwrite each other's.
   site_.access.cookie_name = fmt::format("tact_token_{}", port());
   Result<std::string> made = make_token();
   if (!made) return made.error();
@@ -86,20 +86,20 @@ std::optional<Error> ViewerServer::listen(const tcp::endpoint& endpoint) {
 
 void ViewerServer::start() {
   acceptor_.start([this](tcp::socket socket) {
-    // One of the uses is our own.
+    // One use is the server's own.
     if (slot_.use_count() > kMaxConnections) return turn_away(std::move(socket));
     std::make_shared<HttpSession>(boost::beast::tcp_stream(std::move(socket)), slot_, site_)
         ->start();
   });
 }
 
-/// Without waiting for its request: who is turned away holds nothing.
+/// Answers without reading the request, so that a refused client holds no resources.
 void ViewerServer::turn_away(tcp::socket socket) {
   static constexpr std::string_view kAnswer =
       "HTTP/1.1 503 Service Unavailable\r\nContent-Type: text/plain\r\nContent-Length: 59\r\n"
       "Connection: close\r\n\r\n503: too many pages and downloads are open; close some now\n";
   error_code ignored;
-  // It may not hold up the others.
+  // Non-blocking, so that it does not delay other connections.
   socket.non_blocking(true, ignored);
   socket.write_some(boost::asio::buffer(kAnswer), ignored);  // a new connection has room for it
   socket.shutdown(tcp::socket::shutdown_send, ignored);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// viewer_server.h - listens on one address and gives every browser a session.
+// viewer_server.h - listens on one address and starts a session for every browser.
 //
-// A random token guards what it shows (access.h). At most 64 connections at once: one more is
-// answered with 503, and told.
+// A random token protects the data (access.h). At most 64 connections at once: a further one is
+// answered with 503 and reported.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -20,23 +20,23 @@ namespace tact::host::server {
 
 struct ViewerOptions {
   std::string bind_address = "127.0.0.1";
-  std::uint16_t port = 8321;  // 0: any free one
+  std::uint16_t port = 8321;  // 0: any free port
   std::string page_folder;
-  std::string public_url{};  // where browsers find it, if not at bind_address and port
+  std::string public_url{};  // address for browsers, if not bind_address and port
   std::chrono::milliseconds request_timeout{10'000};  // for one request to arrive
 };
 
 class ViewerServer {
  public:
-  /// `warn` gets a message for the terminal.
+  /// `warn` prints a message on the terminal.
   using Warn = std::function<void(const std::string& message)>;
   ViewerServer(boost::asio::io_context& io, LiveView& view, MoveHand move_hand, Warn warn = {});
 
-  /// Loads the page and listens. Error: what is wrong and what to do.
+  /// Loads the page and listens. The error states the cause and the remedy.
   std::optional<model::Error> open(const ViewerOptions& options);
-  /// Of a replay: what pages ask of it. Before start.
+  /// Of a replay: takes the requests of pages. Call before start.
   void let_steer(Steer steer) { site_.steer = std::move(steer); }
-  /// Where another scene may be asked for, and what is offered, as JSON. Before start.
+  /// Enables requests for another scene; `scenes`: the offered ones, as JSON. Call before start.
   void let_choose(AskScene ask, std::string scenes) {
     site_.ask_scene = std::move(ask);
     site_.scenes = std::move(scenes);
@@ -46,7 +46,7 @@ class ViewerServer {
 
   std::uint16_t port() const { return acceptor_.port(); }
   const std::string& token() const { return site_.access.token; }
-  /// What a person opens in a browser; its fragment holds the token.
+  /// The link to open in a browser; its fragment holds the token.
   std::string url() const;
 
  private:

@@ -7,7 +7,7 @@
 namespace tact::host::tracking {
 namespace {
 
-// What noise and the calibration of two cameras may add to a motion.
+// Noise and camera calibration may add this to a motion.
 constexpr double kNoise_m = 0.02, kNoise_rad = 0.1;
 
 TrackingTrouble trouble_of(pose::PoseStatus status) {
@@ -27,7 +27,7 @@ TrackingTrouble trouble_of(pose::PoseStatus status) {
 }
 
 bool is_reachable(const Pose& from, const Pose& to, double since_s) {
-  const double period_s = std::min(since_s, kHold_s);  // a long gap does not make all places good
+  const double period_s = std::min(since_s, kHold_s);  // limits the reach after a long gap
   return (to.position_m - from.position_m).norm() <= kFastest_mps * period_s + kNoise_m &&
          to.rotation.angularDistance(from.rotation) <= kFastest_radps * period_s + kNoise_rad;
 }
@@ -49,8 +49,8 @@ void BodyTracker::begin_again() {
 }
 
 bool BodyTracker::is_frozen(Stream& stream, const Look& seen) const {
-  // A living camera has noise: equal bits for so long are a picture that stands. No points are no
-  // sign.
+  // A working camera has noise, so bit-identical points for this long mean a frozen image. Empty
+  // observations prove nothing.
   if (seen.value.empty() || seen.value != stream.value) {
     stream.value = seen.value;
     stream.same_since_s = seen.time_s;
@@ -60,12 +60,12 @@ bool BodyTracker::is_frozen(Stream& stream, const Look& seen) const {
 
 bool BodyTracker::admit(std::size_t camera, const Look& seen, double now_s) {
   Stream& stream = streams_[camera];
-  // Whatever it says: somebody is there, so the body is not "silent".
+  // The sender is alive, even if this observation is rejected: the body is not "silent".
   seen_now_s_ = now_s;
   has_seen_ = true;
   const bool goes_on = seen.time_s > stream.time_s && seen.sequence > stream.sequence;
   if (stream.started && !goes_on) {
-    // UDP may change the order; a step of more than a second is a new start of the sender.
+    // UDP may reorder; a step of more than a second is a restart of the sender.
     if (std::abs(seen.time_s - stream.time_s) <= kRestart_s) {
       body_.trouble = TrackingTrouble::kOutOfOrder;
       return false;
@@ -86,7 +86,7 @@ bool BodyTracker::is_believed(const Timed& next) {
   if (!anchored_ || is_reachable(good_.pose, next.pose, next.time_s - good_.time_s)) return true;
   const bool agrees =
       jump_poses_ > 0 && is_reachable(jump_.pose, next.pose, std::abs(next.time_s - jump_.time_s));
-  // Three that agree are a body that was carried while hidden; a mirrored pose comes alone.
+  // Three poses that agree: the body was moved while hidden. A mirrored pose occurs singly.
   jump_poses_ = agrees ? jump_poses_ + 1 : 1;
   jump_ = next;
   return jump_poses_ >= kJumpPoses;
@@ -102,13 +102,13 @@ bool BodyTracker::take(const pose::PoseEstimate& estimate, double time_s, double
     return false;
   }
   const bool breaks = !anchored_ || jump_poses_ >= kJumpPoses || time_s - good_.time_s > kLose_s;
-  // A filter that goes on would draw the body across the gap.
+  // Without a reset the filter would move the body across the gap.
   if (breaks) filter_.reset();
   jump_poses_ = 0;
   anchored_ = has_good_ = true;
   good_ = next;
   good_now_s_ = now_s;
-  // Kept for refine(): the same moment may not advance the filter twice.
+  // Saved for refine(), so that one moment does not advance the filter twice.
   before_ = filter_;
   show(estimate);
   return true;
@@ -133,7 +133,7 @@ void BodyTracker::show(const pose::PoseEstimate& estimate) {
 TrackedBody BodyTracker::at(double now_s) const {
   TrackedBody out = body_;
   if (!has_seen_ || now_s - seen_now_s_ > kHold_s) out.trouble = TrackingTrouble::kSilent;
-  // Never good: as old as the viewer's clock.
+  // Without any good pose the age is the time of the viewer's clock.
   out.age_s = has_good_ ? now_s - good_now_s_ : now_s;
   out.state = !has_good_ || out.age_s > kLose_s ? BodyState::kLost
               : out.age_s > kHold_s             ? BodyState::kHeld

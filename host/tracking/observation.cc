@@ -20,9 +20,9 @@ using model::Result;
 using nlohmann::json;
 
 constexpr std::size_t kLongestName = 32;
-// A microsecond still counts in a double, and no sum of two times overflows.
+// Up to this a double resolves a microsecond, and sums of two times do not overflow.
 constexpr double kLatest_s = 1e9;
-// Chosen: beyond any picture, and its square still is exact.
+// Chosen: larger than any image, and its square is exact.
 constexpr double kFarthest_px = 1e6;
 
 /// A finite number no larger than `most`.
@@ -50,7 +50,7 @@ std::optional<SeenMarker> read_marker(const json& point) {
   for (std::size_t axis = 0; axis < 2; ++axis) {
     if (!point[axis + 1].is_number()) return std::nullopt;
     const double value_px = point[axis + 1].get<double>();
-    // So written, NaN is refused.
+    // Written so that a NaN is refused.
     if (!(std::abs(value_px) <= kFarthest_px)) return std::nullopt;
     marker.pixel_px[static_cast<Eigen::Index>(axis)] = value_px;
   }
@@ -71,7 +71,7 @@ Result<std::vector<SeenMarker>> read_points(const json& object) {
           fmt::format("point {} is not [id, u, v]; id is a whole number >= 0, u and v are finite",
                       points.size())};
     }
-    // Two places of one marker: neither can be believed, and the pose would bend to both.
+    // A marker with two positions: neither is reliable, and both would distort the pose.
     const bool twice =
         std::ranges::any_of(points, [&](const SeenMarker& m) { return m.id == marker->id; });
     if (twice)
@@ -92,7 +92,7 @@ bool is_tracking_name(std::string_view name) {
 }
 
 Result<Observation> parse_observation(std::string_view bytes) {
-  // Before the parser, which works on whatever length it gets.
+  // Before parsing, because the parser accepts any length.
   if (bytes.size() > kMaxObservationBytes) {
     return Error{fmt::format("it has {} bytes; an observation has at most {}", bytes.size(),
                              kMaxObservationBytes)};

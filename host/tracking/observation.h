@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// observation.h - one look of one camera at one body, as it comes from a tracker: one JSON object
+// observation.h - one observation of one body by one camera, as a tracker sends it: one JSON object
 // per UDP datagram or line of a file.
 //
 //     {"time_s": 12.0333, "sequence": 361, "camera": "front", "body": "head",
@@ -9,7 +9,7 @@
 //     camera, body  names of the tracking description: 1 to 32 letters, digits, _ or -
 //     id        of a marker of the body      u, v  px, or tangents of a sweep tracker
 //
-// Any bytes give an observation or one message. Other keys are passed over.
+// Any bytes give an observation or one error message. Other keys are ignored.
 #pragma once
 
 #include <Eigen/Core>
@@ -36,12 +36,12 @@ struct Observation {
   double time_s = 0.0;
   std::uint64_t sequence = 0;
   std::string camera, body;
-  std::vector<SeenMarker> points;  // at most kMaxMarkers, ids differ, numbers finite
+  std::vector<SeenMarker> points;  // at most kMaxMarkers, with different ids and finite numbers
 
   friend bool operator==(const Observation&, const Observation&) = default;
 };
 
-/// Error: what is wrong with the bytes, and what they should be.
+/// The error states what is wrong with the bytes, and what is expected.
 model::Result<Observation> parse_observation(std::string_view bytes);
 
 /// A name of a camera or a body: 1 to 32 letters, digits, _ or -.

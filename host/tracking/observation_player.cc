@@ -19,8 +19,8 @@ namespace {
 using model::Error;
 using model::Result;
 
-// Chosen; a turn is one picture of 60 Hz, so the loop never stands.
-constexpr double kLongestGap_s = 60.0;  // a longer one is not waited out
+// Chosen; one turn is an image period at 60 Hz, so the thread is never blocked.
+constexpr double kLongestGap_s = 60.0;  // a longer one is shortened to this
 constexpr double kTurn_s = 1.0 / 60.0;  // from the last line to the first
 
 }  // namespace
@@ -35,7 +35,7 @@ Result<ObservationFile> read_observation_file(const std::string& path) {
   std::size_t number = 0;
   for (std::string line; std::getline(file, line);) {
     ++number;
-    // A file from Windows ends its lines with \r.
+    // A file from Windows has lines that end with \r.
     if (line.empty() || line == "\r") continue;
     Result<Observation> seen = parse_observation(line);
     if (seen)
@@ -59,8 +59,8 @@ std::optional<Error> check_loop(const std::string& path, const ObservationFile& 
     span.last_s = std::max(span.last_s, seen.time_s);
   }
   for (const auto& [who, span] : spans) {
-    // A shorter step back counts as disorder (body_tracker.h), and the second round would be
-    // refused.
+    // A shorter step back counts as out of order (body_tracker.h), so the repetition would be
+    // rejected.
     if (span.last_s - span.first_s > kRestart_s) continue;
     return Error{fmt::format(
         "{}: camera {} looks at body {} for {:.2f} s, and a file that begins again at its end "
@@ -89,7 +89,7 @@ void ObservationPlayer::play() {
   timer_.async_wait([this](boost::system::error_code wrong) {
     if (wrong) return;
     double wait_s = 0.0;
-    while (!(wait_s > 0.0)) {  // all that belongs to this moment; ends: kTurn_s > 0
+    while (!(wait_s > 0.0)) {  // all observations of this moment; ends because kTurn_s > 0
       take_(seen_[next_++]);
       if (next_ < seen_.size()) {
         wait_s = gap_s(next_);
@@ -99,7 +99,7 @@ void ObservationPlayer::play() {
       }
     }
     const std::chrono::duration<double> wait(wait_s);
-    // absolute: small delays do not add up
+    // Absolute times: small delays do not accumulate.
     timer_.expires_at(timer_.expiry() +
                       std::chrono::duration_cast<std::chrono::steady_clock::duration>(wait));
     play();

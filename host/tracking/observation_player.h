@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// observation_player.h - plays a file of observations, one per line, with the time that they carry.
+// observation_player.h - plays a file of observations, one per line, at the times in the file.
 //
-// The order of the file is kept: a line whose time goes back comes at once. Lines that are no
-// observation are left out; ObservationFile says how many and where the first is.
+// The order of the file is kept: a line with an earlier time follows at once. Lines that are no
+// observation are skipped; ObservationFile has their number and the first of them.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -26,14 +26,14 @@ struct ObservationFile {
 
 inline constexpr std::uintmax_t kMaxRecording_bytes = 64'000'000;  // hours of a few cameras
 
-/// Error: why the file gives no observation at all. Larger than kMaxRecording_bytes: refused.
+/// The error says why the file has no observation. Files above kMaxRecording_bytes are refused.
 model::Result<ObservationFile> read_observation_file(const std::string& path);
 
-/// Error: why the file cannot be played again and again. A camera looks at a body for so short a
-/// time that its second round is no new beginning (body_tracker.h) but out of order.
+/// The error says why the file cannot be repeated: a camera's observations of a body span too short
+/// a time, so that a repetition would count as out of order, not as a restart (body_tracker.h).
 std::optional<model::Error> check_loop(const std::string& path, const ObservationFile& file);
 
-/// From the start again at the end.
+/// Restarts at the end of the file.
 class ObservationPlayer {
  public:
   using Take = std::function<void(const Observation&)>;
@@ -46,7 +46,7 @@ class ObservationPlayer {
 
  private:
   void play();
-  /// From the observation before to this one, s of the tracker's clock, >= 0.
+  /// Time from the previous observation to this one, s of the tracker's clock, >= 0.
   double gap_s(std::size_t next) const;
 
   boost::asio::steady_timer timer_;

@@ -16,7 +16,7 @@ using model::Error;
 
 Pose inverse(const Pose& pose) { return pose::bind(pose, Pose{}); }
 
-/// The markers that both the body has and the camera sees.
+/// The markers of the body that the camera sees.
 pose::Markers markers_of(const MarkerBody& body, const Observation& seen) {
   pose::Markers out;
   for (const SeenMarker& point : seen.points) {
@@ -48,12 +48,12 @@ std::optional<OperatorTracker::Joint> OperatorTracker::join(std::size_t body, st
   for (std::size_t other = 0; other < setup_.cameras.size(); ++other) {
     const std::optional<Look>& beside = looks_[body][other];
     if (other == camera || !beside) continue;
-    // Both ways: which camera's datagram comes first is chance.
+    // Earlier or later, because datagrams of two cameras arrive in any order.
     if (!(std::abs(beside->time_s - look.time_s) <= kTogether_s)) continue;
     views.push_back(beside->view);
     const pose::PoseEstimate joint = pose::joint_pose(views);
     if (joint.status != pose::PoseStatus::kOk) {
-      views.pop_back();  // it contradicts the newest
+      views.pop_back();  // it contradicts the newest view
       continue;
     }
     out = {.estimate = joint, .time_s = std::max(out ? out->time_s : look.time_s, beside->time_s)};
@@ -70,13 +70,13 @@ void OperatorTracker::take(std::size_t body, std::size_t camera, Look look,
   BodyTracker& tracker = trackers_[body];
   // From the camera's axes to the tracker's.
   estimate.pose = pose::drive(look.view.eye, estimate.pose);
-  // A picture that repeats itself would hold a joint pose back where the body no longer is.
+  // A repeated image would hold a joint pose at the body's old position.
   const bool enters = !tracker.repeats(camera);
   const std::optional<Joint> joint = enters ? join(body, camera, look) : std::nullopt;
   bool good = tracker.take(registered(joint ? joint->estimate : estimate), look.time_s, now_s);
-  // Not newer than the good pose, but of its moment: better, without advancing the filter.
+  // Not newer than the good pose, but of its moment: refines it without advancing the filter.
   if (!good && joint) good = tracker.refine(registered(joint->estimate), joint->time_s);
-  // What was refused must not be joined with a later look of another camera.
+  // A rejected observation must not be joined with a later one of another camera.
   looks_[body][camera].reset();
   if (good && enters) looks_[body][camera] = std::move(look);
 }
@@ -90,7 +90,7 @@ std::optional<Error> OperatorTracker::take(const Observation& seen, double now_s
     return Error{fmt::format("body {} is not in {}; add it there", seen.body, setup_.path)};
   const auto camera_at = static_cast<std::size_t>(camera - setup_.cameras.begin());
   const bool is_base = !body->role;
-  if (is_base && camera->pose) return std::nullopt;  // its place is known
+  if (is_base && camera->pose) return std::nullopt;  // the description has the camera's pose
   const auto body_at = static_cast<std::size_t>(body - setup_.bodies.begin());
   BodyTracker& tracker = is_base ? places_[camera_at] : trackers_[body_at];
   if (!tracker.admit(is_base ? 0 : camera_at, look_of(seen), now_s)) return std::nullopt;
@@ -99,7 +99,7 @@ std::optional<Error> OperatorTracker::take(const Observation& seen, double now_s
       pose::robust_pose(camera->lens, markers.points_m, markers.pixels_px, camera->outlier_px);
   const std::optional<Pose> place = camera_pose(camera_at);
   if (is_base) {
-    // The base is the tracker's frame: (camera <- base) turned round is the camera's place.
+    // The base is the tracker's frame, so the inverse of (camera <- base) is the camera's pose.
     estimate.pose = inverse(estimate.pose);
   } else if (estimate.status == pose::PoseStatus::kOk && place) {
     Look look{.time_s = seen.time_s,
@@ -109,7 +109,7 @@ std::optional<Error> OperatorTracker::take(const Observation& seen, double now_s
     take(body_at, camera_at, std::move(look), estimate, now_s);
     return std::nullopt;
   } else if (estimate.status == pose::PoseStatus::kOk) {
-    estimate.status = pose::PoseStatus::kNoPose;  // the base was not seen yet
+    estimate.status = pose::PoseStatus::kNoPose;  // the base has not been seen yet
   }
   tracker.take(estimate, seen.time_s, now_s);
   return std::nullopt;

@@ -41,7 +41,7 @@ std::optional<Error> OperatorTracking::open(const std::string& path, Registered 
                     path));
   }
   if (std::optional<Error> error =
-          // 0 is no port of a tracker here: tracking_setup.cc has asked for exactly one input.
+          // 0 means a recording: tracking_setup.cc has checked that there is exactly one input.
       setup->udp_port != 0 ? listen(setup->udp_port) : load(setup->recording)) {
     return error;
   }
@@ -52,7 +52,7 @@ std::optional<Error> OperatorTracking::open(const std::string& path, Registered 
 std::optional<Error> OperatorTracking::listen(std::uint16_t port) {
   error_code wrong;
   socket_.open(udp::v4(), wrong);
-  // This PC alone: datagrams have no sender that could be believed.
+  // Loopback only, because the sender of a datagram cannot be verified.
   if (!wrong) socket_.bind({boost::asio::ip::address_v4::loopback(), port}, wrong);
   if (wrong) {
     return Error{
@@ -93,7 +93,7 @@ void OperatorTracking::receive_next() {
       boost::asio::buffer(datagram_), sender_, [this](error_code wrong, std::size_t size) {
         if (wrong == boost::asio::error::operation_aborted) return;
         failures_ = wrong ? failures_ + 1 : 0;
-        if (failures_ == kMaxFailures) {  // else this thread would do nothing else
+        if (failures_ == kMaxFailures) {  // otherwise this thread would be busy with the errors
           say(fmt::format("tracking: its port fails ({}); it ends here", wrong.message()));
           return;
         }
@@ -110,7 +110,7 @@ void OperatorTracking::take(const Observation& seen) {
 }
 
 void OperatorTracking::refuse(const Error& error) {
-  // A sender with a fault has it in each datagram.
+  // A faulty sender repeats its fault in each datagram.
   if (refused_by_content_++ == 0) {
     say(fmt::format("tracking: an observation is left out: {}; others like it are only counted",
                     error.message));

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// operator_tracking.h - the tracker's input in the viewer: datagrams or a recorded file in, the
-// operator's bodies out.
+// operator_tracking.h - the tracker's input in the viewer: reads datagrams or a recorded file and
+// gives the operator's bodies.
 //
 //     UDP on 127.0.0.1, or a file in real time -> observation.h -> operator_tracker.h -> now()
 //
-// One thread, the viewer's: a pose takes about 50 us, so that a thread and a slot of its own would
-// buy nothing. What cannot be used is counted, and the first of it told. No force depends on it.
+// Runs in the viewer's one thread: a pose takes about 50 us, so a thread of its own would gain
+// nothing. Invalid input is counted, and its first case reported. No force depends on it.
 #pragma once
 
 #include <array>
@@ -28,21 +28,21 @@ class OperatorTracking {
  public:
   using Say = std::function<void(const std::string& message)>;
 
-  /// `say` gets what a person should know, one line each; may be empty.
+  /// `say` receives messages for a person, one line each; may be empty.
   OperatorTracking(boost::asio::io_context& io, Say say);
 
-  /// kNo: poses stay in the tracker's frame, for who wants to find the registration.
+  /// kNo: poses stay in the tracker's frame, as --register needs them.
   enum class Registered : std::uint8_t { kNo, kYes };
 
-  /// Reads a tracking description (SCENE.tracking.toml, README.md) and opens its input. Error: what
-  /// is wrong and what to do.
+  /// Reads a tracking description (SCENE.tracking.toml, README.md) and opens its input. The error
+  /// states the cause and the remedy.
   std::optional<model::Error> open(const std::string& path,
                                    Registered registered = Registered::kYes);
-  /// From here on observations are taken, by the io_context's thread.
+  /// Starts to take observations, in the io_context's thread.
   void start();
   void stop();
 
-  /// The bodies as they are now: states and ages follow the clock. Same thread as the io_context.
+  /// The bodies now: states and ages follow the clock. Call in the io_context's thread.
   const TrackedOperator& now();
 
   const TrackingSetup& setup() const { return tracker_->setup(); }
@@ -61,14 +61,14 @@ class OperatorTracking {
   boost::asio::io_context& io_;
   boost::asio::ip::udp::socket socket_;
   boost::asio::ip::udp::endpoint sender_;
-  std::array<char, kMaxObservationBytes + 1> datagram_{};  // a longer one is too long
+  std::array<char, kMaxObservationBytes + 1> datagram_{};  // one byte more shows an oversized one
   std::optional<OperatorTracker> tracker_;
   std::unique_ptr<ObservationPlayer> player_;
   TrackedOperator now_;
   Say say_;
   std::chrono::steady_clock::time_point began_;
   std::uint64_t refused_ = 0, refused_by_content_ = 0;
-  int failures_ = 0;  // of the socket, one after the other
+  int failures_ = 0;  // of the socket, in a row
   std::uint16_t port_ = 0;
 };
 

@@ -24,7 +24,7 @@ using model::Error;
 using model::Result;
 using Points = Eigen::Matrix<double, 3, Eigen::Dynamic>;  // 3 x n
 
-/// Spread across the line that fits best, m.
+/// Spread across the best-fitting line, m.
 double spread_m(const Points& points) {
   const Points centred = points.colwise() - points.rowwise().mean();
   const Matrix3d covariance = centred * centred.transpose() / static_cast<double>(points.cols());
@@ -51,7 +51,7 @@ Result<Registration> fit_registration(std::span<const PosePair> poses) {
   if (!(spread_m(tracked) >= kMinSpread_m && spread_m(device) >= kMinSpread_m))
     return Error{
         "the poses lie on a line or in one place; move the tool in two directions or more"};
-  // Without scale: both sides measure metres, and a scale would hide a wrong marker.
+  // Without scale: both sides are in metres, and a scale would hide a wrong marker.
   const Eigen::Matrix4d fit = Eigen::umeyama(tracked, device, /*with_scaling=*/false);
   Registration out;
   out.transform.rotation =
@@ -78,14 +78,14 @@ void PoseCollector::begin(double now_s, const Vector3d& device_m) {
 
 bool PoseCollector::add(double now_s, const Vector3d& device_m, double speed_mps,
                         const std::optional<Vector3d>& tracked_m) {
-  // Telemetry is faster than the tracker: the same numbers are one look.
+  // Telemetry is faster than the tracker: equal numbers are one observation.
   const bool is_new_look = tracked_m != last_look_m_;
   last_look_m_ = tracked_m;
   if (!(speed_mps < kStill_mps) || !tracked_m) {
     is_still_ = false;
     return false;
   }
-  // A slow creep stays below kStill_mps: its way tells.
+  // A slow drift stays below kStill_mps, so the distance is checked, too.
   if (!is_still_ || !((device_m - began_at_m_).norm() <= kStray_m)) begin(now_s, device_m);
   if (now_s - still_since_s_ < kSettle_s || !is_new_look) return false;
   sum_.tracked_m += *tracked_m;
@@ -94,7 +94,7 @@ bool PoseCollector::add(double now_s, const Vector3d& device_m, double speed_mps
   if (now_s - still_since_s_ < kSettle_s + kAverage_s || count_ < kLooks) return false;
   const double n = static_cast<double>(count_);
   const PosePair mean{.tracked_m = sum_.tracked_m / n, .device_m = sum_.device_m / n};
-  // Many poses of one place would outweigh the others in the fit.
+  // Many poses of one place would dominate the fit.
   const bool is_new = std::ranges::all_of(poses_, [&](const PosePair& pose) {
     return (pose.device_m - mean.device_m).norm() >= kApart_m;
   });
@@ -116,7 +116,7 @@ std::optional<Error> write_registration(const std::string& path, const Registrat
       fmt::format("{:.12f}", q.w()), fmt::format("{:.12f}", q.x()), fmt::format("{:.12f}", q.y()),
       fmt::format("{:.12f}", q.z()));
   std::error_code failed;
-  // The one before is kept: a bad registration is noticed only when the figure stands wrong.
+  // Keeps the previous file: a bad registration is noticed only later, by the figure's position.
   if (fs::exists(path, failed)) {
     const auto before = model::io::read_file(path, "check who may read it");
     if (!before) return before.error();

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// tracked_operator.h - what the tracker knows of the operator now: one pose per body, in the
-// device's frame W (+x towards the operator, +y to the right, +z up).
+// tracked_operator.h - the tracked operator: one pose per body, in the device's frame W (+x towards
+// the operator, +y to the right, +z up).
 //
 //     kTracked   a good pose, newer than kHold_s
-//     kHeld      none since kHold_s: the last good pose stands
-//     kLost      none since kLose_s, or never one: the pose means nothing any more
+//     kHeld      none for kHold_s: the last good pose is kept
+//     kLost      none for kLose_s, or never one: the pose is meaningless
 //
-// For display. The viewer's one thread writes and reads it; no force depends on it.
+// For display. Only the viewer's thread writes and reads it; no force depends on it.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ namespace tact::host::tracking {
 
 using pose::Pose;
 
-/// What a marker body is fixed to.
+/// The part that carries the marker body.
 enum class BodyRole : std::uint8_t {
   kHead,
   kShoulder,
@@ -40,14 +40,14 @@ enum class BodyState : std::uint8_t { kAbsent, kTracked, kHeld, kLost };
 /// Why the newest observation of a body gave no pose.
 enum class TrackingTrouble : std::uint8_t {
   kNone,
-  kSilent,        // nothing came
+  kSilent,        // no observation
   kTooFewPoints,  // PoseStatus, see epnp.h
   kDegenerate,
   kInvalid,
   kNoPose,
   kJump,        // farther than a body moves in that time
-  kFrozen,      // the same numbers again and again: the tracker stands
-  kOutOfOrder,  // older than the one before
+  kFrozen,      // bit-identical numbers: the tracker has stopped
+  kOutOfOrder,  // older than the previous observation
 };
 
 inline constexpr double kHold_s = 0.1;

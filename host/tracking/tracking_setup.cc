@@ -24,20 +24,20 @@ using model::reader::Choice;
 using model::reader::Keys;
 using model::reader::Need;
 
-// Chosen bounds: beyond any camera, any operator, any marker body; a wrong unit shows.
+// Chosen bounds, beyond any camera, operator or marker body, to detect a wrong unit.
 constexpr std::uintmax_t kMaxFile_bytes = 1'000'000;
 constexpr double kFarthest_m = 100.0;
 constexpr double kMax_px = 1e6;
 constexpr double kFarthestShoulder_m = 3.0;
 constexpr double kFarthestMarker_m = 10.0;
 constexpr double kOutlierTangent = 0.0025;  // as 3 px with f = 1200 px
-// EPnP's least (epnp.h).
+// The minimum of EPnP (epnp.h).
 constexpr std::size_t kMinMarkers = 4;
 constexpr std::size_t kMaxSections = 32;
 constexpr const char* kSuffix = ".tracking.toml";
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-constexpr auto kBase = static_cast<std::size_t>(kBodyRoles);  // behind the roles
+constexpr auto kBase = static_cast<std::size_t>(kBodyRoles);  // the index after the roles
 constexpr std::array<Choice, kBodyRoles + 1> kRoles{{{"head", ""},
                                                      {"shoulder", ""},
                                                      {"waist", ""},
@@ -52,7 +52,7 @@ constexpr std::array<Choice, kBodyRoles + 1> kRoles{{{"head", ""},
                                                      {"elbow", ""},
                                                      {"base", ""}}};
 
-/// As TOML has it; a camera, a body or a section without a pose has none.
+/// As in TOML; kNone in a camera, body or section without a pose.
 struct GivenPose {
   model::Vec3 position_m{kNone, kNone, kNone};
   std::array<double, 4> wxyz{kNone, kNone, kNone, kNone};
@@ -98,7 +98,7 @@ void read_input(Keys& k, TrackingSetup& out) {
   if ((port == 0) == recording.empty())
     k.refuse({"udp_port"}, "[input] takes udp_port or recording, one of them; write one");
   out.udp_port = static_cast<std::uint16_t>(port);
-  // Beside the description, wherever the program was started.
+  // Relative to the description, not to the working directory.
   if (!recording.empty()) out.recording = (fs::path(out.path).parent_path() / recording).string();
 }
 
@@ -126,7 +126,7 @@ void read_lens(Keys& k, TrackingCamera& camera) {
            Need::kOptional);
 }
 
-/// After the bodies: a camera without a pose needs the base.
+/// Read after the bodies, because a camera without a pose needs the base.
 void read_camera(Keys& k, TrackingSetup& out) {
   TrackingCamera camera;
   read_name(k, camera.name);
@@ -147,7 +147,7 @@ void read_camera(Keys& k, TrackingSetup& out) {
 void read_role(Keys& k, const TrackingSetup& out, MarkerBody& body) {
   std::size_t role = kBase;
   k.choice("role", kRoles, "what of the operator carries it", role);
-  // The base has no role of the operator: it is the tracker's own frame.
+  // The base has no role: its axes are the tracker's frame.
   if (role != kBase) body.role = static_cast<BodyRole>(role);
   for (const MarkerBody& other : out.bodies) {
     if (other.name == body.name) k.refuse({"name"}, "two bodies have this name; rename one");
@@ -245,7 +245,7 @@ Result<TrackingSetup> load_tracking_setup(const std::string& path) {
     read_registration(k, Need::kOptional, path, out);
   });
   if (error) return *error;
-  // The description's own section goes first; a file beside it is not even opened then.
+  // The description's own section has precedence; the separate file is then not even opened.
   const std::string beside = registration_path(path);
   std::error_code unreadable;
   if (!out.registered_by.empty() || !fs::exists(beside, unreadable)) return out;

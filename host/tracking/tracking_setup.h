@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tracking_setup.h - which cameras look, which marker bodies they see and where the tracker stands:
+// tracking_setup.h - the tracker's description: its cameras, marker bodies and pose.
 // SCENE.tracking.toml, described in README.md.
 //
 // Set-up code only.
@@ -20,8 +20,8 @@ namespace tact::host::tracking {
 struct TrackingCamera {
   std::string name;
   pose::Camera lens{};
-  double outlier_px = 3.0;   // a marker farther than this from its computed pixel is no good
-  std::optional<Pose> pose;  // camera's axes to the tracker's; none: found from the base
+  double outlier_px = 3.0;   // a marker farther than this from its computed pixel is an outlier
+  std::optional<Pose> pose;  // camera's axes to the tracker's; none: computed from the base
 };
 
 struct BodyMarker {
@@ -31,9 +31,9 @@ struct BodyMarker {
 
 struct MarkerBody {
   std::string name;
-  std::optional<BodyRole> role;  // none: the base, markers that stand in the tracker's frame
+  std::optional<BodyRole> role;  // none: the base, whose axes are the tracker's frame
   std::vector<BodyMarker> markers;
-  std::optional<Eigen::Vector3d> tip_m;  // of a tool: the point whose place the device knows
+  std::optional<Eigen::Vector3d> tip_m;  // of a tool: the point whose position the device measures
 };
 
 struct TrackingSetup {
@@ -44,18 +44,18 @@ struct TrackingSetup {
   std::vector<MarkerBody> bodies;
   std::optional<Eigen::Vector3d> shoulder_m;  // of the operator, right, device's frame
   Pose registration{};                        // tracker's frame to the device's
-  std::string registered_by;  // the file that says so; empty: none, the identity is taken
+  std::string registered_by;  // the file with the registration; empty: none, it is the identity
 
   const MarkerBody* body_of(BodyRole role) const;
 };
 
-/// Error: one line with what is wrong, where (file:line) and the remedy.
+/// The error is one line with the cause, its position (file:line) and the remedy.
 model::Result<TrackingSetup> load_tracking_setup(const std::string& path);
 
-/// SCENE.registration.toml beside SCENE.tracking.toml.
+/// SCENE.registration.toml in the folder of SCENE.tracking.toml.
 std::string registration_path(const std::string& tracking_path);
 
-/// The role as the description writes it, such as "left_leg".
+/// The role as in the description, such as "left_leg".
 const char* name_of(BodyRole role);
 
 }  // namespace tact::host::tracking
