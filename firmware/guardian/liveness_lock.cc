@@ -27,7 +27,7 @@ model::Error refused(int fd, int error) {
 }  // namespace
 
 model::Result<LivenessLock> LivenessLock::make() {
-  const int fd = memfd_create("tact-lifeline", MFD_CLOEXEC);
+  const int fd = memfd_create("tact-liveness", MFD_CLOEXEC);
   if (fd < 0 || ftruncate(fd, sizeof(pthread_mutex_t)) != 0) return refused(fd, errno);
   pthread_mutex_t* mutex = map(fd);
   if (mutex == nullptr) return refused(fd, errno);

@@ -23,7 +23,7 @@ struct Requests {
   std::atomic<bool> arm_at_start{false};  // once, as soon as it is ready: the loop's own request
   std::atomic<bool> stop{false};          // force to zero, then leave
   std::atomic<model::Fault> fault{model::Fault::kNone};  // of the watch; the first stays
-  std::atomic<std::uint32_t> refused{0};                 // requests to arm that armed nothing
+  std::atomic<std::uint32_t> refused{0};  // requests to arm or reset that were refused
 
   /// Takes the place of one that is not answered yet. Returns its number; one thread may ask.
   std::uint32_t ask(Request request) {

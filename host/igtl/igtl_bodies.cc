@@ -10,8 +10,8 @@ namespace tact::host::igtl {
 namespace {
 
 using tracking::BodyRole;
-using tracking::Look;
 using tracking::TrackedOperator;
+using tracking::TrackedSample;
 
 /// The part before a "To" that a capital letter follows.
 std::string_view own_name(std::string_view device) {
@@ -31,7 +31,7 @@ std::string letters_of(std::string_view name) {
   return out;
 }
 
-Look look_of(const pose::Pose& pose, double time_s, std::uint64_t sequence) {
+TrackedSample sample_of(const pose::Pose& pose, double time_s, std::uint64_t sequence) {
   const Eigen::Vector3d& p = pose.position_m;
   const Eigen::Quaterniond& q = pose.rotation;
   return {.time_s = time_s,
@@ -59,7 +59,7 @@ void IgtlBodies::take(BodyRole role, const pose::Pose& pose, double sent_s, doub
   body->sent_s = sent_s;
   body->position_m = pose.position_m;
   const double time_s = body->has_clock ? sent_s : now_s;
-  if (!body->tracker.admit(0, look_of(pose, time_s, ++body->looks), now_s)) return;
+  if (!body->tracker.admit(0, sample_of(pose, time_s, ++body->samples), now_s)) return;
   body->tracker.take({.status = pose::PoseStatus::kOk, .pose = pose}, time_s, now_s);
 }
 

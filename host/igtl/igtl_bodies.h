@@ -30,7 +30,7 @@ class IgtlBodies {
  private:
   struct Body {
     tracking::BodyTracker tracker{1};
-    std::uint64_t looks = 0;
+    std::uint64_t samples = 0;
     double sent_s = 0.0;  // of the last pose
     Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
     bool has_clock = true;

@@ -34,8 +34,8 @@ bool is_reachable(const Pose& from, const Pose& to, double since_s) {
 
 }  // namespace
 
-Look look_of(const Observation& seen) {
-  Look out{.time_s = seen.time_s, .sequence = seen.sequence, .value = {}};
+TrackedSample sample_of(const Observation& seen) {
+  TrackedSample out{.time_s = seen.time_s, .sequence = seen.sequence, .value = {}};
   for (const SeenMarker& point : seen.points)
     out.value.insert(out.value.end(),
                      {static_cast<double>(point.id), point.pixel_px.x(), point.pixel_px.y()});
@@ -48,7 +48,7 @@ void BodyTracker::begin_again() {
   jump_poses_ = 0;
 }
 
-bool BodyTracker::is_frozen(Stream& stream, const Look& seen) const {
+bool BodyTracker::is_frozen(Stream& stream, const TrackedSample& seen) const {
   // A working camera has noise, so bit-identical points for this long mean a frozen image. Empty
   // observations prove nothing.
   if (seen.value.empty() || seen.value != stream.value) {
@@ -58,7 +58,7 @@ bool BodyTracker::is_frozen(Stream& stream, const Look& seen) const {
   return seen.time_s - stream.same_since_s >= kFrozen_s;
 }
 
-bool BodyTracker::admit(std::size_t camera, const Look& seen, double now_s) {
+bool BodyTracker::admit(std::size_t camera, const TrackedSample& seen, double now_s) {
   Stream& stream = streams_[camera];
   // The sender is alive, even if this observation is rejected: the body is not "silent".
   seen_now_s_ = now_s;

@@ -34,12 +34,12 @@ inline constexpr int kJumpPoses = 3;
 
 /// One observation of a body: points from a camera, or a pose from a tracker. The numbers only
 /// serve to detect repetition.
-struct Look {
+struct TrackedSample {
   double time_s = 0.0;
   std::uint64_t sequence = 0;
   std::vector<double> value;
 };
-Look look_of(const Observation& seen);
+TrackedSample sample_of(const Observation& seen);
 
 class BodyTracker {
  public:
@@ -47,7 +47,7 @@ class BodyTracker {
 
   /// True if a pose from this observation is needed: its time increases, it is not frozen, and not
   /// more than kTogether_s older than the good one.
-  bool admit(std::size_t camera, const Look& seen, double now_s);
+  bool admit(std::size_t camera, const TrackedSample& seen, double now_s);
   /// True if the last observation of this camera is bit-identical to the one before.
   bool repeats(std::size_t camera) const {
     return streams_[camera].same_since_s < streams_[camera].time_s;
@@ -76,7 +76,7 @@ class BodyTracker {
     double time_s = 0.0;
   };
   void begin_again();
-  bool is_frozen(Stream& stream, const Look& seen) const;
+  bool is_frozen(Stream& stream, const TrackedSample& seen) const;
   /// False until a jump is accepted.
   bool is_believed(const Timed& next);
   void show(const pose::PoseEstimate& estimate);

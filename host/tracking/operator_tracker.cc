@@ -33,7 +33,7 @@ pose::Markers markers_of(const MarkerBody& body, const Observation& seen) {
 OperatorTracker::OperatorTracker(TrackingSetup setup)
     : setup_(std::move(setup)),
       trackers_(setup_.bodies.size(), BodyTracker(setup_.cameras.size())),
-      looks_(setup_.bodies.size(), std::vector<std::optional<Look>>(setup_.cameras.size())),
+      views_(setup_.bodies.size(), std::vector<std::optional<CameraView>>(setup_.cameras.size())),
       places_(setup_.cameras.size(), BodyTracker(1)) {}
 
 std::optional<Pose> OperatorTracker::camera_pose(std::size_t camera) const {
@@ -42,26 +42,27 @@ std::optional<Pose> OperatorTracker::camera_pose(std::size_t camera) const {
 }
 
 std::optional<OperatorTracker::Joint> OperatorTracker::join(std::size_t body, std::size_t camera,
-                                                            const Look& look) const {
-  std::vector<pose::BodyView> views{look.view};
+                                                            const CameraView& view) const {
+  std::vector<pose::BodyView> views{view.body};
   std::optional<Joint> out;
   for (std::size_t other = 0; other < setup_.cameras.size(); ++other) {
-    const std::optional<Look>& beside = looks_[body][other];
-    if (other == camera || !beside) continue;
+    const std::optional<CameraView>& other_view = views_[body][other];
+    if (other == camera || !other_view) continue;
     // Earlier or later, because datagrams of two cameras arrive in any order.
-    if (!(std::abs(beside->time_s - look.time_s) <= kTogether_s)) continue;
-    views.push_back(beside->view);
+    if (!(std::abs(other_view->time_s - view.time_s) <= kTogether_s)) continue;
+    views.push_back(other_view->body);
     const pose::PoseEstimate joint = pose::joint_pose(views);
     if (joint.status != pose::PoseStatus::kOk) {
       views.pop_back();  // it contradicts the newest view
       continue;
     }
-    out = {.estimate = joint, .time_s = std::max(out ? out->time_s : look.time_s, beside->time_s)};
+    out = {.estimate = joint,
+           .time_s = std::max(out ? out->time_s : view.time_s, other_view->time_s)};
   }
   return out;
 }
 
-void OperatorTracker::take(std::size_t body, std::size_t camera, Look look,
+void OperatorTracker::take(std::size_t body, std::size_t camera, CameraView view,
                            pose::PoseEstimate estimate, double now_s) {
   const auto registered = [&](pose::PoseEstimate e) {
     e.pose = pose::drive(setup_.registration, e.pose);
@@ -69,16 +70,16 @@ void OperatorTracker::take(std::size_t body, std::size_t camera, Look look,
   };
   BodyTracker& tracker = trackers_[body];
   // From the camera's axes to the tracker's.
-  estimate.pose = pose::drive(look.view.eye, estimate.pose);
+  estimate.pose = pose::drive(view.body.eye, estimate.pose);
   // A repeated image would hold a joint pose at the body's old position.
   const bool enters = !tracker.repeats(camera);
-  const std::optional<Joint> joint = enters ? join(body, camera, look) : std::nullopt;
-  bool good = tracker.take(registered(joint ? joint->estimate : estimate), look.time_s, now_s);
+  const std::optional<Joint> joint = enters ? join(body, camera, view) : std::nullopt;
+  bool good = tracker.take(registered(joint ? joint->estimate : estimate), view.time_s, now_s);
   // Not newer than the good pose, but of its moment: refines it without advancing the filter.
   if (!good && joint) good = tracker.refine(registered(joint->estimate), joint->time_s);
   // A rejected observation must not be joined with a later one of another camera.
-  looks_[body][camera].reset();
-  if (good && enters) looks_[body][camera] = std::move(look);
+  views_[body][camera].reset();
+  if (good && enters) views_[body][camera] = std::move(view);
 }
 
 std::optional<Error> OperatorTracker::take(const Observation& seen, double now_s) {
@@ -93,7 +94,7 @@ std::optional<Error> OperatorTracker::take(const Observation& seen, double now_s
   if (is_base && camera->pose) return std::nullopt;  // the description has the camera's pose
   const auto body_at = static_cast<std::size_t>(body - setup_.bodies.begin());
   BodyTracker& tracker = is_base ? places_[camera_at] : trackers_[body_at];
-  if (!tracker.admit(is_base ? 0 : camera_at, look_of(seen), now_s)) return std::nullopt;
+  if (!tracker.admit(is_base ? 0 : camera_at, sample_of(seen), now_s)) return std::nullopt;
   const pose::Markers markers = markers_of(*body, seen);
   pose::PoseEstimate estimate =
       pose::robust_pose(camera->lens, markers.points_m, markers.pixels_px, camera->outlier_px);
@@ -102,11 +103,11 @@ std::optional<Error> OperatorTracker::take(const Observation& seen, double now_s
     // The base is the tracker's frame, so the inverse of (camera <- base) is the camera's pose.
     estimate.pose = inverse(estimate.pose);
   } else if (estimate.status == pose::PoseStatus::kOk && place) {
-    Look look{.time_s = seen.time_s,
-              .view = pose::body_view(camera->lens, markers.points_m, markers.pixels_px,
-                                      camera->outlier_px, estimate.pose)};
-    look.view.eye = *place;
-    take(body_at, camera_at, std::move(look), estimate, now_s);
+    CameraView view{.time_s = seen.time_s,
+                    .body = pose::body_view(camera->lens, markers.points_m, markers.pixels_px,
+                                            camera->outlier_px, estimate.pose)};
+    view.body.eye = *place;
+    take(body_at, camera_at, std::move(view), estimate, now_s);
     return std::nullopt;
   } else if (estimate.status == pose::PoseStatus::kOk) {
     estimate.status = pose::PoseStatus::kNoPose;  // the base has not been seen yet

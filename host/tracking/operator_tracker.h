@@ -37,9 +37,9 @@ class OperatorTracker {
   const TrackingSetup& setup() const { return setup_; }
 
  private:
-  struct Look {
+  struct CameraView {
     double time_s = 0.0;
-    pose::BodyView view;
+    pose::BodyView body;
   };
   struct Joint {
     pose::PoseEstimate estimate;  // tracker <- body
@@ -47,14 +47,15 @@ class OperatorTracker {
   };
   std::optional<Pose> camera_pose(std::size_t camera) const;
   /// Solves together with the observations of the other cameras; none if there are none.
-  std::optional<Joint> join(std::size_t body, std::size_t camera, const Look& look) const;
-  void take(std::size_t body, std::size_t camera, Look look, pose::PoseEstimate estimate,
+  std::optional<Joint> join(std::size_t body, std::size_t camera, const CameraView& view) const;
+  void take(std::size_t body, std::size_t camera, CameraView view, pose::PoseEstimate estimate,
             double now_s);
 
   TrackingSetup setup_;
-  std::vector<BodyTracker> trackers_;                    // by body
-  std::vector<std::vector<std::optional<Look>>> looks_;  // by body and camera: the last good one
-  std::vector<BodyTracker> places_;                      // poses of the cameras, from the base
+  std::vector<BodyTracker> trackers_;  // by body
+  std::vector<std::vector<std::optional<CameraView>>>
+      views_;                        // by body and camera: the last good one
+  std::vector<BodyTracker> places_;  // poses of the cameras, from the base
 };
 
 }  // namespace tact::host::tracking

@@ -79,15 +79,15 @@ void PoseCollector::begin(double now_s, const Vector3d& device_m) {
 bool PoseCollector::add(double now_s, const Vector3d& device_m, double speed_mps,
                         const std::optional<Vector3d>& tracked_m) {
   // Telemetry is faster than the tracker: equal numbers are one observation.
-  const bool is_new_look = tracked_m != last_look_m_;
-  last_look_m_ = tracked_m;
+  const bool is_new_sample = tracked_m != last_tracked_m_;
+  last_tracked_m_ = tracked_m;
   if (!(speed_mps < kStill_mps) || !tracked_m) {
     is_still_ = false;
     return false;
   }
   // A slow drift stays below kStill_mps, so the distance is checked, too.
   if (!is_still_ || !((device_m - began_at_m_).norm() <= kStray_m)) begin(now_s, device_m);
-  if (now_s - still_since_s_ < kSettle_s || !is_new_look) return false;
+  if (now_s - still_since_s_ < kSettle_s || !is_new_sample) return false;
   sum_.tracked_m += *tracked_m;
   sum_.device_m += device_m;
   ++count_;

@@ -71,7 +71,7 @@ class PoseCollector {
   double still_since_s_ = 0.0;
   Eigen::Vector3d began_at_m_ = Eigen::Vector3d::Zero();  // device's position at the start of rest
   bool is_still_ = false;
-  std::optional<Eigen::Vector3d> last_look_m_;
+  std::optional<Eigen::Vector3d> last_tracked_m_;
 };
 
 /// Writes `path` as SCENE.registration.toml, completely or not at all; an existing file becomes

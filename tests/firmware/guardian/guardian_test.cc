@@ -168,7 +168,7 @@ TEST(Guardian, ItsCallsAreFilteredAndItsFilesAreFew) {
   const std::string proc = "/proc/" + std::to_string(guardian->process());
   EXPECT_EQ(tests::run_command("grep -c 'Seccomp:.2' " + proc + "/status").output, "1\n");
   EXPECT_EQ(tests::run_command("ls " + proc + "/fd | wc -l").output, "5\n")
-      << "socket, /dev/null, standard error, lifeline, device";
+      << "socket, /dev/null, standard error, liveness lock, device";
 }
 
 TEST(Guardian, AMissingProgramIsRefusedWithTheRemedy) {

@@ -21,7 +21,7 @@ class Body : public ::testing::Test {
     Observation seen{
         .time_s = time_s, .sequence = sequence, .camera = "c", .body = "b", .points = {}};
     seen.points.push_back({.id = 0, .pixel_px = {moving ? 1e-3 * ++count : 0.0, 0.0}});
-    const bool wanted = tracker.admit(camera, look_of(seen), now_s);
+    const bool wanted = tracker.admit(camera, sample_of(seen), now_s);
     if (wanted) tracker.take({.status = status, .pose = pose, .rms_px = 0.4}, time_s, now_s);
     return wanted;
   }
