@@ -62,7 +62,7 @@ struct DeviceInfo {
   DeviceGrip grip;
   bool turns_with_base = false;  // it measures the handle's orientation relative to its base
   double motion_scale = 1.0;     // displacement of the tool over that of the handle (mounting.h)
-  /// Dynamics that bound the stiffness it can render; empty: the device renders no force.
+  /// Dynamics that bound the stiffness it can render; empty: the device is refused.
   std::optional<model::DeviceAtTool> at_tool{};
   std::string damping_key{};  // scene key of the damping; empty: the scene has none
   std::string caution{};      // warning: how the device's settings change a force; may be empty
