@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // device.h - one interface for every haptic device, simulated or real.
 //
-// Only frame W leaves a device (types.h). What can be found out before the loop is found out while
-// opening, with a message; drives are powered by the loop alone, so that none is ever without
-// commands (one that must be on to tell where it is gets zero torque all the while). A fault of the
-// device stays until it is opened again: a bus that comes back by itself moves nothing.
+// All quantities are in frame W (types.h). Opening checks all that can be checked before the loop
+// and returns an error message. Only the loop powers the drives, so a powered drive always gets
+// commands (a drive that needs power to measure its position gets zero torque meanwhile). A device
+// fault stays until the device is opened again, even if the bus recovers.
 #pragma once
 
 #include <cstdint>
@@ -25,57 +25,56 @@ using model::Tool;
 using model::Vec3;
 using model::Wrench;
 
-/// One reading. A device that has nothing new leaves `fresh` false and the rest untouched.
+/// One sample. If a device has no new data, it leaves `fresh` false and all else unchanged.
 struct Sample {
   Tool tool;
-  double grip_gap_m = 0.0;      // between the fingers, where the device can press against them
+  double grip_gap_m = 0.0;      // between the fingers; only of a GripKind::kForce
   double grip_speed_mps = 0.0;  // of the gap, opening positive
-  std::int64_t stamp_ns = 0;    // CLOCK_MONOTONIC when the device state was taken
+  std::int64_t stamp_ns = 0;    // CLOCK_MONOTONIC when the device state was sampled
   std::uint64_t sequence = 0;   // counts device samples, never repeats
   bool fresh = false;
 };
 
-/// How the hand tells the device to close the jaws of the tool.
+/// How the hand closes the jaws of the tool.
 enum class GripKind : std::uint8_t {
-  kNone,    // it has nothing for it: device.lines.grip may stand in
+  kNone,    // the device has no grip input; the line device.lines.grip can replace it
   kButton,  // open or closed
-  kAngle,   // a gripper that tells how far it is closed
-  kForce,   // the same, and its motor can press against the fingers
+  kAngle,   // a gripper with a measured closing angle
+  kForce,   // as kAngle, with a motor that presses against the fingers
 };
 
-/// Without a default: each back end says it.
+/// No default constructor: every back end must set it.
 struct DeviceGrip {
   // NOLINTNEXTLINE(google-explicit-constructor)
   constexpr DeviceGrip(GripKind of, double most_N = 0.0) : kind(of), max_force_N(most_N) {}
   GripKind kind;
-  double max_force_N;  // that it can press against the fingers; 0: none
+  double max_force_N;  // of its motor on the fingers; 0: no motor
 };
 
-/// What the hardware can do; the gate takes the smaller of this and the scene.
+/// Limits of the hardware; the gate uses the smaller of these and the scene's (limits_for.h).
 struct DeviceInfo {
   std::string name;
   double max_force_N = 0.0;
   double max_torque_Nm = 0.0;           // 0: the device has no torque
-  double max_continuous_force_N = 0.0;  // largest RMS that its motors bear; 0: not told
+  double max_continuous_force_N = 0.0;  // largest permitted RMS of the motors; 0: not known
   double workspace_radius_m = 0.0;      // cylinder about the W x axis, centred on the origin of W
   double workspace_half_length_m = 0.0;
   DeviceGrip grip;
-  bool turns_with_base = false;  // it senses how its handle is turned, from its base
-  double motion_scale = 1.0;     // way of the tool for a way of the handle (mounting.h)
-  /// What bounds the stiffness it can show; a device without it is never felt.
+  bool turns_with_base = false;  // it measures the handle's orientation relative to its base
+  double motion_scale = 1.0;     // displacement of the tool over that of the handle (mounting.h)
+  /// Dynamics that bound the stiffness it can render; empty: the device is refused.
   std::optional<model::DeviceAtTool> at_tool{};
-  std::string damping_key{};  // of the scene, where the damping was entered; empty: nowhere
-  std::string caution{};      // what its own settings may do to a force, with numbers; or empty
+  std::string damping_key{};  // scene key of the damping; empty: the scene has none
+  std::string caution{};      // warning: how the device's settings change a force; may be empty
 };
 
-/// Something that a device counted, for the report.
+/// A counter of the device, for the report.
 struct DeviceCount {
   const char* name;
   std::uint64_t count;
 };
 
-/// An open device makes no force before the first write. Its destructor zeroes the force and
-/// powers off, as stop() does.
+/// An open device makes no force before the first write. The destructor does the same as stop().
 class Device {
  public:
   Device() = default;
@@ -87,57 +86,54 @@ class Device {
 
   virtual DeviceInfo info() const = 0;
 
-  /// System calls that read, permit and write make, by number (sys/syscall.h). The loop's thread
-  /// may make no other: one that is missing here stops the force.
+  /// Numbers (sys/syscall.h) of all system calls in read, permit and write. Any other system call
+  /// of the loop's thread latches a fault.
   virtual std::span<const int> loop_calls() const { return {}; }
 
-  /// What takes the force away after this process has died. None for a
-  /// simulated device, and for one whose handle no other process can use.
+  /// Frames that zero the force after this process has died. None for a simulated device, and for
+  /// one whose handle another process cannot use.
   virtual std::optional<ShutdownFrames> shutdown_frames() { return std::nullopt; }
 
-  // The loop's thread, once a tick and in this order.
+  // Called by the loop's thread, once per tick, in this order.
 
-  /// Newest sample; none is fresh until the device knows where it is. Fault::kNone, or what is
-  /// wrong with the device.
+  /// Newest sample; not fresh until the device knows its position. Returns the device's fault.
   [[nodiscard]] virtual Fault read(Sample& sample, std::int64_t now_ns) RT_SAFE = 0;
 
-  /// Would a force of this tick reach the hand? A device whose motors are off may still tell where
-  /// it is, with fresh samples: nothing is armed before this is true, and what is armed stops when
-  /// it no longer is.
+  /// True if the motors are on. Samples can be fresh with motors off: arming needs ready(), and
+  /// the loop stops if it becomes false while armed.
   virtual bool ready() const RT_SAFE { return true; }
 
-  /// May the drives have power in this tick? Safety lines decide; without lines always true.
+  /// Whether the drives may have power in this tick, by the safety lines; without lines true.
   virtual void permit(bool powered) RT_SAFE { (void)powered; }
 
-  /// Hand this wrench to the hardware, on top of its own gravity compensation.
+  /// Writes this wrench to the hardware; the device adds its gravity compensation.
   [[nodiscard]] virtual Fault write(const Wrench& wrench) RT_SAFE = 0;
 
-  /// What the gripper does to the fingers, opening positive; holds from the next write on.
+  /// Force of the gripper on the fingers, opening positive; applies from the next write on.
   virtual void set_grip_force(double opening_N) RT_SAFE { (void)opening_N; }
 
-  /// How far a clutch has moved the tool from the handle, in W, when it may have changed. For a
-  /// simulated hand, which is told where its tool shall go.
+  /// Offset of the tool from the handle by the clutch, in W. Only for a simulated hand, whose
+  /// target is a position of the tool.
   virtual void shift_tool(const Vec3& shift_m) RT_SAFE { (void)shift_m; }
 
-  /// What happens to a simulated device while the loop sleeps: one or more periods of physics.
-  /// Hardware lives by itself and does nothing here. Not part of the tick's measured time.
+  /// Simulates one or more periods of a simulated device; hardware does nothing here. Not part of
+  /// the tick's measured time.
   virtual void between_ticks(double elapsed_s) RT_SAFE { (void)elapsed_s; }
 
-  // Any thread, at any time.
+  // Callable from any thread at any time.
 
-  /// What lies behind the latched fault, for a person: which part, why, the remedy. Empty when
-  /// there is no more to say than the fault's own words.
+  /// Details of the latched fault: part, cause, remedy. Empty if the fault's message says all.
   virtual std::string trouble() const { return {}; }
 
-  // When the loop has ended.
+  // Called after the loop.
 
-  /// What it counted since it was opened, as frames that are nobody's.
+  /// Counters since opening, such as unknown frames.
   virtual std::vector<DeviceCount> counters() const { return {}; }
 
-  /// Zero force and power off; may block. Safe to call twice, and at any time after opening.
+  /// Sets zero force and switches power off; may block. May be called repeatedly after opening.
   virtual void stop() = 0;
 
-  /// What stop() could not switch off, with the remedy; empty: all is off.
+  /// What stop() could not switch off, and the remedy; empty: all is off.
   virtual std::string why_not_off() const { return {}; }
 };
 

@@ -8,14 +8,14 @@
 namespace tact::firmware::gate {
 namespace {
 
-// Chosen: above the rounding of a sum over hours, far below what a hand feels.
+// Chosen: above the rounding error of a sum over hours, far below what a hand can feel.
 constexpr double kRounding_J = 1e-9;
 
-/// Rotation from one orientation to the next: its axis times 2 sin(angle / 2), within 0.1 % of the
-/// angle up to 0.15 rad and never more than it.
+/// Rotation between two orientations: axis times 2 sin(angle / 2). That is at most the angle, and
+/// within 0.1 % of it up to 0.15 rad.
 Vec3 turn_rad(const model::Quat& from, const model::Quat& to) RT_SAFE {
   const model::Quat q = to * conjugate(from);
-  // q and -q are one rotation: the shorter way round.
+  // q and -q are the same rotation: take the smaller angle.
   return (q.w < 0.0 ? -2.0 : 2.0) * Vec3{q.x, q.y, q.z};
 }
 
@@ -36,13 +36,13 @@ void EnergyTank::observe(const model::Tool& tool, bool fresh, double periods,
   held_.force_N += periods * held.force_N;
   held_.torque_Nm += periods * held.torque_Nm;
   periods_ += periods;
-  if (!fresh) {  // at worst it moves along the force, as fast as it may
+  if (!fresh) {  // worst case: the tool moves along the force at the speed limit
     unseen_J_ +=
         periods * settings_.period_s *
         (settings_.speed_mps * norm(held.force_N) + settings_.turn_radps * norm(held.torque_Nm));
     return;
   }
-  // Mean motion of a period, times the sum of what was held: exact for a steady motion.
+  // Mean motion per period times the sum of the held wrenches: exact at constant velocity.
   const double share = 1.0 / periods_;
   moved_m_ = is_placed_ ? share * (tool.position_m - position_m_) : Vec3{};
   turned_rad_ = is_placed_ ? share * turn_rad(orientation_, tool.orientation) : Vec3{};
@@ -50,18 +50,18 @@ void EnergyTank::observe(const model::Tool& tool, bool fresh, double periods,
   const double budget_J = settings_.budget_J;
   const double given_J = dot(held_.force_N, moved_m_) + dot(held_.torque_Nm, turned_rad_);
   const double left_J = level_J_ - given_J;
-  level_J_ = left_J > 2.0 * budget_J ? 2.0 * budget_J : left_J;  // NaN stays, and is overdrawn
+  level_J_ = left_J > 2.0 * budget_J ? 2.0 * budget_J : left_J;  // NaN is kept: is_overdrawn()
   if (level_J_ < budget_J)
     level_J_ = std::fmin(budget_J, level_J_ + settings_.recovery_W * settings_.period_s * periods_);
   forget_motion();
-  // From here on there is a place to count from: the first sample after arming gives no motion.
+  // The first sample after arming only sets the reference: its motion is zero.
   is_placed_ = true;
   position_m_ = tool.position_m;
   orientation_ = tool.orientation;
 }
 
 bool EnergyTank::damp(Wrench& wrench) const RT_SAFE {
-  // GT-2. What was not seen counts as given, and the reserve is the brake's.
+  // GT-2. The bound for missed samples counts as given; the reserve is kept for the brake.
   const double room_J = std::fmax(level_J_ - unseen_J_ - reserve_J_, 0.0);
   return limit_surplus(wrench, moved_m_, turned_rad_, room_J);
 }

@@ -12,10 +12,10 @@ namespace {
 using model::kStaleRampDown_s;
 using model::slew_beside_ramp_N;
 
-// Chosen: nothing is wrong with the device, it may be gentler than without a sample.
+// Chosen: slower than the ramp-down for missed samples, as the device works.
 constexpr double kWorkspaceRampDown_s = 0.050;
 constexpr std::int64_t kLostAfter = 20;  // missed samples in a row
-// Room for the tool to speed up while the force falls at its slew:
+// The margin of 1/4 lets the tool accelerate while the force falls at the slew limit:
 //
 //     GT-5   power   F . v + T . w <= 3/4 P
 constexpr double kPowerAim = 0.75;
@@ -24,12 +24,12 @@ Wrench operator*(double share, const Wrench& w) RT_SAFE {
   return {share * w.force_N, share * w.torque_Nm};
 }
 
-/// What the device would give to the hand; below 0 the hand gives.
+/// Power from the device to the hand; negative: from the hand to the device.
 double power_W(const Wrench& w, const model::Tool& tool) RT_SAFE {
   return dot(w.force_N, tool.velocity_mps) + dot(w.torque_Nm, tool.angular_velocity_radps);
 }
 
-/// The tank brakes by the slew that the gate keeps for it, not by the whole.
+/// The slew of the brake is the part of the slew limit that the ramp does not use.
 EnergyTankSettings tank_settings(const model::Limits& limits, double force_limit_N, double lever_m,
                                  double period_s) {
   return {.budget_J = limits.energy_J,
@@ -42,14 +42,14 @@ EnergyTankSettings tank_settings(const model::Limits& limits, double force_limit
           .period_s = period_s};
 }
 
-/// A scene states what is continuous of the force; of the torque it is the same share.
+/// A scene gives the continuous force only; continuous torque / peak torque is the same ratio.
 ThermalLimit thermal_limit(const model::Limits& limits, double peak, double period_s) {
   const double share =
       limits.force_N > 0.0 ? std::fmin(limits.continuous_force_N / limits.force_N, 1.0) : 1.0;
   return {peak, share * peak, period_s / limits.thermal_time_s};
 }
 
-// It is the cause of what follows in the same tick.
+// The first fault of a tick is kept: it is the cause of the others.
 void latch_first(Fault fault, LimitedForce& verdict) RT_SAFE {
   if (!latches(verdict.fault)) verdict.fault = fault;
 }
@@ -71,7 +71,7 @@ Gate::Gate(const model::Limits& limits, double period_s, double force_share)
       tank_(tank_settings(limits, force_limit_N_, lever_m_, period_s)),
       thermal_force_(thermal_limit(limits, force_limit_N_, period_s)),
       thermal_torque_(thermal_limit(limits, torque_limit_Nm_, period_s)) {
-  // Closed at the start, and after each stop: a force is always ramped up.
+  // Zero at the start and after each stop: a force always ramps up.
   ramp_.set(0.0);
 }
 
@@ -79,7 +79,7 @@ LimitedForce Gate::limit(const GateInput& input) RT_SAFE {
   const double periods = 1.0 + input.skipped_periods;  // since the last write
   LimitedForce verdict{.wrench = input.wanted};
   book_last_write(input, periods);
-  // In the order of gate.h; each stage keeps what the ones before it promised (README.md).
+  // Order as in gate.h; no stage breaks the limit of an earlier one (README.md).
   check_finite(input, verdict);
   ramp_down_missed_samples(input, verdict);
   check_energy(input.armed, verdict);
@@ -105,7 +105,7 @@ void Gate::note(Stage stage, Fault reason, LimitedForce& verdict) RT_SAFE {
     verdict.acting = reason;
 }
 
-// What was written before this tick has done its work by now: its energy and its heating.
+// Adds the last written force to the energy tank and to the thermal model: it acted until now.
 void Gate::book_last_write(const GateInput& input, double periods) RT_SAFE {
   tank_.observe(input.tool, input.fresh && is_finite(input.tool), periods, written_);
   thermal_force_.add(written_.force_N, periods);
@@ -119,11 +119,11 @@ void Gate::check_finite(const GateInput& input, LimitedForce& verdict) RT_SAFE {
   verdict.wrench = {};
 }
 
-// A period that was skipped has missed its sample, unless a fresh one tells in the end.
+// Skipped periods count as missed samples, unless this tick has a fresh sample.
 void Gate::ramp_down_missed_samples(const GateInput& input, LimitedForce& verdict) RT_SAFE {
-  // Closes by the periods missed since the last tick, the first of a row not among them.
-  const std::int64_t held = std::max<std::int64_t>(missed_, 1);  // the first one is held
-  const bool missing = !input.fresh && input.armed;  // a device may take its time to wake
+  // Ramps down by the samples missed since the last tick, without the first of a row.
+  const std::int64_t held = std::max<std::int64_t>(missed_, 1);  // at the first the force is held
+  const bool missing = !input.fresh && input.armed;  // before arming a device may start slowly
   missed_ = missing ? missed_ + 1 + input.skipped_periods : 0;
   const double level = fresh_.step(missed_ < 2, period_s_, static_cast<double>(missed_ - held));
   if (missed_ > 0 || level < 1.0)
@@ -137,7 +137,7 @@ void Gate::check_energy(bool armed, LimitedForce& verdict) RT_SAFE {
 }
 
 bool Gate::check_armed(bool armed, LimitedForce& verdict) RT_SAFE {
-  // Nobody is pushed: a new budget, and no motion of before is counted.
+  // No force on the hand: full budget, and motion before arming does not count.
   if (!armed) tank_.refill();
   if (armed && !latches(verdict.fault)) return true;
   note(Stage::kArmed, Fault::kNotArmed, verdict);
@@ -149,7 +149,7 @@ void Gate::ramp_down_outside(const model::Tool& tool, double periods,
   const double inside = workspace_.step(is_inside(limits_, tool.position_m), period_s_, periods);
   const double slow = speed_.step(is_slow(limits_, tool), period_s_, periods);
   if (slow < 1.0) note(Stage::kWorkspace, Fault::kTooFast, verdict);
-  // Where both act, outside is told.
+  // If both act, the workspace is reported.
   if (inside < 1.0) note(Stage::kWorkspace, Fault::kOutsideWorkspace, verdict);
   verdict.wrench = inside * slow * verdict.wrench;
 }
@@ -159,7 +159,7 @@ Gate::Permitted Gate::permitted_now() const RT_SAFE {
   const double thermal_N = thermal_force_.allowed(), thermal_Nm = thermal_torque_.allowed();
   Magnitude all{.force_N = std::fmin(thermal_N, passive_N),
                 .torque_Nm = std::fmin(thermal_Nm, passive_Nm)};
-  if (const double fresh = fresh_.level(); fresh < 1.0) {  // however much is wanted
+  if (const double fresh = fresh_.level(); fresh < 1.0) {  // the limit ramps down, too
     all.force_N = std::fmin(all.force_N, fresh * force_limit_N_);
     all.torque_Nm = std::fmin(all.torque_Nm, fresh * torque_limit_Nm_);
   }
@@ -169,7 +169,7 @@ Gate::Permitted Gate::permitted_now() const RT_SAFE {
 void Gate::keep_passive(const Permitted& permitted, LimitedForce& verdict) RT_SAFE {
   const Magnitude &energy = permitted.energy, &thermal = permitted.thermal;
   Wrench& w = verdict.wrench;
-  // Of energy and heat the tighter one shortens and is told: here, or in the next stage.
+  // The smaller limit acts and is reported: energy here, motor temperature in the next stage.
   const bool damped = tank_.damp(w);
   const bool braked =
       energy.force_N < thermal.force_N && limit_magnitude(w.force_N, energy.force_N);
@@ -193,7 +193,7 @@ void Gate::limit_slew(const Magnitude& most, double periods, LimitedForce& verdi
   if (step_towards(verdict.wrench, periods, most)) note(Stage::kSlew, Fault::kSlewLimited, verdict);
 }
 
-// What is taken along the motion may turn the force: it keeps its slew once more.
+// Removing the force along the motion can turn the force: the slew limit is applied again.
 void Gate::limit_power(const model::Tool& tool, const Magnitude& most, double periods,
                        LimitedForce& verdict) RT_SAFE {
   Wrench& w = verdict.wrench;
@@ -202,8 +202,8 @@ void Gate::limit_power(const model::Tool& tool, const Magnitude& most, double pe
     note(Stage::kPower, Fault::kPowerLimited, verdict);
     step_towards(w, periods, most);
   }
-  // What the slew of the next tick is measured from. The ramp is no part of it: it has a slew of
-  // its own (slew_beside_ramp_N).
+  // Reference for the slew of the next tick. The change by the ramp is not part of it:
+  // slew_beside_ramp_N leaves room for that.
   before_ramp_ = w;
 }
 
@@ -221,13 +221,13 @@ void Gate::ramp_up(LimitedForce& verdict) RT_SAFE {
   verdict.wrench = ramp * verdict.wrench;
 }
 
-// Of the force after the ramp, as it would be written. NaN fails, and latches.
+// Checks the force after the ramp, which would be written. NaN latches.
 void Gate::check_power(const model::Tool& tool, LimitedForce& verdict) RT_SAFE {
   if (!(power_W(verdict.wrench, tool) <= limits_.power_W))
     note(Stage::kPower, Fault::kPowerExceeded, verdict);
 }
 
-// Zero now: what comes after starts from zero and ramps up again.
+// Zero force now; later forces ramp up from zero.
 LimitedForce Gate::without_force(LimitedForce verdict) RT_SAFE {
   before_ramp_ = {};
   ramp_.set(0.0);

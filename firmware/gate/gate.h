@@ -1,33 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
-// gate.h - the one way from the model to the device. Every force of a law passes the stages, in
-// this order, until one makes it zero:
+// gate.h - limits every force of a law before it is written to the device. The stages run in this
+// order, until one makes the force zero:
 //
-//   finite     NaN or infinity in force or sample: zero, latches
-//   fresh      one missed sample holds, from the second the force ramps down to zero in 10 ms, and
-//              so does the largest that is allowed; 20 latch
-//   armed      zero unless the supervisor says armed
-//   workspace  outside the permitted cylinder, or faster than permitted, it ramps down to zero in
-//   50 ms passivity  gives no more energy than it took and has a budget for (GT-1 to GT-3)
-//   magnitude  |F| and |T| as vectors: peak, and RMS over a time (GT-4)
-//   slew       |dF| and |dT| in the time since the last write
-//   power      F . v + T . w (GT-5)
+//   finite     NaN or infinity in force or sample: zero force and a latched fault
+//   fresh      after one missed sample the force is held; from the second on, force and largest
+//              permitted force ramp down to zero in 10 ms; the 20th latches
+//   armed      zero unless the supervisor is in state Armed
+//   workspace  ramps down to zero in 50 ms outside the permitted cylinder or above the speed limits
+//   passivity  energy given to the hand <= energy taken from it + budget (GT-1 to GT-3)
+//   magnitude  limits |F| and |T|: peak, and RMS over a time (GT-4)
+//   slew       limits |dF| and |dT| since the last write
+//   power      limits F . v + T . w (GT-5)
 //   ramp       ramps up after arming
 //
-// Two checks that latch run elsewhere than their stage: overdrawn energy (passivity) before armed,
-// and the power of what would be written (power) after ramp.
+// Two checks that latch do not run in their stage: overdrawn energy (passivity) runs before armed,
+// the power of the force to be written (power) after ramp.
 //
-// For every sequence of inputs, of the written force, unless a fault stops it at once:
+// For every sequence of inputs the written force keeps these limits, or is zero after a fault:
 //
 //   |F| <= force_N, RMS <= continuous_force_N, |dF| <= slew_N_per_s dt, F . v <= power_W,
 //   energy given since arming <= energy_J + recovery_W t        (torque likewise)
 //
-// dt is the time since the force before was written, skipped periods included: a loop that was late
-// ramps down and shortens by all the time that passed, so that 10 ms are 10 ms and 20 samples are
-// 20 periods. A force grows and turns by one period's slew at most, and no ramp-down opens faster.
+// dt is the time since the last write, skipped periods included. After a late tick, ramp-downs and
+// the fall of the force advance by the whole dt: a ramp-down of 10 ms always takes 10 ms. A skipped
+// period counts as a missed sample. Growth, turning and ramp-ups advance by one period.
 //
-// Each stage has a reason code (model/fault.h) and a counter. Saturates and ramps down, never cuts
-// to zero in one step unless stopped. Why the limits hold together, and the three that must latch
-// or wait: README.md.
+// Each stage has a reason code (model/fault.h) and a counter. The gate saturates and ramps down; it
+// sets zero in one step only on a stop. README.md has the proof and its three exceptions.
 #pragma once
 
 #include <array>
@@ -60,7 +59,7 @@ inline constexpr std::size_t kStageCount = 9;
 inline constexpr std::array<const char*, kStageCount> kStageName{
     "finite", "fresh", "armed", "workspace", "passivity", "magnitude", "slew", "power", "ramp"};
 
-/// Of the force, on a PC without hard real time.
+/// Factor on the force and torque limits on a PC without hard real time.
 inline constexpr double kNonRtForceShare = 0.25;
 
 struct GateInput {
@@ -68,12 +67,12 @@ struct GateInput {
   model::Tool tool;  // of the newest sample
   bool fresh = false;
   bool armed = false;
-  std::uint32_t skipped_periods = 0;  // between the tick before and this one
+  std::uint32_t skipped_periods = 0;  // between the previous tick and this one
 };
 
 struct LimitedForce {
   Wrench wrench;                // to the device
-  Fault acting = Fault::kNone;  // why the last stage that acted did, 1..99
+  Fault acting = Fault::kNone;  // reason code of the last stage that acted, 1..99
   Fault fault = Fault::kNone;   // 100+: the supervisor must stop
 };
 
@@ -89,7 +88,7 @@ class Gate {
   double torque_limit_Nm() const RT_SAFE { return torque_limit_Nm_; }
   double continuous_force_N() const RT_SAFE { return thermal_force_.continuous(); }
   double energy_budget_J() const RT_SAFE { return limits_.energy_J; }
-  /// Since arming, more than was taken; below zero: more was taken.
+  /// Energy given minus energy taken since arming.
   double given_energy_J() const RT_SAFE { return tank_.given_J(); }
   double rms_force_N() const RT_SAFE { return thermal_force_.rms(); }
   double speed_limit_mps() const RT_SAFE { return limits_.speed_mps; }
@@ -100,13 +99,13 @@ class Gate {
   struct Magnitude {
     double force_N, torque_Nm;
   };
-  /// The longest force and torque of this tick: by energy, by heat, by all that limits them.
+  /// Largest force and torque of this tick: by energy, by motor temperature, by all limits.
   struct Permitted {
     Magnitude energy, thermal, all;
   };
 
   void note(Stage stage, Fault reason, LimitedForce& verdict) RT_SAFE;
-  // The stages, one function each; passivity and power have a check that latches besides.
+  // One function for each stage; passivity and power also have a check that latches.
   void check_finite(const GateInput& input, LimitedForce& verdict) RT_SAFE;
   void ramp_down_missed_samples(const GateInput& input, LimitedForce& verdict) RT_SAFE;
   void check_energy(bool armed, LimitedForce& verdict) RT_SAFE;
@@ -129,12 +128,12 @@ class Gate {
   double period_s_;
   double force_limit_N_, torque_limit_Nm_;
   double lever_m_;                        // torque limit over force limit; 0: no torque
-  double force_step_N_, torque_step_Nm_;  // slew per tick, less the room that the ramp needs
+  double force_step_N_, torque_step_Nm_;  // slew per period, minus the part kept for the ramp
   RampDown fresh_, workspace_, speed_, ramp_;
   EnergyTank tank_;
   ThermalLimit thermal_force_, thermal_torque_;
-  std::int64_t missed_ = 0;  // samples in a row, one a period
-  Wrench before_ramp_;       // after power, before ramp
+  std::int64_t missed_ = 0;  // samples in a row, one per period
+  Wrench before_ramp_;       // output of stage power
   Wrench written_;
   std::array<std::uint64_t, kStageCount> counter_{};
 };

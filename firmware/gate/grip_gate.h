@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// grip_gate.h - the one way from the model to the motor of a gripper: the force on the fingers
-// passes the stages of gate.h, along one line.
+// grip_gate.h - limits the force of a gripper's motor on the fingers: a Gate with one axis.
 //
 //     force      (f, 0, 0)    f: on the fingers, opening positive, N
 //     position   (g, 0, 0)    g: gap between the fingers, m
 //
-// Its limits are those of the scene in the proportion k = grip_force_N / force_N: force, continuous
-// force, slew, energy, recovery and power k times as large, times and speeds the same. The
-// relations that a scene's limits are held to (scene_limits.cc) are linear in these, so they hold
-// here, too, and so does what is proved of the gate.
+// With k = grip_force_N / force_N, the limits of force, continuous force, slew, energy, recovery
+// and power are k times those of the scene; times and speeds are the same. The relations that
+// scene_limits.cc requires are linear in the scaled limits, so they and the proof of the gate hold.
 #pragma once
 
 #include <optional>
@@ -31,14 +29,14 @@ struct LimitedGrip {
   Fault fault = Fault::kNone;
 };
 
-/// Limits of the fingers; all zero without a force on them.
+/// Limits for the fingers; force limits are zero if the scene has no grip force.
 inline model::Limits grip_limits(const model::Limits& limits) {
   const double k = limits.force_N > 0.0 ? limits.grip_force_N / limits.force_N : 0.0;
   return {.force_N = k * limits.force_N,
           .torque_Nm = 0.0,
           .slew_N_per_s = k * limits.slew_N_per_s,
           .ramp_s = limits.ramp_s,
-          .workspace_radius_m = 1.0,  // no hand is so wide
+          .workspace_radius_m = 1.0,  // wider than any gap
           .workspace_half_length_m = 1.0,
           .speed_mps = limits.speed_mps,
           .turn_radps = limits.turn_radps,
@@ -52,7 +50,7 @@ inline model::Limits grip_limits(const model::Limits& limits) {
 
 class GripGate {
  public:
-  /// Nothing where these limits let no force on the fingers.
+  /// Nothing if the limits permit no force on the fingers.
   static std::optional<GripGate> make(const model::Limits& limits, double period_s,
                                       double force_share) {
     const model::Limits own = grip_limits(limits);

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// limiter.h - what every stage of the gate does to a vector: shorten it, hold it back, take from it
+// limiter.h - vector limits that the stages of the gate share: magnitude, slew, and work or power
 // along a motion.
 //
 //     magnitude   |F| <= limit                             direction kept
-//     approach    |F - F_before| <= step, |F| <= radius    or `shrink` nearer to radius than before
-//     surplus     F . d + T . a <= most                    least change of each, along its motion
+//     approach    |F - F_before| <= step, |F| <= radius    or |F| falls by `shrink` towards radius
+//     surplus     F . d + T . a <= most                    least change, along the motion only
 //
 // Approach first reduces the magnitude, then uses the remaining slew for the direction: on a
-// straight line to the goal the magnitude would fall more slowly than the slew allows. After ticks
-// that were skipped `shrink` is the step of all the time that passed: a force catches up when it
-// gets smaller, never when it grows or turns. Guards are written so that NaN falls to zero.
+// straight line to the goal the magnitude would fall more slowly than the slew allows. After
+// skipped periods `shrink` is the slew of the whole time since the last write, `step` that of one
+// period: a force may fall by the whole time, but grows and turns by one period. NaN becomes zero.
 #pragma once
 
 #include <limits>
@@ -21,26 +21,26 @@ namespace tact::firmware::gate {
 using model::Vec3;
 using model::Wrench;
 
-/// |v| <= limit, without a root where the squares tell: sqrt(fl(limit^2)) is limit, so they agree.
+/// |v| <= limit. Compares squares first, to save the root: sqrt(fl(limit^2)) is exactly limit.
 inline bool is_within(const Vec3& v, double limit) RT_SAFE {
   return (limit >= 0.0 && dot(v, v) <= limit * limit) || norm(v) <= limit;
 }
 
-/// True if it had to shorten v.
+/// True if it shortened v.
 inline bool limit_magnitude(Vec3& v, double limit) RT_SAFE {
   if (is_within(v, limit)) return false;
   const double length = norm(v);
-  // Rounding cannot leave |v| above the limit. With u = 2^-53 a norm is off by 2.5 u at most: 3 u
-  // of its square, halved by the root, and the root's own. Two norms and three operations: 8 u,
-  // less than the room of 9 u. Above kNothing what underflows in a square is far below u.
+  // The factor keeps |v| <= limit despite rounding. With u = 2^-53 the relative error of a norm is
+  // at most 2.5 u: 3 u of the square, halved by the root, plus 1 u of the root. Two norms and three
+  // operations: 8 u < 9 u, the margin. Above kNothing the underflow in a square is far below u.
   constexpr double kRoundingRoom = 1.0 - 1e-15;
-  constexpr double kNothing = 1e-150;  // below it a square is a denormal, and a norm a guess
+  constexpr double kNothing = 1e-150;  // below it squares are denormal and a norm is inaccurate
   v = length > 0.0 && limit > kNothing ? (kRoundingRoom * limit / length) * v : Vec3{};
   if (!is_finite(v)) v = {};
   return true;
 }
 
-/// One tick from `before` towards v. True if v was out of reach. `shrink` >= `step`.
+/// Limits v to one tick's change from `before`. True if it changed v. Needs `shrink` >= `step`.
 inline bool approach(Vec3& v, const Vec3& before, double step, double shrink,
                      double radius) RT_SAFE {
   if (is_within(v, radius) && is_within(v - before, step)) return false;
@@ -52,14 +52,14 @@ inline bool approach(Vec3& v, const Vec3& before, double step, double shrink,
   Vec3 change = v - from;
   if (limit_magnitude(change, std::fmax(step - shrunk, 0.0))) {
     v = from + change;
-    limit_magnitude(v, reach);  // by an ulp
+    limit_magnitude(v, reach);  // removes a rounding error of one ulp
     held = true;
   }
   return held;
 }
 
-/// Takes so much of v . d from v, along d. A motion whose square is a denormal is none: what is
-/// divided by it is a guess, or no number.
+/// Reduces v . d by `surplus`, by a change along d. If the square of d is denormal, d counts as
+/// zero: a division by it would be inaccurate or infinite.
 inline bool take_along(Vec3& v, double surplus, const Vec3& d) RT_SAFE {
   const double squared = dot(d, d);
   if (!(surplus > 0.0 && squared >= std::numeric_limits<double>::min())) return false;
@@ -67,8 +67,8 @@ inline bool take_along(Vec3& v, double surplus, const Vec3& d) RT_SAFE {
   return true;
 }
 
-/// True if the wrench did more than `most` (>= 0) along the motion d, a: J for a displacement, W
-/// for a velocity. Only what pushes along the motion is made less; neither vector grows.
+/// Limits the work or power of the wrench along the motion d, a to `most` (>= 0): J if d is a
+/// displacement, W if it is a velocity. Reduces only parts along the motion. True if it did.
 inline bool limit_surplus(Wrench& w, const Vec3& d, const Vec3& a, double most) RT_SAFE {
   const double pushed = std::fmax(dot(w.force_N, d), 0.0);
   const double turned = std::fmax(dot(w.torque_Nm, a), 0.0);

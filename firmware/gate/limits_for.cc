@@ -6,7 +6,7 @@
 namespace tact::firmware::gate {
 namespace {
 
-/// Not std::fmin, which takes the other number for one that is none.
+/// 0 if one is NaN; std::fmin would return the other one.
 double smaller(double scene, double device) {
   if (scene <= device) return scene;
   return device < scene ? device : 0.0;
@@ -16,12 +16,12 @@ double smaller(double scene, double device) {
 
 model::Limits limits_for(const model::Limits& scene, const hal::DeviceInfo& device) {
   model::Limits limits = scene;
-  // A scene limits what the hand feels, which is motion_scale times the tool's force.
+  // A scene limits the force on the hand, which is motion_scale times the force on the tool.
   const double share = 1.0 / std::fmax(device.motion_scale, 1.0);
   limits.slew_N_per_s = share * scene.slew_N_per_s;
   limits.continuous_force_N = share * scene.continuous_force_N;
   limits.force_N = smaller(share * scene.force_N, device.max_force_N);
-  // Not "> 0": of one that is no number smaller() makes zero.
+  // 0: not known. Not "> 0", so that NaN reaches smaller(), which returns 0.
   if (device.max_continuous_force_N != 0.0)
     limits.continuous_force_N = smaller(limits.continuous_force_N, device.max_continuous_force_N);
   limits.torque_Nm = smaller(scene.torque_Nm, device.max_torque_Nm);

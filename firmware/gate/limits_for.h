@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// limits_for.h - what holds for this scene on this device: of force, torque and workspace the
-// smaller of the two; the rest is the scene's.
+// limits_for.h - limits of a scene on a device: for force, torque and workspace the smaller of the
+// two, the others from the scene.
 #pragma once
 
 #include "hal/device.h"
@@ -8,7 +8,7 @@
 
 namespace tact::firmware::gate {
 
-/// A limit that is no number is 0: nothing is felt.
+/// A limit that is NaN becomes 0: no force.
 model::Limits limits_for(const model::Limits& scene, const hal::DeviceInfo& device);
 
 }  // namespace tact::firmware::gate

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// ramp_down.h - a level between 0 and 1 that opens and closes at a fixed rate, wholly in ramp_s. It
-// closes by all periods that passed since the last step and opens by one, however late the loop is.
+// ramp_down.h - a factor between 0 and 1 that ramps up and down within ramp_s. A step down covers
+// all periods since the last step, a step up one period, also after skipped periods.
 #pragma once
 
 #include "model/rt.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// workspace.h - where the tool may be, and how fast, for a force to be let through.
+// workspace.h - position and speed limits of the tool, outside of which the force ramps down.
 //
-// A cylinder about the W x axis, centred on its origin; NaN is outside and too fast.
+// The workspace is a cylinder about the W x axis, centred on the origin. NaN exceeds every limit.
 #pragma once
 
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <cerrno>
 #include <cstddef>
 
-// Who has the heap: gcc tells of its sanitizers by a macro, clang by __has_feature.
+// Detects sanitizers that replace malloc: gcc defines a macro, clang has __has_feature.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define TACT_HEAP_HAS_HOOKS
 #elif defined(__has_feature)
@@ -26,7 +26,7 @@
 namespace tact::firmware::loop {
 namespace {
 
-// Constants at the start, so a thread's first look at them runs no code and takes no memory.
+// Constant initialisers, so the first access in a thread runs no code and allocates nothing.
 thread_local bool watching = false;
 thread_local std::uint64_t counted = 0;
 
@@ -68,7 +68,7 @@ using tact::firmware::loop::note_heap_call;
 
 extern "C" {
 // NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming): glibc's own names
-// Called by name: to find them by dlsym would allocate, in the middle of malloc.
+// Declared here, because dlsym would allocate within malloc.
 void* __libc_malloc(std::size_t);
 void* __libc_calloc(std::size_t, std::size_t);
 void* __libc_realloc(void*, std::size_t);
@@ -92,7 +92,7 @@ void* memalign(std::size_t alignment, std::size_t size) {
   note_heap_call();
   return __libc_memalign(alignment, size);
 }
-// Both go through memalign, which counts them once.
+// Both call memalign, which counts once.
 void* aligned_alloc(std::size_t alignment, std::size_t size) { return memalign(alignment, size); }
 int posix_memalign(void** out, std::size_t alignment, std::size_t size) {
   *out = memalign(alignment, size);

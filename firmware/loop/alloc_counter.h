@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// alloc_counter.h - counts what the loop must never do: heap calls of one thread.
+// alloc_counter.h - counts the heap calls of a thread; the loop's thread must make none.
 //
-// The program's malloc, calloc, realloc, aligned forms and free pass through here on their way to
-// glibc (operator new ends in malloc). A thread that watches itself counts its own calls; others
-// pay one test of a thread-local flag. Address and thread sanitizer of clang interpose the same
-// names and call a hook of ours instead. Realtime sanitizer has none: there nothing is counted, and
+// malloc, calloc, realloc, aligned forms and free are replaced by wrappers that count and then call
+// glibc (operator new calls malloc). A thread counts while it has a HeapCallCounter; other threads
+// only test a thread-local flag. The address and thread sanitizers of clang replace the same
+// functions and call our hook instead. The realtime sanitizer has no hook: nothing is counted, and
 // it ends the program itself at a heap call below an RT_SAFE function.
 #pragma once
 
@@ -15,7 +15,7 @@ namespace tact::firmware::loop {
 /// False in builds where heap calls cannot be counted: realtime sanitizer, and gcc's sanitizers.
 bool can_count_heap_calls();
 
-/// Under any sanitizer, which makes system calls of its own, and more memory than is locked.
+/// True under any sanitizer: it makes additional system calls and uses memory that is not locked.
 bool is_sanitized();
 
 /// Counts the heap calls of this thread while it lives.

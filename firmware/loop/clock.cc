@@ -7,7 +7,7 @@
 #include "model/time_ns.h"
 
 namespace tact::firmware::loop {
-// The two calls the kernel must answer: the compiler cannot see that they are bounded.
+// Two system calls; the compiler cannot verify that they are real-time safe.
 #if defined(__clang__) && __clang_major__ >= 20
 #pragma clang diagnostic push
 #pragma clang diagnostic ignored "-Wfunction-effects"
@@ -19,8 +19,8 @@ std::int64_t MonotonicClock::now_ns() RT_SAFE {
 }
 
 void MonotonicClock::sleep_until_ns(std::int64_t deadline_ns) RT_SAFE {
-  // TIMER_ABSTIME: a sleep that a signal cuts short begins again with the same deadline and loses
-  // no time. The error is the return value; errno is not set.
+  // TIMER_ABSTIME: after a signal the sleep is repeated with the same deadline. The error is the
+  // return value; errno is not set.
   const timespec t{.tv_sec = deadline_ns / model::kSecond_ns,
                    .tv_nsec = deadline_ns % model::kSecond_ns};
   while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) == EINTR) {

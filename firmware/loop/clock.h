@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// clock.h - the only door to time in this room: what a tick calls gets time as an argument. Threads
-// of hal below it read the same clock by hal/monotonic.h.
+// clock.h - the clocks of the loop. Only the loop reads them; what a tick calls gets the time as an
+// argument. Threads of hal read the same clock by hal/monotonic.h.
 #pragma once
 
 #include <cstdint>
@@ -13,9 +13,9 @@ class Clock {
  public:
   virtual ~Clock() = default;
   virtual std::int64_t now_ns() RT_SAFE = 0;
-  /// A counter of even pace, and of no rate that is known: cheaper than the time.
+  /// A counter of constant but unknown rate; faster to read than now_ns().
   virtual std::int64_t mark() RT_SAFE { return now_ns(); }
-  /// Returns at or after the deadline; at once when it has passed.
+  /// Returns at or after the deadline; immediately if it has passed.
   virtual void sleep_until_ns(std::int64_t deadline_ns) RT_SAFE = 0;
 };
 
@@ -33,12 +33,12 @@ class MonotonicClock final : public Clock {
   void sleep_until_ns(std::int64_t deadline_ns) RT_SAFE override;
 };
 
-/// Time from the counter alone, between two readings of the clock. The counter's rate is taken from
-/// the last two readings, one tick apart. If that rate changes (an old CPU that changes its clock),
-/// the durations measured in one tick are wrong, and no more: deadlines come from the clock.
+/// Time from the counter between two readings of the clock. The counter's rate comes from the last
+/// two readings, one tick apart. If the rate changes (old CPUs with a variable clock), only the
+/// durations measured in one tick are wrong: deadlines come from the clock.
 class MarkedTime {
  public:
-  /// The time and the mark of now.
+  /// Clock and counter, read at the same moment.
   void set(std::int64_t now_ns, std::int64_t mark) RT_SAFE {
     const auto marks = static_cast<double>(mark - mark_);
     if (mark_ != 0 && mark > mark_ && now_ns > now_ns_)
@@ -55,7 +55,7 @@ class MarkedTime {
   double ns_per_mark_ = 1.0;
 };
 
-/// Time that only passes while the loop sleeps: runs as fast as the CPU allows, always the same.
+/// Time that advances only while the loop sleeps: runs as fast as the CPU allows, repeatably.
 class SimulatedClock final : public Clock {
  public:
   std::int64_t now_ns() RT_SAFE override { return now_ns_; }

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// clutch.h - a small device reaches a large organ: while the clutch is pressed the tool stays where
-// it is, and the hand moves the handle to another place.
+// clutch.h - while the clutch is pressed the tool stays and the handle moves, so that a device with
+// a small workspace reaches all of a large organ.
 //
 //     p_tool = p_handle + s      s: shift, 0 at the start; both in W. The tool turns as before.
 //
-// The velocity of a sample stays the handle's, open or not: the gate holds it against its limit.
+// The velocity of a sample is always that of the handle, which the gate limits.
 //
 //   coupled  the tool follows the handle
-//   yields   pressed, and a force is still written: none is asked for any more
-//   open     no force is written: the tool stays, s follows the handle, contact is forgotten
+//   yields   pressed, the written force is not yet zero: the wanted force is zero
+//   open     the written force is zero: the tool stays, s follows the handle, contact is reset
 //
-// Released, the tool follows again from where it is: contact begins again there (contact.h), so a
-// sphere inside the organ feels nothing.
+// After release the tool follows from its position. Contact starts again there (contact.h): a
+// sphere inside the organ gives no force.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ enum class ClutchState : std::uint8_t { kCoupled = 0, kYields = 1, kOpen = 2 };
 
 class Clutch {
  public:
-  /// Moves a fresh sample from handle to tool. `has_force`: one was written in the last tick.
+  /// Changes a fresh sample from handle to tool. `has_force`: the last written force is not zero.
   ClutchState step(bool pressed, bool has_force, hal::Sample& sample) RT_SAFE {
     if (!pressed) {
       state_ = ClutchState::kCoupled;
@@ -32,7 +32,7 @@ class Clutch {
       state_ = has_force || !located_ ? ClutchState::kYields : ClutchState::kOpen;
       if (state_ == ClutchState::kOpen) ++count_;
     }
-    // A sample that is no number latches elsewhere, and must not stay in the shift.
+    // NaN latches in the controller, and must not enter the shift.
     if (!sample.fresh || !is_finite(sample.tool)) return state_;
     if (state_ == ClutchState::kOpen) shift_m_ = tool_m_ - sample.tool.position_m;
     sample.tool.position_m = sample.tool.position_m + shift_m_;
@@ -41,7 +41,7 @@ class Clutch {
     return state_;
   }
   const model::Vec3& shift_m() const RT_SAFE { return shift_m_; }
-  /// How often it has opened.
+  /// How often the clutch has opened.
   std::uint32_t count() const RT_SAFE { return count_; }
 
  private:

@@ -9,25 +9,25 @@
 namespace tact::firmware::loop {
 namespace {
 
-// A gate that lets go: no force of any law is felt.
+// The gate ramps down or has zero force, for this reason.
 bool lets_go(Fault limit) RT_SAFE {
   return limit == Fault::kNotArmed || limit == Fault::kSampleStale ||
          limit == Fault::kOutsideWorkspace || limit == Fault::kTooFast;
 }
 
-// More latch on hard real time (overrun_counter.h), and each period that is followed costs time.
+// Periods simulated in one tick, which cost time. With hard real time 20 skipped periods latch.
 constexpr std::uint32_t kMaxPeriods = 20;
-// The reach of a tool goes beyond its speed limit by 5 %, as a period may be longer by the jitter
-// of the device's samples, and by 0.1 mm, the noise and the steps of its encoders.
+// Margins on the distance that the speed limit permits: 5 % for the jitter of the device's
+// samples, 0.1 mm for noise and resolution of the encoders.
 constexpr double kReachRatio = 1.05;
 constexpr double kReachMargin_m = 1e-4;
 
-// v + w l: the speed limit of the tool, and its turn about its origin at the farthest sphere.
+// v + w l: speed limit of the tool, turn limit times the distance of the farthest sphere.
 double fastest_sphere_mps(const model::contact::ContactScene& scene, const gate::Gate& gate) {
   double lever_m = 0.0;
   for (const model::contact::ProbeSphere& sphere : scene.spheres)
     lever_m = std::max(lever_m, norm(sphere.offset_m));
-  // Without a lever a turn moves nothing, even where it has no limit.
+  // Without a lever a rotation moves no sphere, even if the turn limit is infinite.
   return gate.speed_limit_mps() + (lever_m > 0.0 ? gate.turn_limit_radps() * lever_m : 0.0);
 }
 
@@ -41,22 +41,22 @@ Controller::Controller(const model::contact::ContactScene& scene, const gate::Ga
       overruns_(hard_real_time),
       fastest_mps_(fastest_sphere_mps(scene, gate)) {}
 
-// In the periods since the last sample, or in the time between both samples: a tick that woke late
-// has a sample of then, and what was skipped is told in the next one.
+// The longer of the periods since the last sample and of the time between both time stamps: in a
+// tick that woke late the sample is late, too, but the skipped periods count only in the next tick.
 double Controller::reach_m(std::uint64_t periods, std::int64_t stamp_ns) const RT_SAFE {
   const double by_ticks_s = static_cast<double>(periods) * gate_.period_s();
   const double by_stamps_s = seen_ ? 1e-9 * static_cast<double>(stamp_ns - stamp_ns_) : 0.0;
   return kReachRatio * fastest_mps_ * std::max(by_ticks_s, by_stamps_s) + kReachMargin_m;
 }
 
-// Neither arming nor a pause changes contact: it follows the tool from its first sample on. While
-// samples are missing it stays where the last one was.
+// Contact follows the tool from the first sample on, armed or not. While samples are missing the
+// tool stays at the last one.
 void Controller::detect_contact(const TickInput& input) RT_SAFE {
   const std::uint64_t passed = std::uint64_t{input.skipped_periods} + 1;  // since the last tick
   const auto periods = static_cast<std::uint32_t>(std::min<std::uint64_t>(passed, kMaxPeriods));
   const hal::Sample& sample = input.sample;
   const bool is_open = input.clutch == ClutchState::kOpen;
-  // The tool stays, and touches nothing: what comes after begins where it is then.
+  // Opening the clutch resets contact; after release contact starts again at the tool's position.
   if (is_open && !std::exchange(was_open_, is_open)) contact_.reset();
   was_open_ = is_open;
   if (is_open) {
@@ -74,7 +74,7 @@ void Controller::detect_contact(const TickInput& input) RT_SAFE {
 
 void Controller::render_force(const TickInput& input) RT_SAFE {
   if (!seen_) return;  // before the first sample there is no pose
-  // A blade cuts only what a hand can feel: armed, as the tick before left it.
+  // The blade cuts only while force can be rendered: armed after the last tick, clutch closed.
   const bool is_open = input.clutch == ClutchState::kOpen;
   rendered_ = contact_.render_force(input.sample.tool, supervisor_.armed() && !is_open);
   if (rendered_.is_lost) ++contact_losses_;
@@ -85,19 +85,19 @@ void Controller::publish_shape() RT_SAFE {
   if (contact_.shape(shape_)) shapes_.write(shape_);
 }
 
-// The device's own word counts first, then what the samples, the law and the clock tell.
+// A latched fault of the device comes first, then sample, law and lateness.
 Fault Controller::find_fault(const TickInput& input, bool finite, bool too_late) const RT_SAFE {
   if (latches(input.device_fault)) return input.device_fault;
   if (!finite) return Fault::kSampleNotFinite;
   if (rendered_.is_broken) return Fault::kLawBroke;
-  // Late without a force harms nobody; a start may take its time.
+  // Overruns count only while armed: without force they are harmless, and the start is slow.
   if (too_late && supervisor_.armed()) return Fault::kLoopLate;
   return Fault::kNone;
 }
 
-// A force that is no longer the tissue's is told before what the gate does with it, unless the gate
-// lets go. A loss is told then, too: what makes it, missed samples and jumps, often makes the gate
-// let go. A person must learn before arming that the tool is inside.
+// Limits of contact and law are reported before those of the gate, unless the gate has ramped down
+// or is not armed (lets_go). Lost contact is reported in any case while armed, because its causes,
+// missed samples and jumps, also ramp the gate down. "Tool inside" is reported before arming, too.
 Fault Controller::find_limit(Fault acting, bool is_coupled) const RT_SAFE {
   const bool open = !lets_go(acting);
   const State state = supervisor_.state();
@@ -109,7 +109,7 @@ Fault Controller::find_limit(Fault acting, bool is_coupled) const RT_SAFE {
   return acting;
 }
 
-// Where the gate lets the hand go, it lets the fingers go, too.
+// If the gate of the hand ramps down, the wanted force on the fingers is zero, too.
 gate::LimitedGrip Controller::limit_grip(const TickInput& input) RT_SAFE {
   if (!grip_gate_) return {};
   const hal::Sample& sample = input.sample;
@@ -126,15 +126,15 @@ TickOutput Controller::limit(const TickInput& input) RT_SAFE {
   const bool finite = is_finite(input.sample.tool);
   const bool too_late = overruns_.step(input.skipped_periods);
   const Fault fault = find_fault(input, finite, too_late);
-  // The supervisor before the gate: a fault found in this tick has zero force in this tick.
+  // The supervisor runs before the gate: a fault zeroes the force in the same tick.
   supervisor_.step(
       input.commands,
       {.sample_good = input.sample.fresh && finite, .ready = input.ready, .fault = fault});
-  // The fingers first: a fault found there has zero force on the hand in this tick.
+  // The grip gate runs before the gate: its fault zeroes the force on the hand in the same tick.
   const gate::LimitedGrip grip = limit_grip(input);
   supervisor_.trip(grip.fault);
-  // Where the gate latches it makes the force zero by itself; the state follows.
-  // Its workspace is the device's, so it is given the handle.
+  // If the gate latches, it zeroes the force; the supervisor then stops. The gate's workspace is
+  // that of the device, so the gate gets the pose of the handle.
   hal::Tool handle = input.sample.tool;
   handle.position_m = handle.position_m - input.clutch_shift_m;
   const bool is_coupled = input.clutch == ClutchState::kCoupled;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// controller.h - a tick without its device and its clock: detect, render, limit.
+// controller.h - the phases detect, render and limit of a tick, without device and clock.
 //
-// Everything that decides the force is in TickInput, so a recorded run gives the same bits again
-// (replay.h). The loop (rt_loop.h) calls the three phases and measures them.
+// The force depends on TickInput only, so a replay of a recorded run gives the same bits
+// (replay.h). The loop (rt_loop.h) calls the three phases and measures their durations.
 #pragma once
 
 #include <optional>
@@ -18,28 +18,28 @@
 
 namespace tact::firmware::loop {
 
-/// All that enters a tick from outside.
+/// All inputs of a tick.
 struct TickInput {
   hal::Sample sample;
   Fault device_fault = Fault::kNone;
   Commands commands;
-  bool ready = true;  // lines and device would let a force through
+  bool ready = true;  // the lines permit power and the device's motors are on
   ClutchState clutch = ClutchState::kCoupled;
-  std::uint32_t skipped_periods = 0;  // between the tick before and this one
-  std::uint32_t clutches = 0;         // so far: the clutch has opened
+  std::uint32_t skipped_periods = 0;  // between the previous tick and this one
+  std::uint32_t clutches = 0;         // how often the clutch has opened so far
   model::Vec3 clutch_shift_m{};       // of the tool from the handle, in W
 };
 
-/// All that leaves it.
+/// All outputs of a tick.
 struct TickOutput {
-  model::Wrench wanted;   // by the law
+  model::Wrench wanted;   // from contact and law
   model::Wrench written;  // after the gate
   State state = State::kOff;
   Fault limit = Fault::kNone;
   Fault fault = Fault::kNone;        // latched
-  double given_energy_J = 0.0;       // by the device since arming, more than it took
+  double given_energy_J = 0.0;       // energy given minus taken by the device since arming
   double rms_force_N = 0.0;          // written, over limits.thermal_time_s
-  std::uint64_t contact_losses = 0;  // so far: the tool moved unseen, farther than its speed allows
+  std::uint64_t contact_losses = 0;  // so far; by motion above the speed limit between two samples
   double wanted_grip_N = 0.0, written_grip_N = 0.0;  // on the fingers, opening positive
 };
 
@@ -47,7 +47,7 @@ using ShapeSlot = hal::LatestSlot<model::contact::PatchShape>;
 
 class Controller {
  public:
-  /// Without hard real time the late watch bears single stalls.
+  /// `hard_real_time` sets the limits of the OverrunCounter.
   Controller(const model::contact::ContactScene& scene, const gate::Gate& gate, bool hard_real_time,
              const std::optional<gate::GripGate>& grip_gate = std::nullopt);
 
@@ -55,24 +55,24 @@ class Controller {
   void render_force(const TickInput& input) RT_SAFE;
   TickOutput limit(const TickInput& input) RT_SAFE;
 
-  /// The three phases in a row.
+  /// Runs the three phases.
   TickOutput tick(const TickInput& input) RT_SAFE {
     detect_contact(input);
     render_force(input);
     return limit(input);
   }
 
-  /// What a stepped law looks like now goes to the slot; nothing for laws with a profile.
+  /// Writes the shape of a stepped law to the slot; does nothing for laws with a profile.
   void publish_shape() RT_SAFE;
   ShapeSlot& shapes() { return shapes_; }
 
   std::span<const model::contact::SphereContact> contacts() const RT_SAFE {
     return contact_.contacts();
   }
-  /// A sphere is inside the organ, as of this tick.
+  /// A sphere is inside the organ in this tick.
   bool is_inside() const RT_SAFE { return rendered_.is_inside; }
   const gate::Gate& gate() const RT_SAFE { return gate_; }
-  /// Of the last tick; for after the loop.
+  /// Output of the last tick; to be read after the loop.
   const TickOutput& newest() const { return newest_; }
 
  private:
@@ -83,18 +83,18 @@ class Controller {
 
   model::contact::Contact contact_;
   gate::Gate gate_;
-  std::optional<gate::GripGate> grip_gate_;  // where the device presses against the fingers
+  std::optional<gate::GripGate> grip_gate_;  // if the gripper has a motor
   OverrunCounter overruns_;
   Supervisor supervisor_;
   model::contact::ContactResponse rendered_;  // of this tick
   double jaw_force_N_ = 0.0;                  // of this tick
-  Fault acting_ = Fault::kNone;               // in the gate, in the last tick
-  bool was_open_ = false;                     // the clutch, in the last tick
+  Fault acting_ = Fault::kNone;               // of the gate in the last tick
+  bool was_open_ = false;                     // clutch in the last tick
   TickOutput newest_;
   model::contact::PatchShape shape_;
   ShapeSlot shapes_;
-  double fastest_mps_;         // that a sphere may move
-  bool seen_ = false;          // there was a fresh sample
+  double fastest_mps_;         // speed limit of a sphere
+  bool seen_ = false;          // a fresh sample has come
   std::uint64_t unseen_ = 0;   // periods in a row without a sample
   std::int64_t stamp_ns_ = 0;  // of the last sample
   std::uint64_t contact_losses_ = 0;

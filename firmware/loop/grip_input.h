@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// grip_input.h - how far the jaws are closed, from what the hand presses.
+// grip_input.h - closing ratio of the jaws, from the grip input of the hand.
 //
-//   hold    the jaws follow the hand: closed while it presses
-//   toggle  one press closes them, the next opens them
+//   hold    the jaws follow the input
+//   toggle  one press closes the jaws, the next opens them
 //
-// A press is a ratio above `close_ratio` after one below `open_ratio`. What is pressed when the
-// loop starts is no press. A grip switch on the lines takes the place of the device's own.
+// A press is a ratio above `close_ratio` after one below `open_ratio`. An input that is already
+// pressed at the start does not count. A grip switch on the lines replaces the device's grip input.
 #pragma once
 
 #include <cmath>
@@ -24,8 +24,7 @@ class GripInput {
  public:
   explicit GripInput(const GripSettings& settings) : settings_(settings) {}
 
-  /// `device`: as its last sample has it; `line`: the grip switch, where one is wired. A ratio that
-  /// is no number stays one.
+  /// `device`: ratio of its last sample; `line`: the grip switch, if one is wired. NaN stays NaN.
   double step(double device, std::optional<bool> line) RT_SAFE {
     const double hand = line ? (*line ? 1.0 : 0.0) : device;
     if (!settings_.toggles) return hand;

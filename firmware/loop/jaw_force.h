@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// jaw_force.h - how hard the tissue between the jaws pushes them apart.
+// jaw_force.h - force of the tissue that pushes the jaws apart; positive opens the fingers.
 //
-//     f = c (N1 + N2) / 2     c: how far they are closed, 0 to 1; N: force on the sphere of a jaw
+//     f = c (N1 + N2) / 2     c: closing ratio, 0 to 1; N: force on the sphere of a jaw
 //                             along the outward normal of the tissue, N, not below 0
 //
-// Of a tool with two spheres, one a jaw; any other tool has no jaws. Positive opens the fingers.
-// Nothing between open jaws: what presses on their outside is no grip.
+// Only for a tool with two spheres, one per jaw; otherwise zero. Zero with open jaws, where force
+// acts on the outside of the jaws.
 #pragma once
 
 #include <cmath>
@@ -21,7 +21,7 @@ inline double jaw_force_N(std::span<const model::contact::SphereContact> jaws,
   double sum_N = 0.0;
   for (const model::contact::SphereContact& jaw : jaws) {
     const double normal_N = dot(jaw.force_N, jaw.normal);
-    if (std::isnan(normal_N)) return normal_N;  // for the gate to find
+    if (std::isnan(normal_N)) return normal_N;  // latches in the gate
     sum_N += std::fmax(normal_N, 0.0);
   }
   // f = c (N1 + N2) / 2

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// latency_histogram.h - durations in ns, log-linear: 64 equal buckets in every power of two.
+// latency_histogram.h - histogram of durations in ns: 64 equal buckets per power of two.
 //
 // Relative error of a percentile <= 1/64; fixed memory, O(1) recording without allocation. Values
-// above 2^40 ns (18 minutes) land in the last bucket; the exact maximum is kept with its tick.
+// above 2^40 ns (18 minutes) count in the last bucket; the exact maximum is kept with its tick.
 #pragma once
 
 #include <array>
@@ -53,7 +53,7 @@ class LatencyHistogram {
   static constexpr std::size_t kSub = std::size_t{1} << kSubBits;
   static constexpr std::size_t kBuckets = (kTopBit - kSubBits + 1) * kSub;
 
-  // Below 64 ns a bucket is 1 ns wide; above, the top 7 bits of the value name it.
+  // Below 64 ns a bucket is 1 ns wide; above, the top 7 bits of the value select it.
   static constexpr std::size_t bucket_of(std::uint64_t ns) RT_SAFE {
     if (ns < kSub) return ns;
     const unsigned shift = static_cast<unsigned>(std::bit_width(ns)) - 1 - kSubBits;

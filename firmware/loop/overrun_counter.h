@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// overrun_counter.h - when has the loop lost its time?
+// overrun_counter.h - when do overruns of the loop latch a fault?
 //
 //     hard real time   20 periods skipped at once, or 20 late ticks in a row (RT-15)
-//     elsewhere        100 late ticks in a row; a stall alone is what a stock kernel does
+//     elsewhere        100 late ticks in a row; single stalls are normal on a stock kernel
 //
-// A tick is late when it eats into the next period, so at least one is skipped after it. A loop
-// that is late in every tick is too slow for its rate: it holds each force too long for the hand.
+// A late tick ends after the next release, so at least one period is skipped. A loop that is late
+// in every tick is too slow for its rate: each force is held too long, which adds energy.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ class OverrunCounter {
  public:
   explicit OverrunCounter(bool hard_real_time) : hard_real_time_(hard_real_time) {}
 
-  /// One tick, with the periods skipped before it. True: stop.
+  /// Call once per tick, with the periods skipped before it. True: stop.
   bool step(std::uint32_t skipped_periods) RT_SAFE {
     if (skipped_periods == 0)
       late_in_a_row_ = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// progress.h - where the loop is, told by the loop, read by the watch above it (loop_monitor.h).
+// progress.h - progress of the loop, written by the loop, read by the watch (loop_monitor.h).
 //
-// Plain stores on the loop's side: a tick costs a handful of them, and never waits.
+// The loop only makes relaxed stores, a few per tick, and never waits.
 #pragma once
 
 #include <atomic>
@@ -11,7 +11,7 @@
 
 namespace tact::firmware::loop {
 
-/// Whose code runs: a call that does not come back names its owner.
+/// Whose code the loop is running; names the cause if a call hangs.
 enum class Callee : std::uint8_t { kOwn, kLines, kDevice };
 
 class Progress {
@@ -21,7 +21,7 @@ class Progress {
     ticks_.store(ticks_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
   }
   void enter(Callee callee) RT_SAFE { callee_.store(callee, std::memory_order_relaxed); }
-  /// The force is zero and nothing follows.
+  /// Zero force is written and the loop makes no further call.
   void end() RT_SAFE { ended_.store(true, std::memory_order_relaxed); }
 
   /// Watch side.

@@ -3,8 +3,8 @@
 
 namespace tact::firmware::loop {
 
-// dropped_ is a count alone, nothing is ordered by it: relaxed.
-// Boost does not carry the mark; its fixed-capacity push copies into storage it already has.
+// dropped_ orders no other data: relaxed.
+// Boost has no real-time marks; its fixed-capacity push copies into memory allocated before.
 #if defined(__clang__) && __clang_major__ >= 20
 #pragma clang diagnostic push
 #pragma clang diagnostic ignored "-Wfunction-effects"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// ring.h - the way of every tick out of the loop: wait-free, fixed capacity, drops when full, never
-// waits. Only a patch's shape goes another way, through the controller's latest-value slot.
+// ring.h - ring buffer of tick records from the loop to telemetry: wait-free, fixed capacity, drops
+// when full. The shape of a patch takes the controller's latest-value slot instead.
 #pragma once
 
 #include <algorithm>
@@ -14,11 +14,11 @@ namespace tact::firmware::loop {
 
 class TickRing {
  public:
-  /// For a second of ticks: a viewer may get one frame in that time.
+  /// Holds one second of ticks: the lowest frame rate of a viewer is one per second.
   explicit TickRing(double rate_Hz = 1000.0)
       : queue_(std::max<std::size_t>(kMin, static_cast<std::size_t>(1.024 * rate_Hz))) {}
 
-  /// Loop side. A full ring drops the record and counts it.
+  /// Loop side. If the ring is full, drops the record and counts it.
   void push(const TickRecord& record) RT_SAFE;
   /// Telemetry side. False when empty.
   bool pop(TickRecord& record) { return queue_.pop(record); }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nothing in here may wait but for the clock; nothing locks, allocates, prints or throws. The gate
-// sees every force before the hand does.
+// The only wait in this file is that for the clock; nothing locks, allocates, prints or throws.
+// Every force passes the gate before it is written.
 #include "firmware/loop/rt_loop.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace tact::firmware::loop {
 
 void RtLoop::run() RT_SAFE {
-  // A stop request makes no further tick: its zero force is the one of release_device().
+  // After a stop request no tick follows; release_device() writes zero force.
   while (may_run()) step();
   release_device();
 }
@@ -23,9 +23,9 @@ void RtLoop::step() RT_SAFE {
   clock_.sleep_until_ns(due_ns_);
   cycle(due_ns_);
   due_ns_ += period_ns;  // absolute deadlines: one late tick does not delay the next
-  // By the clock, not by marks: lateness and the grid must be the kernel's own time (RT-14).
+  // Read from the clock, not extrapolated: lateness must be in the kernel's time (RT-14).
   const std::int64_t behind_ns = clock_.now_ns() - due_ns_;
-  // Taken before between_ticks(): simulated physics is no part of the tick.
+  // Measured before between_ticks(): simulated physics is not part of the tick.
   record_.margin_ns = -behind_ns;
   std::int64_t skipped = 0;
   if (behind_ns >= 0) {
@@ -40,7 +40,7 @@ void RtLoop::step() RT_SAFE {
 }
 
 void RtLoop::release_device() RT_SAFE {
-  // Lines first: should the device hang in the next call, its power is on its way off already.
+  // Lines first: if the device hangs in the next call, its power is already switched off.
   progress_.enter(Callee::kLines);
   const Fault lines_fault = lines_.write({.healthy = false, .armed = false, .faulted = true});
   progress_.enter(Callee::kDevice);
@@ -50,16 +50,16 @@ void RtLoop::release_device() RT_SAFE {
   progress_.enter(Callee::kOwn);
   progress_.end();
   for (const Fault fault : {write_fault_, lines_fault, device_fault})
-    if (fault != Fault::kNone) requests_.trip(fault);  // no tick will come that could tell it
+    if (fault != Fault::kNone) requests_.trip(fault);  // no tick follows that could latch it
 }
 
 void RtLoop::hear_requests() RT_SAFE {
-  // Relaxed, as everywhere here: each word stands for itself, no other data is read because of it.
-  // One that is seen a tick later is a request made a tick later.
+  // Relaxed, as everywhere in this file: no word orders other data. A request that is read a tick
+  // later acts a tick later.
   const Commands before = record_.input.commands;
   const std::uint32_t asked = requests_.asked.load(std::memory_order_relaxed);
-  // By number alone: one that a tick has taken cannot be taken back. The supervisor acts on an
-  // edge: between two requests there is a tick without one.
+  // Compares only numbers: a request that a tick has taken cannot be cancelled. The supervisor acts
+  // on rising edges, so a tick without a request comes between two requests.
   answers_ = (asked ^ heard_) > 3U && !before.arm && !before.reset && !before.disarm;
   if (answers_) heard_ = asked;
   const auto request = answers_ ? static_cast<Request>(asked & 3U) : Request::kNone;
@@ -70,11 +70,11 @@ void RtLoop::hear_requests() RT_SAFE {
                             .disarm = request == Request::kDisarm};
 }
 
-// A person's request is answered in the tick that took it: done by now, or refused.
+// Answers a person's request in the tick that took it: done or refused.
 void RtLoop::answer_requests() RT_SAFE {
   const State state = record_.output.state;
   if (answers_) {
-    // Not by the commands: the loop's own request to arm may stand beside a person's.
+    // Not from the commands: arm_at_start may add an arm command to a person's request.
     const auto request = static_cast<Request>(heard_ & 3U);
     const bool done = request == Request::kArm ? state == State::kArmed
                       : request == Request::kReset
@@ -88,19 +88,18 @@ void RtLoop::answer_requests() RT_SAFE {
     requests_.arm_at_start.store(false, std::memory_order_relaxed);
 }
 
-// Every second tick, as only an edge arms.
+// Every second tick, as arming needs a rising edge.
 bool RtLoop::arms_at_start() const RT_SAFE {
   return requests_.arm_at_start.load(std::memory_order_relaxed) &&
          record_.output.state == State::kReady && !record_.input.commands.arm;
 }
 
-// The lines' word counts before the device's. The watch is asked last, because its fault may
-// concern the calls just made; its fault is reported first.
+// Returns the first of the faults of watch, lines, device and last write. The watch's fault is read
+// last, because it may concern the calls just made.
 Fault RtLoop::read(std::int64_t now_ns) RT_SAFE {
   progress_.enter(Callee::kLines);
   const Fault lines_fault = lines_.read(now_ns);
-  // A device with nothing new leaves the rest untouched
-  // (hal/device.h): the old sample must not pass for a new one.
+  // A device without new data leaves the sample unchanged (hal/device.h): it must not stay fresh.
   hal::Sample& sample = record_.input.sample;
   sample.fresh = false;
   sample.tool.grip_ratio = device_grip_ratio_;
@@ -126,8 +125,8 @@ void RtLoop::use_clutch(bool pressed) RT_SAFE {
   input.clutches = statistics_.clutches = clutch_.count();
 }
 
-// A fault takes the drives' permission before it takes their force. The heartbeat of this tick
-// vouches for the one before it: that one is over, and was in time.
+// In state Stopped the drives lose power permission before zero force is written. The heartbeat
+// toggles if the previous tick met its deadline.
 void RtLoop::write() RT_SAFE {
   const TickOutput& output = record_.output;
   const bool stopped = output.state == State::kStopped;
@@ -143,7 +142,7 @@ void RtLoop::write() RT_SAFE {
   write_fault_ = lines_fault != Fault::kNone ? lines_fault : device_fault;
 }
 
-// The record is dropped when nobody has read the last ones.
+// If the ring is full, the record is dropped.
 void RtLoop::publish() RT_SAFE {
   statistics_.max_force_N = std::max(statistics_.max_force_N, norm(record_.output.written.force_N));
   statistics_.max_torque_Nm =
@@ -172,7 +171,7 @@ bool RtLoop::may_run() const RT_SAFE {
 
 void RtLoop::cycle(std::int64_t due_ns) RT_SAFE {
   const std::int64_t wake_ns = now_ns();
-  // Told to the watch before any call that could hang.
+  // Counted before any call that could hang, so that the watch sees this tick.
   progress_.tick();
   lines_.scope(true);
   record_.tick = statistics_.ticks++;
@@ -182,7 +181,7 @@ void RtLoop::cycle(std::int64_t due_ns) RT_SAFE {
   hear_requests();
   TickInput& input = record_.input;
   input.device_fault = read(wake_ns);
-  // After both were read: power that fell in this tick stops the force in this tick.
+  // After both were read: a loss of power stops the force in the same tick.
   input.ready = lines_.enabled() && device_.ready();
   const std::int64_t read_ns = end_phase(Phase::kRead, wake_ns);
 
@@ -197,7 +196,7 @@ void RtLoop::cycle(std::int64_t due_ns) RT_SAFE {
   write();
   lines_.scope(false);
   const std::int64_t written_ns = end_phase(Phase::kWrite, limited_ns);
-  const bool stopped = record_.output.state == State::kStopped;  // a stop is timed by the clock
+  const bool stopped = record_.output.state == State::kStopped;  // stop times come from the clock
   stop_timer_.step(input, record_.output, wake_ns, stopped ? clock_.now_ns() : written_ns);
   statistics_.stop = stop_timer_.times();
 
@@ -220,7 +219,7 @@ std::int64_t RtLoop::end_phase(Phase phase, std::int64_t since_ns) RT_SAFE {
 
 void RtLoop::record_phase(Phase phase, std::int64_t duration_ns) RT_SAFE {
   const auto i = static_cast<std::size_t>(phase);
-  // The histogram has all 64 bits; the record 32, where 2 s are as good as never.
+  // The histogram has 64 bits; the record has 32 and saturates at 2.1 s.
   statistics_.phase[i].record(duration_ns, record_.tick);
   constexpr std::int64_t kMax = std::numeric_limits<std::int32_t>::max();
   record_.phase_ns[i] = static_cast<std::int32_t>(std::clamp<std::int64_t>(duration_ns, 0, kMax));

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // rt_loop.h - the haptic loop: read, detect, render, limit, write, publish, at fixed deadlines.
 //
-// Deadlines are absolute (release_schedule.h). A tick that ends after its own period is late; the
-// periods it has eaten are skipped and counted, the release schedule never shifts (RT-14). Whatever
-// ends the loop, zero force is written last; a fault of that write is told, too.
+// Deadlines are absolute (release_schedule.h). A tick that ends after the next deadline is late;
+// the deadlines that have passed are skipped and counted, the release schedule never shifts
+// (RT-14). At the end of the loop zero force is written; a fault of that write is reported.
 #pragma once
 
 #include <array>
@@ -24,19 +24,19 @@
 
 namespace tact::firmware::loop {
 
-/// What a run leaves behind. Read it after run() has returned.
+/// Statistics of a run. Read them after run() has returned.
 struct LoopStatistics {
   std::uint64_t ticks = 0;
-  std::uint64_t late_ticks = 0;     // ended after their own period
+  std::uint64_t late_ticks = 0;     // ended after the next deadline
   std::uint64_t skipped_ticks = 0;  // releases that had no tick
   std::uint64_t contact_losses = 0;
   std::uint32_t clutches = 0;       // times that the clutch has opened
-  std::uint64_t inside_ticks = 0;   // a sphere was inside the organ and felt nothing
+  std::uint64_t inside_ticks = 0;   // with a sphere inside the organ, without force
   double max_force_N = 0.0;         // written
   double max_torque_Nm = 0.0;       // written
   double max_grip_force_N = 0.0;    // written, on the fingers
   double max_rms_force_N = 0.0;     // written, over limits.thermal_time_s
-  double max_given_energy_J = 0.0;  // since arming, more than was taken
+  double max_given_energy_J = 0.0;  // given minus taken since arming
   StopTimes stop;
   std::array<LatencyHistogram, kPhaseCount> phase;
 };
@@ -61,23 +61,23 @@ class RtLoop {
         requests_(requests),
         ring_(ring),
         grip_(settings.grip) {
-    record_.margin_ns = settings.period_ns;  // before the first tick nothing is used up
+    record_.margin_ns = settings.period_ns;  // before the first tick: a full period
   }
 
-  /// Steps until a stop request, max_ticks or max_periods, then lets go.
+  /// Steps until a stop request, max_ticks or max_periods, then calls release_device().
   void run() RT_SAFE;
   /// Sleeps to the next deadline and does one tick.
   void step() RT_SAFE;
   bool may_run() const RT_SAFE;
-  /// Power permission away and zero force to the device: the last thing that any loop does.
+  /// Removes power permission and writes zero force: the last call of every loop.
   void release_device() RT_SAFE;
   const LoopStatistics& statistics() const { return statistics_; }
-  /// For the watch, at any time.
+  /// For the watch; callable at any time.
   const Progress& progress() const { return progress_; }
 
  private:
   void cycle(std::int64_t due_ns) RT_SAFE;
-  /// What others ask goes into this tick.
+  /// Copies the pending request into this tick's input.
   void hear_requests() RT_SAFE;
   void answer_requests() RT_SAFE;
   bool arms_at_start() const RT_SAFE;
@@ -85,10 +85,10 @@ class RtLoop {
   void use_clutch(bool pressed) RT_SAFE;
   void write() RT_SAFE;
   void publish() RT_SAFE;
-  /// Reads the clock; marked_ns() the time since then by marks, for phases alone.
+  /// Reads the clock. marked_ns() extrapolates it by the counter, only to time the phases.
   std::int64_t now_ns() RT_SAFE;
   std::int64_t marked_ns() RT_SAFE { return marked_.at_ns(clock_.mark()); }
-  /// The phase ends now, and began then; returns now, by marks.
+  /// Ends a phase that began at `since_ns`; returns marked_ns().
   std::int64_t end_phase(Phase phase, std::int64_t since_ns) RT_SAFE;
   void record_phase(Phase phase, std::int64_t duration_ns) RT_SAFE;
 
@@ -106,9 +106,9 @@ class RtLoop {
   TickRecord record_;
   MarkedTime marked_;
   std::int64_t due_ns_ = 0;
-  std::uint32_t heard_ = 0;           // the newest request of a person that a tick has taken
-  bool answers_ = false;              // this tick has taken it
-  Fault write_fault_ = Fault::kNone;  // judged in the next tick
+  std::uint32_t heard_ = 0;           // newest request of a person that a tick has taken
+  bool answers_ = false;              // this tick has taken a request
+  Fault write_fault_ = Fault::kNone;  // latches in the next tick
   StopTimer stop_timer_;
   Progress progress_;
 };

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// stop_timer.h - when did force stop, and how soon after its cause was seen?
+// stop_timer.h - when did the force stop, and how long after its cause?
 //
-// Three times of the clock of the loop (CLOCK_MONOTONIC): the first of the samples missing now, the
-// fault that latched first, and the write that made the force zero. For the report, and for any
-// user has to show that a stop was in time. Of several stops the first fault is told.
+// Three times of the loop's clock (CLOCK_MONOTONIC): the first missing sample before the stop, the
+// first latched fault, and the write that made the force zero. They show in the report whether a
+// stop was in time. If there are several stops, the first fault is reported.
 #pragma once
 
 #include <cstdint>
@@ -13,17 +13,17 @@
 namespace tact::firmware::loop {
 
 struct StopTimes {
-  std::int64_t missed_ns = 0;  // 0: never, in all three
+  std::int64_t missed_ns = 0;  // all three: 0 means never
   std::int64_t fault_ns = 0;
-  std::int64_t zero_ns = 0;  // force left the device; no force since
+  std::int64_t zero_ns = 0;  // first zero force after a force; none since
 };
 
 class StopTimer {
  public:
-  /// One tick: woken, and its force written.
+  /// Call once per tick with the times of wake-up and write.
   void step(const TickInput& input, const TickOutput& output, std::int64_t wake_ns,
             std::int64_t written_ns) RT_SAFE {
-    if (times_.fault_ns == 0) {  // which samples were missing when it stopped
+    if (times_.fault_ns == 0) {  // keeps the samples that were missing at the stop
       if (input.sample.fresh) times_.missed_ns = 0;
       if (!input.sample.fresh && times_.missed_ns == 0) times_.missed_ns = wake_ns;
       if (output.fault != Fault::kNone) times_.fault_ns = wake_ns;

@@ -10,8 +10,8 @@ State Supervisor::step(const Commands& commands, const Findings& found) RT_SAFE 
   arm_before_ = commands.arm;
   disarm_before_ = commands.disarm;
   reset_before_ = commands.reset;
-  // Levels are taken in every state, so a request that came too early is spent (RT-16). A fault
-  // goes before a stop request: it stays as the cause.
+  // Levels are stored in every state, so a request that came too early is dropped (RT-16). A fault
+  // is handled before a stop request, so that it is reported as the cause.
   trip(found.fault);
   if (commands.stop) return state_ = State::kStopped;
   switch (state_) {
@@ -21,13 +21,13 @@ State Supervisor::step(const Commands& commands, const Findings& found) RT_SAFE 
     case State::kReady:
       if (arm_edge && found.sample_good && found.ready && !commands.disarm) state_ = State::kArmed;
       break;
-    case State::kArmed:  // power that comes back must not bring a force with it
+    case State::kArmed:  // latches, so that no force returns with the power
       if (!found.ready)
         trip(Fault::kPowerLost);
       else if (disarm_edge)
         state_ = State::kReady;
       break;
-    // Reset and arm are two acts: a request to arm that stands keeps the stop.
+    // Reset and arm are two requests: no reset while arm is requested.
     case State::kStopped:
       if (reset_edge && found.sample_good && !latches(found.fault) && !commands.arm) {
         state_ = State::kReady;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// supervisor.h - who may feel force: Off -> Ready -> Armed -> Stopped, faults latched.
+// supervisor.h - state machine that permits force: Off, Ready, Armed, Stopped; latches faults.
 //
-//     Off      nothing known of the device    -> Ready    a good sample
+//     Off      no good sample yet             -> Ready    a good sample
 //     Ready    device good, tissue force zero -> Armed    rising edge of arm, good sample, power on
 //     Armed    force passes the gate          -> Stopped  power lost
 //                                             -> Ready    rising edge of disarm
@@ -9,10 +9,9 @@
 //                                                         fault that latches, no arm request
 //     any                                     -> Stopped  stop request, or a fault that latches
 //
-// What the gate writes is zero but in Armed; the device may carry its own weight while its drives
-// have power. Reset never re-arms: arming is a request of its own (RT-16). A request that comes
-// before Ready, or while there is no power, is spent: none is kept for later. Nothing arms while a
-// request to disarm stands.
+// The gate writes zero force except in Armed; gravity compensation of the device may act while its
+// drives have power. Reset never arms: arming needs a separate request (RT-16). A request before
+// Ready or without power is dropped, not kept for later. Nothing arms while disarm is requested.
 #pragma once
 
 #include "firmware/loop/state.h"
@@ -22,7 +21,7 @@ namespace tact::firmware::loop {
 
 using model::Fault;
 
-/// What people ask for; levels, sampled once per tick.
+/// Requests of a person; levels, sampled once per tick.
 struct Commands {
   bool arm = false;
   bool stop = false;
@@ -32,23 +31,23 @@ struct Commands {
   friend bool operator==(const Commands&, const Commands&) = default;
 };
 
-/// What a tick found out before it decides.
+/// Results of the checks of a tick.
 struct Findings {
   bool sample_good = false;
-  bool ready = true;           // a force would reach the hand
+  bool ready = true;           // power is on and the motors work
   Fault fault = Fault::kNone;  // of the lines, the device, its sample, the law or the clock
 };
 
 class Supervisor {
  public:
-  /// One tick.
+  /// Call once per tick.
   State step(const Commands& commands, const Findings& found) RT_SAFE;
 
-  /// A fault found after step in the same tick: stops at once if it latches.
+  /// Reports a fault found after step(): if it latches, the state becomes Stopped in this tick.
   void trip(Fault fault) RT_SAFE;
 
   State state() const RT_SAFE { return state_; }
-  /// The fault that stopped it; kNone after a stop request.
+  /// The latched fault; kNone after a stop request.
   Fault fault() const RT_SAFE { return fault_; }
   bool armed() const RT_SAFE { return state_ == State::kArmed; }
 

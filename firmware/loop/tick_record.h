@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// tick_record.h - everything about one tick, in one plain struct: the ring carries it, telemetry
-// and recordings are cut from it.
+// tick_record.h - all data of one tick: element of the ring buffer, source of telemetry and
+// recordings.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,7 @@ inline constexpr std::size_t kPhaseCount = 8;
 inline constexpr std::array<const char*, kPhaseCount> kPhaseName{
     "wake", "read", "detect", "render", "limit", "write", "publish", "total"};
 
-/// What the tool's spheres touch. A copy takes the spheres that exist and no more: 168 bytes each.
+/// Contacts of the tool's spheres. A copy only copies the spheres in use: 168 bytes each.
 class SphereContacts {
  public:
   using SphereContact = model::contact::SphereContact;
@@ -38,7 +38,7 @@ class SphereContacts {
     if (this != &other) assign(other.all());
     return *this;
   }
-  /// At most kMaxSpheres of them.
+  /// Takes at most kMaxSpheres.
   void assign(std::span<const SphereContact> contacts) RT_SAFE {
     count_ = std::min(contacts.size(), model::contact::kMaxSpheres);
     std::copy_n(contacts.begin(), count_, contact_.begin());
@@ -48,7 +48,7 @@ class SphereContacts {
  private:
   static_assert(std::is_trivially_copyable_v<SphereContact>);
   std::size_t count_ = 0;
-  union {  // so that making one writes nothing
+  union {  // so that the constructor writes nothing
     // NOLINTNEXTLINE(readability-identifier-naming): the union has no name, the member is private
     std::array<SphereContact, model::contact::kMaxSpheres> contact_;
   };
@@ -56,14 +56,14 @@ class SphereContacts {
 
 struct TickRecord {
   std::uint64_t tick = 0;
-  std::int64_t due_ns = 0;          // the deadline that woke it, on the fixed release schedule
+  std::int64_t due_ns = 0;          // its deadline on the fixed release schedule
   std::uint64_t late_ticks = 0;     // so far
   std::uint64_t skipped_ticks = 0;  // so far
-  std::int64_t margin_ns = 0;       // of the tick before: next deadline minus its end
+  std::int64_t margin_ns = 0;       // of the previous tick: next deadline minus its end
   TickInput input;
   TickOutput output;
   std::array<std::int32_t, kPhaseCount>
-      phase_ns{};  // up to write; publish and total of the tick before
+      phase_ns{};  // of this tick up to write; publish and total of the previous tick
   SphereContacts contacts;
 };
 

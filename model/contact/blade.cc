@@ -15,8 +15,8 @@ double side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) RT_SAFE 
 
 bool passes(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, const Vec3& q) RT_SAFE {
   const double above = side(a, b, c, p), below = side(a, b, c, q);
-  if (above * below > 0.0 || above == below) return false;  // one side, or in the plane
-  // The line p-q turns round all three edges the same way: it goes through between them.
+  if (above * below > 0.0 || above == below) return false;  // on one side, or in the plane
+  // The line p-q passes all three edges on the same side: it goes through the triangle.
   const double u = side(p, q, a, b), v = side(p, q, b, c), w = side(p, q, c, a);
   return (u >= 0.0 && v >= 0.0 && w >= 0.0) || (u <= 0.0 && v <= 0.0 && w <= 0.0);
 }
@@ -48,7 +48,7 @@ bool misses(const SweepBox& box, const Vec3& p, const Vec3& q) RT_SAFE {
 
 bool crosses(const BladeSweep& s, const Vec3& p_m, const Vec3& q_m) RT_SAFE {
   if (!is_finite(s.from_a_m + s.from_b_m + s.to_a_m + s.to_b_m + p_m + q_m)) return false;
-  // An edge that turns sweeps a twisted face. Both triangles share one diagonal of it: no gap.
+  // A rotating edge sweeps a twisted quadrilateral. Both triangles share its diagonal: no gap.
   return passes(s.from_a_m, s.from_b_m, s.to_b_m, p_m, q_m) ||
          passes(s.from_a_m, s.to_b_m, s.to_a_m, p_m, q_m);
 }

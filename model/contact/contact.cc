@@ -9,12 +9,12 @@
 namespace tact::model::contact {
 namespace {
 
-constexpr int kMaxTickSteps = 64;  // of a tick, for each period
+constexpr int kMaxTickSteps = 64;  // per period
 
-/// On the straight way between two poses.
+/// Interpolates between two poses.
 Tool between(const Tool& from, const Tool& to, double share) RT_SAFE {
   const Quat &a = from.orientation, &b = to.orientation;
-  // q and -q are one orientation: the shorter way.
+  // q and -q are the same orientation: take the smaller rotation.
   const double sign = a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z < 0.0 ? -1.0 : 1.0;
   const auto mix = [&](double p, double q) RT_SAFE { return (1.0 - share) * p + share * q; };
   Quat turn{mix(a.w, sign * b.w), mix(a.x, sign * b.x), mix(a.y, sign * b.y), mix(a.z, sign * b.z)};
@@ -48,7 +48,7 @@ void Contact::reset() RT_SAFE {
   closed_ = closing_ = is_lost_ = was_unsettled_ = false;
 }
 
-// No sphere is known to be anywhere, nor the blade: it cuts nothing on a way that nobody saw.
+// Positions of spheres and blade become unknown, so that the blade cuts nothing in between.
 void Contact::forget() RT_SAFE {
   for (Sphere& sphere : spheres()) {
     leave(scene_, organ(), sphere, ContactState::kFree);
@@ -61,7 +61,7 @@ void Contact::forget() RT_SAFE {
 
 void Contact::detect_contact(const Tool& tool, std::uint32_t periods, double reach_m) RT_SAFE {
   is_lost_ = was_unsettled_ = false;
-  // A pose that is no number touches nothing, and leaves no memory that could be no number.
+  // A pose with NaN ends all contacts, so that no NaN enters the state.
   if (!is_finite(tool)) return forget();
   if (tool_before_ && !is_reached(tool, reach_m)) {
     is_lost_ = true;
@@ -77,7 +77,7 @@ void Contact::detect_contact(const Tool& tool, std::uint32_t periods, double rea
   tool_before_ = tool;
 }
 
-// Can the way from the last pose be followed?
+// False if the motion since the last pose is too long to follow.
 bool Contact::is_reached(const Tool& tool, double reach_m) const RT_SAFE {
   if (!(norm(tool.position_m - tool_before_->position_m) <= reach_m)) return false;
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
@@ -109,12 +109,12 @@ ContactResponse Contact::render_force(const Tool& tool, bool blade_may_cut) RT_S
   ContactResponse rendered = respond(tool);
   rendered.is_lost = is_lost_;
   if (was_unsettled_) rendered.is_unsettled = true;
-  // The force of this tick is that of the tissue before the cut; the cut is felt from the next on.
+  // After the forces: the cut changes the force from the next tick on.
   use_blade(tool, blade_may_cut && !rendered.is_inside);
   return rendered;
 }
 
-// What tears is let go before the grip takes hold.
+// Held spheres that tear are released before a closing grip bonds spheres.
 ContactResponse Contact::respond(const Tool& tool) RT_SAFE {
   watch_grip(tool.grip_ratio);
   for (Sphere& sphere : spheres()) let_go(sphere);
@@ -129,7 +129,7 @@ ContactResponse Contact::respond(const Tool& tool) RT_SAFE {
       }
   organ().finish();
   ContactResponse rendered;
-  // Spheres that are coupled change each other's force.
+  // The longest displacement of all spheres, as coupled spheres change each other's force.
   double way_m = 0.0;
   for (const Sphere& sphere : spheres()) way_m = std::max(way_m, norm(sphere.moved_m));
   for (Sphere& sphere : spheres())
@@ -164,14 +164,14 @@ void Contact::report(Sphere& sphere, const Tool& tool, double way_m,
 }
 
 void Contact::watch_grip(double grip_ratio) RT_SAFE {
-  // Two thresholds: a hand that trembles at one would grip and let go many times a second.
+  // Hysteresis: with one threshold a trembling hand would grip and release many times a second.
   const bool was_closed = closed_;
   if (grip_ratio >= scene_.parameters.grip_close_ratio) closed_ = true;
   if (!(grip_ratio >= scene_.parameters.grip_open_ratio)) closed_ = false;  // NaN opens
   closing_ = closed_ && !was_closed;
 }
 
-// The depth shrinks to 0. The force is that of the law's limit until the depth is in its range.
+// Shrinks the depth to 0. While the depth is beyond the law's range, the force is the law's limit.
 void Contact::let_go(Sphere& sphere) RT_SAFE {
   if (sphere.state != ContactState::kTouching) return;
   if (!sphere.lets_go) {
@@ -183,11 +183,11 @@ void Contact::let_go(Sphere& sphere) RT_SAFE {
                                              sphere.shrinks_m * scene_.period_s / kLetGo_s);
 }
 
-// The first that must: its going changes what the others feel.
+// Releases only the first sphere that must be released, as that changes the force on the others.
 bool Contact::release_first() RT_SAFE {
   for (Sphere& sphere : spheres()) {
     if (sphere.state != ContactState::kHeld) continue;
-    // What is no number tears: it must not hold the tool.
+    // NaN tears, so that it cannot hold the tool.
     if (closed_ && organ().pull_N(sphere.index) <= scene_.parameters.tear_force_N) continue;
     if (organ().release(sphere.index))
       sphere.state = ContactState::kTouching;
@@ -198,7 +198,7 @@ bool Contact::release_first() RT_SAFE {
   return false;
 }
 
-// A place without an answer keeps its last force, and loses it in 0.1 s or one radius of way.
+// Without a solution the last force is kept and ramps down within 0.1 s or one radius of motion.
 OrganForce Contact::ask(Sphere& sphere) RT_SAFE {
   if (!sphere.is_in_contact()) return {};
   SphereContact& sphere_contact = contact_[sphere.index];
@@ -207,14 +207,14 @@ OrganForce Contact::ask(Sphere& sphere) RT_SAFE {
   else
     sphere.unsolved_ratio += scene_.period_s / kLetGo_s + norm(sphere.moved_m) / sphere.radius_m;
   const OrganForce answer = organ().report(sphere, sphere_contact);
-  // 0: the law does not tell it.
+  // 0: not known.
   sphere.stiffest_N_per_m = scene_.law->stiffest_N_per_m(sphere_contact.surface_point,
                                                          sphere.state == ContactState::kHeld);
   const double share = std::max(1.0 - sphere.unsolved_ratio, 0.0);
   return {share * answer.elastic_N, share * answer.resistance_N};
 }
 
-// A sphere that is not held is not pulled in, by however little of its force has arrived.
+// While the force lags, the resistance must not pull a sphere into the organ unless it is held.
 Vec3 Contact::resistance_N(const Sphere& sphere, const Vec3& answer_N) const RT_SAFE {
   const double size_N = norm(answer_N);
   if (!(sphere.lag_N > 0.0) || sphere.state == ContactState::kHeld || !(size_N > 0.0))
@@ -223,23 +223,23 @@ Vec3 Contact::resistance_N(const Sphere& sphere, const Vec3& answer_N) const RT_
   return along_N > 0.0 ? answer_N : std::min(-along_N / size_N, 1.0) * answer_N;
 }
 
-// The force may jump where the organ snaps to another shape, a solution is found again, or the
-// proxy meets another side. The told force follows: per tick by at most ten times the stiffest
-// slope times the way and twice what the law's memory may take, plus all of the jump in 0.1 s.
-// While it lags behind a force that is gone, the hand gets at most a tenth of the energy that was
-// lost.
+// The wanted force may jump when the organ snaps to another shape, a solution is found again, or
+// the proxy reaches another side. The reported force follows. Largest change per tick: ten times
+// the stiffest slope times the displacement, plus twice the largest relaxation in a tick, plus the
+// jump times period / 0.1 s. While it lags behind a lost force, the hand gets at most a tenth of
+// the energy that was lost.
 void Contact::follow_force(Sphere& sphere, const Vec3& wanted_N, double way_m) RT_SAFE {
   constexpr double kSteepest_ratio = 10.0, kFade_ratio = 2.0, kLetGo_ratio = 2.0;
-  constexpr double kNoise_N = 1e-3;  // of a solution
+  constexpr double kNoise_N = 1e-3;  // numerical noise of a solution
   const Vec3 change_N = wanted_N - sphere.reported_N;
   const double length_N = norm(change_N);
   sphere.largest_N = sphere.is_in_contact() ? std::max(sphere.largest_N, norm(wanted_N)) : 0.0;
-  // A contact that lets go loses its force in 0.1 s, faster where its law is steep.
+  // A contact that lets go loses its force in 0.1 s, or faster if its law is steep.
   const double let_go_ratio = sphere.lets_go ? kLetGo_ratio * scene_.period_s / kLetGo_s : 0.0;
   const double smooth_N = kNoise_N + kSteepest_ratio * sphere.stiffest_N_per_m * way_m +
                           (kFade_ratio * fade_ratio_ + let_go_ratio) * sphere.largest_N;
   const bool is_held = sphere.state == ContactState::kHeld;
-  // Held tissue that is let go or tears is gone at once.
+  // When held tissue is released or tears, the force drops in one tick.
   const bool is_let_go = sphere.was_held && !is_held && organ().is_solved() &&
                          norm(wanted_N) <= norm(sphere.reported_N);
   const bool is_lag = length_N > smooth_N && sphere.stiffest_N_per_m > 0.0 && !is_let_go;

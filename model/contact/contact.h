@@ -1,25 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-// contact.h - probe spheres on a tool against the surface of an organ.
+// contact.h - contact of the tool's probe spheres with the surface of an organ.
 //
-// Each sphere feels one contact point, in one of four states (detect.h says what leads from one to
-// another):
+// Each sphere has one contact point and one of four states (transitions: detect.h):
 //
 //   free      no force
-//   touching  the organ's answer (organ_contact.h): the negative gradient of one potential W
-//   held      likewise, bonded to the place where the grip closed: it may pull. It ends when the
-//             grip opens or when the pulling force passes the tear force
-//   inside    no contact: it was found in the organ (start, loss), and feels nothing until it has
-//             been wholly outside
+//   touching  force from organ_contact.h: the negative gradient of one potential W
+//   held      as touching, bonded to the surface point where the grip closed: the force may pull.
+//             Ends when the grip opens or the pulling force exceeds the tear force
+//   inside    no force: the sphere was inside the organ at the start or after a loss of contact;
+//             ends when the whole sphere is outside
 //
 //   force on the tool  F = -grad W,   torque = sum (c - origin) x F,   c: centre of the sphere
 //
-// A contact begins from outside only, and ends where the sphere is outside: on the side where it
-// went in or, beyond the law's range, on any.
+// A contact begins only from outside. It ends when the sphere is outside again: on the side where
+// it entered or, beyond the law's range, on any side.
 //
 // A change of state never adds energy. A depth offset cancels penetration that no work has produced
 // (release over a bump or stiffer tissue, a nearest point that jumps, a contact that ends on
-// another side). The offset shrinks as the tool withdraws, and where a lagging proxy comes nearer:
-// the depth stays.
+// another side). The offset shrinks as the tool withdraws. It also shrinks by as much as a lagging
+// proxy comes nearer, so that the depth does not change.
 #pragma once
 
 #include <array>
@@ -36,33 +35,33 @@
 
 namespace tact::model::contact {
 
-/// Chosen: the time in which a contact beyond its law, or without an answer, ends, and in which a
-/// force that lags arrives.
+/// Chosen: time in which a contact beyond its law or without a solution ends, and in which a
+/// lagging force reaches its target.
 inline constexpr double kLetGo_s = 0.1;
 
-/// What the tool feels in a tick.
+/// Result of a tick.
 struct ContactResponse {
   Wrench wrench;
   bool is_saturated = false;  // a sphere is beyond its law (LawStatus::kSaturated), or lets go
-  bool is_unsettled = false;  // the force of a sphere lags: its place has no answer, or snaps
+  bool is_unsettled = false;  // the force of a sphere lags after a jump, or has no solution
   bool is_broken = false;     // see ContactLaw::is_broken
-  bool is_inside = false;     // a sphere is inside the organ and feels nothing
-  bool is_lost = false;       // in this tick: the tool moved unseen, farther than can be followed
+  bool is_inside = false;     // a sphere is in state inside, without force
+  bool is_lost = false;       // in this tick: the tool's displacement was too long to follow
 };
 
 class Contact {
  public:
   explicit Contact(const ContactScene& scene);
 
-  /// Where the spheres meet the surface. The tool's way since the last call, `periods` ago, is
-  /// followed as a straight line, period by period. What moves farther than reach_m, or than can be
-  /// followed, is lost: its contact ends, and it is found again.
+  /// Updates the contact points. The motion since the last call, `periods` ago, is simulated as a
+  /// straight line, period by period. If the tool has moved farther than reach_m, or a sphere
+  /// farther than 64 half radii, all contacts end and all spheres are located again.
   void detect_contact(const Tool& tool, std::uint32_t periods = 1,
                       double reach_m = kAnywhere_m) RT_SAFE;
-  /// What the tool feels there: states, laws, forces. Call after touch. A blade cuts only if it
-  /// may, and no sphere is inside: nobody would feel it.
+  /// Updates states and computes forces. Call after detect_contact(). A blade cuts only if
+  /// `blade_may_cut` and no sphere is inside, as the cut would give no force.
   ContactResponse render_force(const Tool& tool, bool blade_may_cut) RT_SAFE;
-  /// Forget every contact point, as at the start.
+  /// Ends all contacts, as at the start.
   void reset() RT_SAFE;
 
   /// See ContactLaw::shape.
@@ -71,7 +70,7 @@ class Contact {
   std::span<const SphereContact> contacts() const RT_SAFE {
     return {contact_.data(), scene_.spheres.size()};
   }
-  /// The organ as its spheres have moved it, where it bends far.
+  /// The displaced organ, if the scene has a bending organ.
   const MovedContact& moved() const RT_SAFE { return moved_; }
 
  private:
@@ -93,17 +92,17 @@ class Contact {
   void use_blade(const Tool& tool, bool may_cut) RT_SAFE;
 
   ContactScene scene_;
-  RestContact rest_;    // of the two, the one that
-  MovedContact moved_;  // scene_.organ chooses
+  RestContact rest_;    // used if scene_.organ is null
+  MovedContact moved_;  // used if it is not
   double fade_ratio_;   // ContactLaw::fade_ratio
   std::array<Sphere, kMaxSpheres> sphere_{};
-  std::array<SphereContact, kMaxSpheres> contact_{};  // told
+  std::array<SphereContact, kMaxSpheres> contact_{};  // as reported
   bool closed_ = false;                               // the grip, with hysteresis
   bool closing_ = false;                              // it closed in this tick
   bool is_lost_ = false;                              // in this tick
-  bool was_unsettled_ = false;                        // in a period before it that was skipped
-  std::optional<Tool> tool_before_;                   // of the last tick
-  std::optional<Tool> blade_tool_before_;             // where the blade was
+  bool was_unsettled_ = false;                        // in a period skipped before this tick
+  std::optional<Tool> tool_before_;                   // in the last tick
+  std::optional<Tool> blade_tool_before_;             // the same, for the blade
 };
 
 }  // namespace tact::model::contact

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// contact_law.h - what contact asks of the tissue under each probe sphere, every tick.
+// contact_law.h - interface to the tissue under each probe sphere; contact calls it every tick.
 //
-//     W(d, s)   potential, J, of the depth d at the place s of the undeformed surface
-//     F = dW/dd           along the outward normal, as a Law gives it
-//     F_s = dW/ds         tangential, N: a tissue that differs from place to place, or is indented
-//                         beside the tool, also pushes sideways; without it, sliding makes energy
+//     W(d, s)   potential, J, of the depth d at the surface point s of the undeformed surface
+//     F = dW/dd           along the outward normal, from a Law
+//     F_s = dW/ds         tangential, N: not zero if the tissue varies along the surface or is
+//                         indented next to the tool; without it sliding would add energy
 //
-// A contact law may remember (relaxation, a mass-spring patch): respond() may be called more than
+// A contact law may have state (relaxation, a mass-spring patch): respond() may be called more than
 // once a tick for one sphere, the last call counts, and advance() ends the tick. Implementations:
 // elastic_field.h (closed-form laws, relaxation), spring_patch.h (stepped).
 #pragma once
@@ -23,8 +23,8 @@
 
 namespace tact::model::contact {
 
-/// The most that a place may be stiffer than the organ's own stiffness, a half-space or the mean of
-/// its springs: beside what holds it an organ is stiffer than its own surface can show.
+/// Upper bound of the stiffness at a surface point over that of the organ's half-space or the mean
+/// of its springs. Near its fixed boundary an organ is stiffer than its surface can render.
 inline constexpr double kMaxStiffness_ratio = 3.0;
 
 struct ContactLawResponse {
@@ -32,10 +32,10 @@ struct ContactLawResponse {
   Vec3 slope_N{};  // F_s, tangential to the touched triangle
 };
 
-/// MC-2: how far one contact point of a tissue moves with a unit force at another, m/N.
+/// MC-2: displacement of one contact point under a unit force at another, m/N.
 struct ContactCoupling {
-  double near_field_m_per_N = 0.0;  // through the tissue between them: by their directions
-  double structural_m_per_N = 0.0;  // as their lobe bends: along its one axis
+  double near_field_m_per_N = 0.0;  // through the tissue between them; depends on both normals
+  double structural_m_per_N = 0.0;  // by bending of the organ along one axis
 };
 
 /// MC-5: G = c / a I + S, m/N, a the radius of the contact, m.
@@ -49,47 +49,47 @@ struct TangentCompliance {
   }
 };
 
-/// Everything here belongs to the loop's thread; what others may ask is DentView's.
+/// Only the loop's thread may call this class; other threads may call IndentationView.
 class ContactLaw : public IndentationView {
  public:
   /// NaN gives zero force and kInvalid.
   virtual ContactLawResponse respond(const Indentation& in) RT_SAFE = 0;
-  /// LW-3: what the speed adds to the force of the answer, N, outside of the potential.
+  /// LW-3: force added by the speed, N; not part of the potential.
   virtual double resistance_N(const Indentation& in, double force_N) const RT_SAFE {
     (void)in, (void)force_N;
     return 0.0;
   }
-  /// MC-2: two contact points, distance_m apart, pushed in one direction. 0: the law's own memory
-  /// couples them, or nothing is known.
+  /// MC-2: coupling of two contact points, distance_m apart. 0: not known, or the law's state
+  /// couples them.
   virtual ContactCoupling coupling(const Indentation& a, const Indentation& b,
                                    double distance_m) const RT_SAFE {
     (void)a, (void)b, (void)distance_m;
     return {};
   }
-  /// Largest dF/dd that the contact point can answer at any depth, N/m: how strongly it may couple.
-  /// A law whose contact points couple must tell it.
+  /// Largest dF/dd of the contact point at any depth, N/m; it bounds the coupling. Required of a
+  /// law with coupling(). 0: not known.
   virtual double stiffest_N_per_m(const SurfacePoint& surface_point, bool held) const RT_SAFE {
     (void)surface_point, (void)held;
     return 0.0;
   }
-  /// The most of a force at once that its memory takes away in a tick at rest, as a share.
+  /// Largest decrease of the instantaneous force by relaxation in a tick at constant depth, as a
+  /// ratio.
   virtual double fade_ratio() const RT_SAFE { return 0.0; }
-  /// MC-5: how far the contact point gives way along the surface under a unit force, in these axes.
-  /// All 0: not known.
+  /// MC-5: tangential compliance of the contact point in these axes. All 0: not known.
   virtual TangentCompliance tangent_compliance(const SurfacePoint& surface_point, bool held,
                                                const Axes& axes) const RT_SAFE {
     (void)surface_point, (void)held, (void)axes;
     return {};
   }
-  /// The sphere is free: forget what it did.
+  /// The sphere is free: deletes its state.
   virtual void leave(std::size_t sphere) RT_SAFE = 0;
-  /// A blade went through the tissue since the last tick; most laws cannot be cut.
+  /// A blade has swept through the tissue since the last tick; most laws cannot be cut.
   virtual void cut(const BladeSweep&) RT_SAFE {}
-  /// The end of a tick; its length is fixed when the law is made.
+  /// Ends a tick; the period is fixed when the law is made.
   virtual void advance() RT_SAFE = 0;
-  /// The law left the finite numbers and gives zero force; true until every sphere has left.
+  /// The law's state is not finite and its force is zero; true until every sphere has left.
   virtual bool is_broken() const RT_SAFE { return false; }
-  /// What a law shows instead of a profile; false: the profile says all.
+  /// Displaced shape of a law without a profile; false: the law has a profile.
   virtual bool shape(PatchShape& out) RT_SAFE {
     (void)out;
     return false;

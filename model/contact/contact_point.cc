@@ -15,7 +15,7 @@ struct Spot {
   Weights weight{};
 };
 
-/// The spot, with its squared distance to p: comparing needs no root.
+/// The point with its squared distance to p: comparisons need no root.
 Nearest at(const Spot& q, const Vec3& p, std::uint32_t t, Feature f, std::uint32_t i) RT_SAFE {
   return {q.point_m, dot(p - q.point_m, p - q.point_m), {t, q.weight}, f, i};
 }
@@ -23,13 +23,12 @@ Nearest at(const Spot& q, const Vec3& p, std::uint32_t t, Feature f, std::uint32
 void try_triangle(const SurfaceView& s, std::uint32_t t, const Vec3& p, Nearest& best) RT_SAFE {
   if (t == kNoTriangle) return;
   const Nearest other = nearest_on(s, t, p);
-  // Nearer, never as near: so no walk can go round in a circle.
+  // Strictly nearer, so that the search cannot cycle.
   if (other.squared_m2 < best.squared_m2) best = other;
 }
 
-// The best of the triangle's neighbours across the feature that holds the nearest point. From
-// inside the body the nearest point of a face may not be the nearest of its ring: all edges are
-// tried.
+// The nearest of the neighbours across the edge or corner with the nearest point. For p inside the
+// body a neighbour may be nearer although the nearest point is on the face: all edges are tried.
 Nearest step_from(const SurfaceView& s, const Nearest& here, const Vec3& p) RT_SAFE {
   Nearest best = here;
   const TriangleRecord& record = s.record[here.surface_point.triangle];
@@ -50,15 +49,15 @@ Nearest step_from(const SurfaceView& s, const Nearest& here, const Vec3& p) RT_S
   return best;
 }
 
-// Beyond the rim of an open surface there is no inside to be pushed out of.
+// A point whose nearest point is on the boundary of an open surface counts as outside.
 bool is_on_boundary(const SurfaceView& s, const Nearest& at) RT_SAFE {
   const TriangleRecord& record = s.record[at.surface_point.triangle];
   if (at.feature == Feature::kEdge) return record.neighbour[at.index] == kNoTriangle;
   return at.feature == Feature::kCorner && record.on_boundary[at.index];
 }
 
-// The normal with which the sign is right: of the face, of both faces of an edge, of the fan of a
-// corner [Baerentzen, Aanaes 2005].
+// The normal that gives the right sign: of the face, of both faces of an edge, of all faces around
+// a corner [Baerentzen, Aanaes 2005].
 Vec3 pseudo_normal(const SurfaceView& s, const Nearest& at) RT_SAFE {
   const TriangleRecord& record = s.record[at.surface_point.triangle];
   switch (at.feature) {
@@ -75,12 +74,11 @@ Vec3 pseudo_normal(const SurfaceView& s, const Nearest& at) RT_SAFE {
   return record.normal;
 }
 
-// phi and n of a point of the surface for p.
+// Sets phi and n for p.
 ContactPoint facing(ContactPoint contact_point, const Vec3& p_m, bool is_outside) RT_SAFE {
   const Vec3 away = p_m - contact_point.point_m;
   const double length_m = norm(away);
-  // The pseudo-normal gives the right sign at edges and
-  // corners, too, where a face normal would not.
+  // At edges and corners a face normal could give the wrong sign.
   const double sign = is_outside || dot(away, contact_point.outward) >= 0.0 ? 1.0 : -1.0;
   constexpr double kOnSurface_m = 1e-9;  // below this the direction of p - q is rounding noise
   contact_point.normal = length_m > kOnSurface_m ? (sign / length_m) * away : contact_point.outward;
@@ -95,7 +93,7 @@ Nearest nearest_on(const SurfaceView& s, std::uint32_t t, const Vec3& p) RT_SAFE
   const auto& [a, b, c] = s.record[t].corner_m;
   const Vec3 ab = b - a, ac = c - a, ap = p - a;
   const double d1 = dot(ab, ap), d2 = dot(ac, ap);
-  // A weight that does not count is exactly 0, so that contact knows edges and corners (Place).
+  // Zero weights are exactly 0, which marks edges and corners (SurfacePoint).
   if (d1 <= 0.0 && d2 <= 0.0) return at({a, {1, 0, 0}}, p, t, Feature::kCorner, 0);
   const Vec3 bp = p - b;
   const double d3 = dot(ab, bp), d4 = dot(ac, bp);

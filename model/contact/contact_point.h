@@ -4,10 +4,9 @@
 //     phi   signed distance of p to the undeformed surface, m, positive outside
 //     q     nearest surface point      n = grad phi = sign (p - q) / |p - q|
 //
-// The walk goes from triangle to neighbouring triangle while the distance falls, at most
-// kMaxWalkSteps a call: its cost does not depend on the size of the mesh. It finds the local
-// minimum near its start, which is what contact wants: a probe pressed into a thin lobe must not
-// jump to the far side.
+// The search steps to a neighbouring triangle while the distance falls, at most kMaxWalkSteps times
+// per call: its cost does not depend on the size of the mesh. It finds the local minimum near its
+// start, so that a probe pressed into a thin lobe does not jump to the far side.
 #pragma once
 
 #include <array>
@@ -20,14 +19,14 @@ namespace tact::model::contact {
 
 inline constexpr int kMaxWalkSteps = 64;
 
-/// A point of the undeformed surface: a triangle and its corners' weights, which sum to 1. A corner
-/// that does not count has exactly 0: one such on an edge, two in a vertex.
+/// A point of the undeformed surface: a triangle and the weights of its corners, with sum 1. On an
+/// edge one weight is exactly 0, in a vertex two.
 struct SurfacePoint {
   std::uint32_t triangle = kNoTriangle;
   std::array<double, 3> weight{};
 };
 
-/// Is it a triangle of the surface, with finite weights?
+/// True for a triangle of the surface and finite weights.
 inline bool is_on_surface(const SurfacePoint& surface_point, const SurfaceView& surface) RT_SAFE {
   return surface_point.triangle < surface.triangle.size() &&
          std::isfinite(surface_point.weight[0]) && std::isfinite(surface_point.weight[1]) &&
@@ -42,8 +41,7 @@ struct ContactPoint {
   double distance_m = 0.0;     // phi
 };
 
-/// Nearest point near `start`, which must be a triangle of the surface; after kMaxWalkSteps, the
-/// nearest so far.
+/// Nearest point near `start`, a triangle of the surface; after kMaxWalkSteps the nearest so far.
 ContactPoint follow(const SurfaceView& surface, std::uint32_t start, const Vec3& p_m) RT_SAFE;
 
 }  // namespace tact::model::contact

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// contact_scene.h - what contact is made of.
+// contact_scene.h - the data that contact works on.
 #pragma once
 
 #include <optional>
@@ -15,16 +15,16 @@ namespace tact::model::contact {
 
 struct BendingOrgan;  // moved_contact.h
 
-/// Everything outlives the contact.
+/// All data referred to must outlive the contact.
 struct ContactScene {
-  ContactLaw* law = nullptr;  // may remember: one contact each
+  ContactLaw* law = nullptr;  // may have state: one law per contact
   ContactParameters parameters;
   std::span<const ProbeSphere> spheres;  // 1 to kMaxSpheres
   SurfaceView surface;
   TriangleTreeView tree;  // of the surface
-  // Not null: the organ bends, and `law` is that of the tip alone. Null: it stays as drawn.
+  // Not null: the organ bends, and `law` is that of the tip alone. Null: its surface stays at rest.
   const BendingOrgan* organ = nullptr;
-  std::optional<Blade> blade;  // cuts what it passes through
+  std::optional<Blade> blade;  // cuts the springs that it sweeps
   double period_s = 1e-3;      // of the loop
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// contact_settings.h - what a scene says about contact: probe spheres of the tool, friction, grip.
+// contact_settings.h - settings of contact in a scene: probe spheres of the tool, friction, grip.
 #pragma once
 
 #include <cstddef>
@@ -17,10 +17,10 @@ struct ProbeSphere {
 
 struct ContactParameters {
   double friction_ratio = 0.0;             // mu, >= 0
-  double sliding_stiffness_N_per_m = 0.0;  // 1 / G, >= 0; 0: the tissue's own, by its law
+  double sliding_stiffness_N_per_m = 0.0;  // 1 / G, >= 0; 0: from the law
   double tear_force_N = 0.0;               // of one sphere, > 0
-  double grip_close_ratio = 0.7;           // closing above this holds
-  double grip_open_ratio = 0.5;            // opening below this lets go
+  double grip_close_ratio = 0.7;           // the grip holds from this ratio on
+  double grip_open_ratio = 0.5;            // the grip releases below this ratio
 };
 
 }  // namespace tact::model::contact

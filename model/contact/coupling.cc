@@ -12,36 +12,36 @@ namespace {
 
 constexpr int kMaxSteps = 16;
 constexpr double kTolerance_m = 1e-10;  // 1e-7 N on a tissue of 1 kN/m
-// Below this pivot the matrix is hardly definite, and a Newton step would be too long.
+// Below this pivot the matrix is nearly singular, and a Newton step would be too long.
 constexpr double kMinPivot = 1e-6;
 constexpr double kMargin = 0.95;  // of the largest coupling that is positive definite
 
 using Vector = std::array<double, kMaxSpheres>;
 
-/// Does another sphere press its contact point, too?
+/// True if another sphere is coupled to this one.
 bool is_coupled(const Coupling& c, std::size_t i) RT_SAFE {
   return std::ranges::any_of(c[i], [](double m_per_N) RT_SAFE { return m_per_N != 0.0; });
 }
 
-// A sphere that is not held feels nothing of an indentation that lies below it.
+// Calls the law. A sphere that is not held gets no force at an indentation <= 0.
 void ask(ContactLaw& law, PressingSphere& sphere) RT_SAFE {
   const double indentation_m = sphere.in.indentation_m;
   const bool is_off = !sphere.in.held && !(indentation_m > 0.0);
   if (is_off) sphere.in.indentation_m = 0.0;
-  // Asked at 0, not left out: a law that remembers must know that the sphere is there.
+  // Called with 0, not omitted: a law with state must know that the sphere is present.
   sphere.response = law.respond(sphere.in);
   sphere.in.indentation_m = indentation_m;
-  // Its force stays 0 while its indentation changes: at rest a law tells a slope all the same.
+  // Its force stays 0 while e changes, but a law's slope at 0 is not 0.
   if (is_off) sphere.response.law.stiffness_N_per_m = 0.0;
 }
 
-/// A slope below 0 would turn the matrix; 0 in its place only slows Newton.
+/// A negative slope could make the matrix indefinite; 0 instead only slows convergence.
 double stiffness_N_per_m(const PressingSphere& sphere) RT_SAFE {
   return sphere.presses ? std::max(sphere.response.law.stiffness_N_per_m, 0.0) : 0.0;
 }
 
-// (I + C K) step = miss; every pivot is positive where diag(1 / K) + C is, else a plain step is
-// taken.
+// (I + C K) step = miss. Every pivot is positive if diag(1 / K) + C is positive definite; else the
+// step is `miss`.
 Vector newton_step(const Coupling& c, std::span<const PressingSphere> spheres,
                    Vector miss) RT_SAFE {
   const std::size_t n = spheres.size();
@@ -54,7 +54,7 @@ Vector newton_step(const Coupling& c, std::span<const PressingSphere> spheres,
   return miss;
 }
 
-// What MC-1 lacks; 0 for what does not press.
+// Residual of MC-1; 0 for a sphere that does not press.
 Vector miss_of(const Coupling& c, std::span<const PressingSphere> spheres) RT_SAFE {
   Vector miss{};
   for (std::size_t i = 0; i < spheres.size(); ++i)
@@ -63,8 +63,8 @@ Vector miss_of(const Coupling& c, std::span<const PressingSphere> spheres) RT_SA
   return miss;
 }
 
-// Newton from the indentations as they are; false: what is left is above the tolerance, or no
-// number.
+// Newton's method from the present indentations; false: the residual exceeds the tolerance or is
+// NaN.
 bool is_solved(ContactLaw& law, const Coupling& c, std::span<PressingSphere> spheres) RT_SAFE {
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     PressingSphere& sphere = spheres[i];
@@ -72,7 +72,7 @@ bool is_solved(ContactLaw& law, const Coupling& c, std::span<PressingSphere> sph
       sphere.response = {};
       continue;
     }
-    // Alone, e is d to the bit: a single sphere pays for no iteration and gets no rounding.
+    // Without coupling e is exactly d: no iteration and no rounding error.
     if (!is_coupled(c, i)) sphere.in.indentation_m = sphere.depth_m;
     ask(law, sphere);
   }
@@ -107,7 +107,7 @@ double coupled_m(const Coupling& c, std::span<const PressingSphere> spheres,
 }
 
 double press_together(ContactLaw& law, Coupling& c, std::span<PressingSphere> spheres) RT_SAFE {
-  // All of C, a half, a quarter, none. With none each sphere is alone, which has always a solution.
+  // All of C, a half, a quarter, none. Without coupling there is always a solution.
   constexpr int kTries = 4;
   for (int i = 0; i < kTries && !is_solved(law, c, spheres); ++i) {
     for (auto& row : c)
@@ -127,7 +127,7 @@ double definite_share(const Coupling& c,
                       const std::array<double, kMaxSpheres>& stiffest_N_per_m) RT_SAFE {
   std::size_t n = kMaxSpheres;  // rows after the last stiffness are those of I
   while (n > 0 && stiffest_N_per_m[n - 1] == 0.0) --n;
-  // MC-6. Scaled by the stiffnesses, which may be 0: margin I + factor sqrt(K) C sqrt(K)
+  // MC-6. Scaled by the stiffnesses, as these may be 0: margin I + factor sqrt(K) C sqrt(K)
   const auto is_definite = [&](double factor) RT_SAFE {
     Coupling a{};
     for (std::size_t i = 0; i < n; ++i) {

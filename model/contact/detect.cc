@@ -7,23 +7,23 @@
 namespace tact::model::contact {
 namespace {
 
-// Where no sheet was near, the search rests until the sphere may have come to one.
+// Searches only if the sphere has moved farther than the clearance of the last search.
 void begin_from_outside(const ContactScene& scene, OrganContact& organ, Sphere& sphere,
                         const Vec3& moved_m) RT_SAFE {
   constexpr double kRounding_m = 1e-9;
   if (sphere.clear_m > 0.0) return;
-  const bool is_new_place = std::isinf(sphere.clear_m);  // it has just left another
-  const double most_m = -sphere.clear_m;                 // as deep as its movement may have led it
+  const bool is_new_place = std::isinf(sphere.clear_m);  // it has just left another contact
+  const double most_m = -sphere.clear_m;                 // largest depth that its motion explains
   const double within_m = is_new_place ? kAnywhere_m : (1.0 + kAhead_ratio) * sphere.radius_m;
   const ContactPoint contact_point =
       nearest_contact_point(scene.tree, scene.surface, sphere.centre_m, within_m, sphere.near);
   sphere.clear_m = std::min(contact_point.distance_m, within_m) - sphere.radius_m;
   sphere.near = contact_point.surface_point.triangle;
   if (sphere.clear_m > 0.0) return;
-  // It came through a hole of an open surface, to the inner side.
+  // The sphere came through a hole of an open surface to the inner side.
   if (-sphere.clear_m > most_m + kRounding_m)
     return leave(scene, organ, sphere, ContactState::kInside);
-  // From where it is known to have been clear, its movement explains all of the depth.
+  // If it is known to have been clear, its motion explains all of the depth.
   const double paid_m =
       is_new_place ? std::max(0.0, -dot(moved_m, contact_point.normal)) : kAnywhere_m;
   sphere.clear_m = 0.0;
@@ -31,7 +31,7 @@ void begin_from_outside(const ContactScene& scene, OrganContact& organ, Sphere& 
   organ.begin(sphere, contact_point, std::min(paid_m, norm(moved_m)));
 }
 
-// Where a sphere is of which nothing is known.
+// Locates a sphere whose last position is not known.
 void find(const ContactScene& scene, OrganContact& organ, Sphere& sphere) RT_SAFE {
   leave(scene, organ, sphere, ContactState::kFree);
   sphere.near = kNoTriangle;
@@ -64,7 +64,7 @@ void step(const ContactScene& scene, OrganContact& organ, Sphere& sphere,
 void leave(const ContactScene& scene, OrganContact& organ, Sphere& sphere,
            ContactState state) RT_SAFE {
   sphere.state = state;
-  sphere.clear_m = -kAnywhere_m;  // nothing is known
+  sphere.clear_m = -kAnywhere_m;  // not known
   sphere.lets_go = false;
   sphere.unsolved_ratio = 0.0;
   organ.leave(sphere.index);
@@ -83,7 +83,7 @@ bool is_outside(const ContactScene& scene, Sphere& sphere) RT_SAFE {
 
 bool is_open_way(const ContactScene& scene, const Vec3& surface_point_m,
                  const Vec3& centre_m) RT_SAFE {
-  constexpr double kOffSurface_ratio = 1e-3;  // of the way: the point itself is on the surface
+  constexpr double kOffSurface_ratio = 1e-3;  // of the line, which starts on the surface
   return !is_between(scene.tree, scene.surface,
                      surface_point_m + kOffSurface_ratio * (centre_m - surface_point_m), centre_m);
 }

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// detect.h - where each sphere is, from step to step, on any path.
+// detect.h - state transitions of each sphere, for any path of the tool.
 //
-//     found outside   -> free        found overlapping the organ -> inside
-//     free            -> touching    the nearest point of all is nearer than r
-//     free            -> inside      deeper than its movement explains: it came through a hole of
-//                                    an open surface
-//     inside          -> free        wholly outside: phi >= r
-//     touching        -> free        r - phi - slack <= 0 at the proxy; at once touching again,
-//                                    with an offset, where some part of the organ is nearer than r
-//     touching        -> lets go     wholly outside, and either beyond its law or with nothing of
-//                                    the organ between it and its place: its depth shrinks to 0
+//     located outside -> free        located overlapping the organ -> inside
+//     free            -> touching    the nearest point of the surface is nearer than r
+//     free            -> inside      deeper than its displacement: it came through a hole of an
+//                                    open surface
+//     inside          -> free        entirely outside: phi >= r
+//     touching        -> free        r - phi - offset <= 0 at the proxy; touching again in the same
+//                                    step, with an offset, if another part is nearer than r
+//     touching        -> lets go     entirely outside, and either beyond its law or with nothing of
+//                                    the organ between it and its surface point: depth shrinks to 0
 //     lets go         -> free
-//     touching        -> found again  its place has no answer any more
+//     touching        -> located again   no solution for 0.1 s or one radius of motion
 //
-// Closing and opening the grip lead from touching to held and back, a pull farther than the surface
-// from held to free (contact.h).
+// Closing and opening the grip lead from touching to held and back. Held becomes free if the sphere
+// was pulled out of the surface (contact.h).
 #pragma once
 
 #include "model/contact/contact_scene.h"
@@ -22,24 +22,24 @@
 
 namespace tact::model::contact {
 
-/// Of a radius, the way of a step: no sphere passes a sheet between two of them.
+/// Longest step over the radius: no sphere passes through a sheet within a step.
 inline constexpr double kWay_ratio = 0.5;
-/// Of a radius: a sphere without force searches so far ahead.
+/// Search distance of a free sphere over the radius.
 inline constexpr double kAhead_ratio = 4.0;
 
 /// One step of a sphere whose centre has moved.
 void step(const ContactScene& scene, OrganContact& organ, Sphere& sphere,
           const Vec3& moved_m) RT_SAFE;
 
-/// Ends its contact.
+/// Ends the contact; the sphere gets this state.
 void leave(const ContactScene& scene, OrganContact& organ, Sphere& sphere,
            ContactState state) RT_SAFE;
 
-/// Is the whole sphere outside of the organ at rest? The answer stands until it may have moved out,
-/// or in.
+/// True if the whole sphere is outside of the organ at rest. Cached until the sphere has moved far
+/// enough to change the result.
 bool is_outside(const ContactScene& scene, Sphere& sphere) RT_SAFE;
 
-/// Is nothing of the organ between a sphere at `centre_m` and the surface point that it belongs to?
+/// True if nothing of the organ is between a sphere at `centre_m` and its surface point.
 bool is_open_way(const ContactScene& scene, const Vec3& surface_point_m,
                  const Vec3& centre_m) RT_SAFE;
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// fair_surface.h - the corners of the smooth surface, made from a mesh. Set-up code only.
+// fair_surface.h - makes the corners of the smooth surface from a mesh. Set-up code only.
 //
 // First each vertex is moved back by the mean height of SF-1 over its triangles, so that the smooth
-// organ is as big as the mesh. Then normals and heights are fitted to each other by least squares,
-// with a weight on every change, so that over every edge
+// organ has the size of the mesh. Then normals and heights are fitted by least squares, with a
+// penalty on every change, so that over every edge
 //
 //     SF-5   (n_i + n_j) . (x_j - x_i) = 0
 //
@@ -28,7 +28,7 @@ std::vector<SurfaceCorner> fair_corners(const SurfaceView& mesh, const FairParam
 /// The vertices that share an edge with v.
 std::vector<std::uint32_t> neighbours_of(const SurfaceView& mesh, std::uint32_t v);
 
-/// Unit vectors across a normal, with which they are right-handed.
+/// Two unit vectors across a normal; with it they form a right-handed system.
 std::array<Vec3, 2> axes_across(const Vec3& normal);
 
 }  // namespace tact::model::contact

@@ -7,13 +7,13 @@
 namespace tact::model::contact {
 namespace {
 
-// How far a surface point may move in a tick, by the way of its sphere.
+// Largest motion of a surface point in a tick over the displacement of its sphere, plus kCreep_m.
 constexpr double kFollow_ratio = 3.0;
 constexpr double kCreep_m = 2e-6;
-// Near a centre of curvature the foot moves without bound: the surface point slows, then sticks.
+// Near a centre of curvature the foot point moves without bound: the surface point slows, stops.
 constexpr double kStuckOffset_ratio = 0.1, kFreeOffset_ratio = 0.4;
 
-// A surface point at the foot of a centre outside of the organ, by steps of at most 2 mm.
+// Moves the surface point to the foot point of y, in steps of at most 2 mm.
 void find_foot(const SmoothSurface& surface, OrganSphere& b) RT_SAFE {
   constexpr int kMaxWalk = 100;
   constexpr double kMaxWay_m = 2e-3, kOnFoot_m = 1e-9;
@@ -56,7 +56,7 @@ const OrganSphere* MovedContact::find(std::size_t sphere) const RT_SAFE {
   return nullptr;
 }
 
-// It stands on the organ as the others have moved it.
+// Starts a contact on the organ as displaced by the other spheres.
 void MovedContact::begin(const Sphere& sphere, const ContactPoint& contact_point,
                          double paid_m) RT_SAFE {
   OrganSphere& b = organ_.sphere[organ_.count++];
@@ -87,14 +87,14 @@ void MovedContact::leave(std::size_t sphere) RT_SAFE {
   const OrganSphere* gone = find(sphere);
   if (gone == nullptr) return;
   const auto slot = static_cast<std::size_t>(gone - organ_.sphere.data());
-  // What has crept under it lifts the others: that depth is offset.
+  // Without its creep the organ moves towards the other spheres: that depth is offset.
   for (std::size_t i = 0; i < organ_.count; ++i) {
     OrganSphere& b = organ_.sphere[i];
     const Vec3 lifted_m = organ_.compliance_m_per_N[i][slot] * gone->crept_N;
     if (i != slot && !b.is_held) b.depth_offset_m += std::max(0.0, -dot(b.at.normal, lifted_m));
   }
   for (std::size_t i = slot; i + 1 < organ_.count; ++i) organ_.sphere[i] = organ_.sphere[i + 1];
-  // pair[i][j] with j < i: each moves up by as many of its two as come after the one that is gone.
+  // pair[i][j] with j < i: removes row and column of the sphere that has left.
   const auto old = [slot](std::size_t i) RT_SAFE { return i < slot ? i : i + 1; };
   --organ_.count;
   if (organ_.count == 0) tank_J_ = stored_J_ = 0.0;  // the next contact begins at zero
@@ -133,7 +133,7 @@ void MovedContact::add_depth_offset(std::size_t sphere, double depth_m) RT_SAFE 
 bool MovedContact::hold(std::size_t sphere) RT_SAFE {
   OrganSphere* b = at(sphere);
   if (b == nullptr || !(b->tip.force_N > 0.0)) return false;
-  // Never softer: at the same force that would store more.
+  // Never softer: a softer spring would store more energy at the same force.
   const double before = b->tangential_N_per_m, now = std::max(scene_.organ->held_N_per_m, before);
   b->is_held = true;
   is_changed_ = true;
@@ -149,10 +149,10 @@ double MovedContact::pull_N(std::size_t sphere) const RT_SAFE {
 }
 
 // W(d) <= W_held, d no larger than it was held
-// It goes back to the nearest surface point, without a tangential spring. If that stores more than
-// before, an offset halves the depth until it does not.
+// The sphere returns to the nearest surface point without a tangential spring. While that stores
+// more energy than before, the depth is halved by an offset.
 bool MovedContact::release(std::size_t sphere) RT_SAFE {
-  constexpr int kHalvings = 12;  // each one solves the whole tool
+  constexpr int kHalvings = 12;  // each solves for all spheres
   OrganSphere* b = at(sphere);
   if (b == nullptr) return false;
   const double held_J = stored_energy_J(organ_);
@@ -166,7 +166,7 @@ bool MovedContact::release(std::size_t sphere) RT_SAFE {
   const double deepest_m = b->radius_m - local_position(b->at, b->y_m).height_m;
   double share = 1.0;
   for (int i = 0; i <= kHalvings; ++i, share = i < kHalvings ? 0.5 * share : 0.0) {
-    // y moves while it is solved: what it gains on the way is offset, too.
+    // Solving changes y: additional indentation is offset, too.
     b->depth_offset_m = std::max(deepest_m - share * held_m, 0.0);
     status_.is_solved = solve_fixed();
     b->depth_offset_m += std::max(b->indentation_m - share * held_m, 0.0);
@@ -176,7 +176,7 @@ bool MovedContact::release(std::size_t sphere) RT_SAFE {
   return true;
 }
 
-// Neither way has an answer: everything as before, but for the force along the movement.
+// Without a solution: the last state, and the last force without its part along the motion.
 void MovedContact::keep_last_state() RT_SAFE {
   for (std::size_t i = 0; i < organ_.count; ++i) {
     OrganSphere& b = organ_.sphere[i];
@@ -185,7 +185,7 @@ void MovedContact::keep_last_state() RT_SAFE {
     b.centre_m = centre_m, b.moved_m = moved_m;
     const Vec3 along = normalized(moved_m);
     b.force_N -= std::max(dot(b.force_N, along), 0.0) * along;
-    // A law that remembers shall not remember a depth that was only tried.
+    // Resets the state of a law to the kept depth, after depths that were only tried.
     if (b.indentation_m > 0.0 || b.is_held) scene_.law->respond(indentation_of(b));
   }
 }

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// moved_contact.h - the spheres of one tool on one moved organ, tick by tick.
+// moved_contact.h - contact of a tool's spheres with an organ that they displace, tick by tick.
 //
-// State of each sphere that touches: a surface point s (the god object), and y, t, v of the last
-// tick (moved_organ.h). Each tick the surface points follow y: without friction all the way, with
-// friction by what Coulomb's cone does not hold, held not at all. At most kMaxNewtonSteps on y
-// solve ML-5; what is left below 10 um is left to the next tick. If they do not end, the surface
-// points stay where these steps left them, and ML-5 is solved for these: I + G K is well posed, and
-// the force is the slope of W there. If that fails too, the tissue stays as it was, and each sphere
-// has its last force without what of it goes along its movement: this gives no energy.
+// State of each touching sphere: a surface point s (the god object), and y, t, v of the last tick
+// (moved_organ.h). In each tick the surface points follow y: without friction completely, with
+// friction by the part outside of Coulomb's cone, held not at all. At most kMaxNewtonSteps Newton
+// steps on y solve ML-5; a residual below 10 um is left to the next tick. Otherwise the surface
+// points are kept where these steps left them, and ML-5 is solved for them: I + G K is well posed,
+// and the force is the slope of W there. If that fails, too, the tissue keeps its last state, and
+// each sphere its last force without the part along its motion, which gives no energy.
 //
-// A slide may make a little energy, as SF-1 to SF-4 are one potential up to their third order only.
-// Energy that slides lost earlier (at most 5 % of W) and 2 % of W are set off against it. What is
-// made beyond is dissipated:
+// Sliding may add a little energy, as SF-1 to SF-4 are a potential only up to third order. It is
+// permitted up to the energy that slides lost earlier (at most 5 % of W) plus 2 % of W. The excess
+// is dissipated:
 //
 //     ML-9   brake_i = -rho F_i dc_i / |dc_i|,   rho = excess / sum F_i |dc_i|
 //
-//     F_i |f_i| of ML-6, N   dc_i movement in this tick, m   excess  energy made beyond that, J
+//     F_i |f_i| of ML-6, N   dc_i displacement in this tick, m   excess  energy above that limit, J
 #pragma once
 
 #include <array>
@@ -28,27 +28,27 @@
 
 namespace tact::model::contact {
 
-/// An organ that bends far. What it refers to must outlive the contact.
+/// An organ with large displacements. All data referred to must outlive the contact.
 struct BendingOrgan {
   SmoothSurface surface;
   double contact_modulus_Pa = 0.0;  // E*
   double poisson_ratio = 0.5;
   double held_N_per_m = 0.0;  // tangential stiffness of a bonded disc, 1/c_side of CT-6
-  double range_m = 0.0;       // moved farther than this, it is beyond its law
+  double range_m = 0.0;       // largest displacement of the organ; beyond: saturated
   double chord_ratio = kChord_ratio;
   law::Creep creep;
 };
 
-/// What the last tick took.
+/// How the last tick was solved.
 struct MovedContactStatus {
-  int steps = 0;          // of Newton, all together
-  bool is_fixed = false;  // solved with its surface points where they were
+  int steps = 0;          // Newton steps, total
+  bool is_fixed = false;  // solved with fixed surface points
   bool is_solved = true;
 };
 
 class MovedContact final : public OrganContact {
  public:
-  /// Of a scene without an organ that bends: never to be called.
+  /// In a scene without a bending organ no other function may be called.
   explicit MovedContact(const ContactScene& scene);
 
   void reset() RT_SAFE override;
@@ -69,7 +69,7 @@ class MovedContact final : public OrganContact {
   OrganForce report(const Sphere& sphere, SphereContact& reported) const RT_SAFE override;
   void advance() RT_SAFE override;
 
-  /// nullptr: it does not touch.
+  /// nullptr if the sphere does not touch.
   const OrganSphere* find(std::size_t sphere) const RT_SAFE;
   const MovedOrgan& organ() const RT_SAFE { return organ_; }
   const MovedContactStatus& status() const RT_SAFE { return status_; }
@@ -89,10 +89,10 @@ class MovedContact final : public OrganContact {
   ContactScene scene_;
   MovedOrgan organ_;
   std::array<OrganSphere, kMaxSpheres> before_;  // of the last tick
-  bool is_changed_ = true;  // something beside the centres, since the last answer
-  bool is_nearly_ = false;  // the last answer leaves work for the next tick
-  double stored_J_ = 0.0;   // ML-7 of the last answer
-  double tank_J_ = 0.0;     // lost so far, at most a share of W; below 0: made
+  bool is_changed_ = true;  // more than the centres has changed since the last solution
+  bool is_nearly_ = false;  // the last solution is not converged; the next tick continues
+  double stored_J_ = 0.0;   // ML-7 of the last solution
+  double tank_J_ = 0.0;     // energy lost so far, at most a share of W; negative: added
   MovedContactStatus status_;
 };
 

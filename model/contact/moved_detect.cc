@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the spheres on a moved organ are: what stays, what leaves, what must let go.
+// MovedContact: which spheres stay in contact, leave, or must let go.
 #include <algorithm>
 
 #include "model/contact/detect.h"
@@ -8,7 +8,7 @@
 namespace tact::model::contact {
 namespace {
 
-// Of the organ at rest, which does not move under a sphere that is alone.
+// True if the sphere does not overlap the organ at rest.
 bool is_free_at_rest(const ContactScene& scene, const Sphere& sphere) RT_SAFE {
   const ContactPoint contact_point = nearest_contact_point(
       scene.tree, scene.surface, sphere.centre_m, sphere.radius_m, sphere.near);
@@ -17,19 +17,19 @@ bool is_free_at_rest(const ContactScene& scene, const Sphere& sphere) RT_SAFE {
 
 }  // namespace
 
-// A sphere that presses stays. One without force is searched for again: it may be in the
-// indentation of another sphere, at another part of the organ, or outside.
+// A pressing sphere stays in contact. For a sphere without force the nearest point is searched
+// again: it may be in the indentation of another sphere, at another part of the organ, or outside.
 Step MovedContact::step(Sphere& sphere, const Vec3&) RT_SAFE {
   OrganSphere& b = *at(sphere.index);
   if (sphere.unsolved_ratio >= 1.0) return Step::kLost;
   if (b.is_held || b.indentation_m > 0.0) {
-    if (!b.is_pressing) sphere.clear_m = -kAnywhere_m;  // from now on of the organ at rest
+    if (!b.is_pressing) sphere.clear_m = -kAnywhere_m;  // from now on for the organ at rest
     b.is_pressing = true;
     return Step::kTouches;
   }
   if (b.is_pressing) sphere.clear_m = -kAnywhere_m;
   b.is_pressing = false;
-  // The organ moves under it, too.
+  // Displacement of the organ reduces the clearance, too.
   sphere.clear_m -= norm(b.shift_m - b.seen_shift_m);
   b.seen_shift_m = b.shift_m;
   if (sphere.lets_go) return Step::kLeaves;
@@ -48,13 +48,13 @@ bool MovedContact::is_beyond(const OrganSphere& b) const RT_SAFE {
   return b.tip.status == law::LawStatus::kSaturated || norm(b.shift_m) > scene_.organ->range_m;
 }
 
-// Outside of the organ at rest and beyond its law; or outside of the organ as it is moved, with
-// nothing of it between the sphere and its place.
+// True outside of the organ at rest and beyond the law; or outside of the displaced organ, with
+// nothing of it between the sphere and its surface point.
 bool MovedContact::must_let_go(Sphere& sphere) RT_SAFE {
   OrganSphere& b = *at(sphere.index);
   if (!(b.indentation_m > 0.0)) return false;
   if (is_beyond(b) && is_outside(scene_, sphere)) return true;
-  // Over its place.
+  // Still above its surface point.
   if (b.height_m > -b.radius_m && norm(b.tangential_m) < b.radius_m) return false;
   b.deep_m -= norm(b.y_m - b.seen_y_m);
   b.seen_y_m = b.y_m;
@@ -65,7 +65,7 @@ bool MovedContact::must_let_go(Sphere& sphere) RT_SAFE {
   return !(b.deep_m > 0.0) && is_open_way(scene_, b.at.point_m, b.y_m);
 }
 
-// Its depth and the organ's shift shrink to 0 together.
+// Returns indentation plus displacement of the organ: both shrink to 0 together.
 double MovedContact::cut_to_law_m(std::size_t sphere) RT_SAFE {
   const OrganSphere& b = *at(sphere);
   const double range_m = scene_.organ->range_m;

@@ -36,7 +36,7 @@ void fill_load(ContactLaw& law, OrganSphere& b) RT_SAFE {
   b.load_N = b.tip.force_N * b.at.normal - b.tangential_N_per_m * b.tangential_m;
 }
 
-// ML-2, ML-6 and the moment of ML-4 by the present slopes and shifts.
+// ML-2, ML-6 and the moment of ML-4 with the present slopes and shifts.
 void turn_load(OrganSphere& b, double chord_ratio) RT_SAFE {
   b.rotation = rotation_of_slope(b.at.normal, b.slope, chord_ratio);
   const Rotation& q = b.rotation;
@@ -118,7 +118,7 @@ void fill_slope(const MovedOrgan& organ, Square& a) RT_SAFE {
 
 }  // namespace
 
-// It goes to 0 where r falls below a tenth of the tip's own compliance: b / r has no limit there.
+// Goes to 0 where r falls below a tenth of the tip's compliance: b / r is unbounded there.
 double structural_ratio(const MovedOrgan& organ, std::size_t i, std::size_t j,
                         double structural_m_per_N) RT_SAFE {
   const auto normal_m_per_N = [](const SurfaceFrame& at) RT_SAFE {
@@ -203,7 +203,7 @@ double stored_energy_J(const MovedOrgan& organ) RT_SAFE {
   return sum_J;
 }
 
-// b takes no part in the energy of the compliance at once; each term of the creep has its own.
+// The creep loads b are not part of the instantaneous energy; each creep term has its own.
 double stored_energy_J(const MovedOrgan& organ, std::size_t i) RT_SAFE {
   const OrganSphere& b = organ.sphere[i];
   double twice_J = b.tangential_N_per_m * dot(b.tangential_m, b.tangential_m) +

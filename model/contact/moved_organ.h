@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// moved_organ.h - an organ that the spheres of one tool have moved, with finite rotations: where
-// each sphere stands to the surface at rest, the forces, and one potential for all of it.
+// moved_organ.h - an organ displaced by the spheres of one tool, with finite rotations: positions
+// of the spheres relative to the surface at rest, forces, and one potential.
 //
-// i, j: spheres. c_i centre; p_i, n_i, G_i, T_i of the surface point s_i that the sphere belongs to
-// (smooth_surface.h). Unknown is y_i, the centre moved back with the organ. Its height over the
-// surface is R - d_i, with d the indentation of the tip alone; w_i is what is across n_i, by which
-// friction or a bond stretches the surface. Q and Q^k of rotation.h; R radius of a sphere, m.
+// i, j: spheres. c_i: centre; p_i, n_i, G_i, T_i: of its surface point s_i (smooth_surface.h).
+// Unknown is y_i, the centre relative to the organ at rest. Its height over the surface is R - d_i,
+// with d the indentation by the tip alone; w_i is its offset across n_i, the stretch of the surface
+// by friction or a bond. Q and Q^k of rotation.h; R radius of a sphere, m.
 //
-//     ML-1   l_i = F(d_i) n_i - k_w w_i                   load on the sphere, unturned
+//     ML-1   l_i = F(d_i) n_i - k_w w_i                   load on the sphere, not rotated
 //     ML-2   a_i = -Q_i^(1-k) l_i                         load on the organ
 //     ML-3   t_i = sum T_ij (a_j + b_j)                   slope of the moved surface
 //     ML-4   v_i = sum (G_ij (a_j + b_j) + T_ji' m_j)     shift of the surface point, m
@@ -17,8 +17,8 @@
 //     ML-7   W = sum (U(d_i) + k_w w_i^2 / 2 + (a_i . v_i + m_i . t_i) / 2)
 //     ML-8   G_ij = h n_i n_j' + q (G_i + G_j) / 2,   T_ij = q T_i,   q = min(b / r, 1)
 //
-// F, U of the contact point's law, which is the tip's alone; k_w tangential stiffness, N/m; h, b of
-// MC-2; r the mean of n' G n; b_j what the organ has crept by (creep.h).
+// F, U: law of the tip alone; k_w tangential stiffness, N/m; h, b of MC-2; r the mean of n' G n;
+// b_j additional load that represents creep (creep.h).
 // With the surface points fixed f = -dW/dc exactly: (v, t) follow from (a, m) by one symmetric
 // matrix. moved_contact.h decides how the surface points move.
 #pragma once
@@ -34,7 +34,7 @@
 
 namespace tact::model::contact {
 
-/// k, chosen: the pressed liver is then within 5.3 % of finite elements at finite strain.
+/// k, chosen: with it the liver is within 5.3 % of finite elements at finite strain.
 inline constexpr double kChord_ratio = 0.4;
 
 inline constexpr std::size_t kMaxUnknowns = 3 * kMaxSpheres;
@@ -48,21 +48,21 @@ struct PairCompliance {
 struct OrganSphere {
   std::size_t index = 0;  // of the tool's spheres
   bool slides = true;     // its surface point follows y; else it sticks
-  bool is_held = false;   // bonded: it may pull, and nothing slips
+  bool is_held = false;   // bonded: it may pull and does not slip
   double friction_ratio = 0.0;
   double radius_m = 0.0;
-  double depth_offset_m = 0.0;      // of the depth, without force
+  double depth_offset_m = 0.0;      // part of the depth that gives no force
   SurfaceFrame at;                  // s
   Vec3 centre_m;                    // c
   double speed_mps = 0.0;           // pressing
   double tangential_N_per_m = 0.0;  // k_w
-  Vec3 rest_m;                      // w without force
-  Vec3 y_m;                         // first a guess, then the answer
+  Vec3 rest_m;                      // w at zero tangential force
+  Vec3 y_m;                         // first a guess, then the solution
   Vec3 slope;                       // t, likewise
   Vec3 shift_m;                     // v, likewise
   law::CreepState creep;            // of a
   Vec3 crept_N;                     // b
-  // Answers
+  // Results of evaluate()
   double height_m = 0.0;
   double indentation_m = 0.0;  // d
   Vec3 tangential_m;           // w
@@ -75,13 +75,13 @@ struct OrganSphere {
   Vec3 force_N;     // f
   // Of this tick (moved_contact.h)
   Vec3 moved_m;              // dc
-  double may_slide_m = 0.0;  // rest of what the surface point may move
-  double may_slip_m = 0.0;   // and of what the sphere may slip where it sticks
+  double may_slide_m = 0.0;  // remaining motion of the surface point
+  double may_slip_m = 0.0;   // remaining slip of a sphere that sticks
   Vec3 brake_N;              // ML-9
-  // Where it was seen last (moved_detect.cc)
+  // At the last search (moved_detect.cc)
   bool is_pressing = false;
-  Vec3 seen_shift_m, seen_y_m;  // v and y then
-  double deep_m = 0.0;          // so far y may go before it can be outside
+  Vec3 seen_shift_m, seen_y_m;  // v and y
+  double deep_m = 0.0;          // distance that y must move before it can be outside
 };
 
 struct MovedOrgan {
@@ -98,7 +98,7 @@ struct MovedOrgan {
   bool has_slope = false;
 };
 
-/// What ML-1 asks the law.
+/// Input of the law in ML-1.
 inline Indentation indentation_of(const OrganSphere& b) RT_SAFE {
   return {.sphere = b.index,
           .surface_point = b.at.surface_point,
@@ -111,17 +111,17 @@ inline Indentation indentation_of(const OrganSphere& b) RT_SAFE {
 /// ML-8 of all spheres, from their surface points and pairs.
 void fill_matrices(MovedOrgan& organ) RT_SAFE;
 
-/// q of ML-8 from MC-2's b: 0 where one of the two hardly gives.
+/// q of ML-8 from b of MC-2: 0 if one of the two compliances is very small.
 double structural_ratio(const MovedOrgan& organ, std::size_t i, std::size_t j,
                         double structural_m_per_N) RT_SAFE;
 
-/// ML-1 to ML-6 at y: fills the answers; returns the largest residual, m.
+/// ML-1 to ML-6 at y: fills the results; returns the largest residual, m.
 double evaluate(MovedOrgan& organ) RT_SAFE;
 
-/// dc/dy at the last evaluate(), for newton_step(). False: there is none to step by.
+/// dc/dy at the last evaluate(), for newton_step(). False: it is singular.
 bool find_slope(MovedOrgan& organ) RT_SAFE;
 
-/// `share` of a step on y by the last slope, at most max_step_m. False: no step; y stays.
+/// `share` of a Newton step on y with the last slope, at most max_step_m. False: y is unchanged.
 bool newton_step(MovedOrgan& organ, double max_step_m, double share) RT_SAFE;
 
 /// ML-7 at the last evaluate().

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The answer of a tick: surface points, springs along the surface, ML-5. See moved_contact.h.
+// MovedContact: surface points, tangential springs and solution of ML-5 in a tick.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,12 +12,12 @@ namespace {
 constexpr int kMaxNewtonSteps = 5;
 constexpr int kMaxFixedSteps = 8;
 constexpr double kSolved_m = 2e-6;  // 0.1 mN at 50 N/m
-// Enough where the steps end: the next tick goes on from there. 0.6 and 3 mN at 60 N/m.
+// Accepted at the step limit: the next tick continues from there. 0.6 and 3 mN at 60 N/m.
 constexpr double kNearly_m = 1e-5, kNearlyFixed_m = 5e-5;
 constexpr double kMaxStep_m = 5e-4;
 constexpr double kMaxFixedStep_m = 2e-3;
 
-// What of w friction does not hold: |w| <= mu F / k_w.
+// The part of w beyond the friction limit |w| <= mu F / k_w.
 Vec3 beyond_friction(const OrganSphere& b, const Vec3& tangential_m) RT_SAFE {
   constexpr double kRounding = 1e-9;
   const double cap_m = b.friction_ratio * b.tip.force_N / b.tangential_N_per_m;
@@ -27,9 +27,9 @@ Vec3 beyond_friction(const OrganSphere& b, const Vec3& tangential_m) RT_SAFE {
 
 }  // namespace
 
-// ML-8's h and q are set where one of the two does not press, as that moves no energy. Where both
-// do, they follow the surface points over a way of the tool along the surface: ML-3 knows nothing
-// of how they change.
+// h and q of ML-8 are set at once if one of the two spheres does not press, as that changes no
+// energy. If both press, they follow gradually with the tool's motion along the surface: ML-3 does
+// not include their change.
 void MovedContact::couple() RT_SAFE {
   constexpr double kWay_m = 0.01;
   for (std::size_t i = 0; i < organ_.count; ++i)
@@ -50,8 +50,8 @@ void MovedContact::couple() RT_SAFE {
     }
 }
 
-// k_w = a / c of MC-5. With friction it stiffens as the contact grows and keeps its force, as MC-7
-// has it: the surface point comes nearer.
+// k_w = a / c of MC-5. With friction it stiffens as the contact grows and keeps its force (MC-7):
+// the surface point moves nearer.
 void MovedContact::stiffen(OrganSphere& b) RT_SAFE {
   constexpr double kMinGrowth = 1.01, kMinRadius_ratio = 0.1;
   if (b.is_held) return;
@@ -81,7 +81,7 @@ void MovedContact::stiffen(OrganSphere& b) RT_SAFE {
   fill_compliance(surface, b.at);
 }
 
-// Moves a surface point as far as it slides, within its budget; returns whether it has moved.
+// Moves a surface point as far as it slides, within may_slide_m; true if it has moved.
 bool MovedContact::follow_foot(OrganSphere& b) const RT_SAFE {
   constexpr int kMaxFootSteps = 2;
   constexpr double kOnFoot_m = 2e-9;
@@ -94,7 +94,7 @@ bool MovedContact::follow_foot(OrganSphere& b) const RT_SAFE {
     const LocalPosition at = local_position(b.at, b.y_m);
     const Vec3 slip_m =
         has_friction ? beyond_friction(b, at.tangential_m - b.rest_m) : at.tangential_m - b.rest_m;
-    // rest_m, what slipped while the surface point could not move, is added to its way now.
+    // Slip from ticks in which the surface point could not move (rest_m) is made up for now.
     Vec3 way_m = way_to_foot(b.at, at.height_m, slip_m == Vec3{} ? slip_m : slip_m + b.rest_m);
     const double length_m = norm(way_m);
     if (!(length_m >= kOnFoot_m)) break;
@@ -108,7 +108,7 @@ bool MovedContact::follow_foot(OrganSphere& b) const RT_SAFE {
     b.slides = b.may_slide_m > 0.0;
   }
   if (has_moved) fill_compliance(surface, b.at);
-  // It may slide no further, but friction holds no more than its cone.
+  // The surface point may not move farther, but the force must stay in the friction cone.
   if (!(b.may_slide_m > 0.0)) {
     const Vec3 w_m = local_position(b.at, b.y_m).tangential_m - b.rest_m;
     const Vec3 slip_m = has_friction ? beyond_friction(b, w_m) : w_m;
@@ -126,11 +126,11 @@ void MovedContact::follow_feet() RT_SAFE {
   if (has_moved) fill_matrices(organ_);
 }
 
-// If only the centres moved, the residual is the last one plus their way: no evaluate() is needed
-// before the first step. The slope is that of an earlier tick as long as its steps are fast enough.
+// If only the centres moved, the residual is the last one plus their displacement: no evaluate() is
+// needed before the first step. The slope of an earlier tick is kept while it converges fast.
 bool MovedContact::solve_sliding() RT_SAFE {
   is_nearly_ = false;
-  constexpr double kFast_ratio = 0.4;  // of the residual, after a step
+  constexpr double kFast_ratio = 0.4;  // residual after a step over that before
   double before_m = 0.0;
   for (std::size_t i = 0; i < organ_.count; ++i) {
     OrganSphere& b = organ_.sphere[i];
@@ -170,7 +170,7 @@ bool MovedContact::solve_fixed() RT_SAFE {
   for (int i = 0; i <= kMaxFixedSteps; ++i) {
     const double residual_m = evaluate(organ_);
     if (residual_m < kSolved_m) return true;
-    // A sphere that touches after one step and not after the next would alternate for ever.
+    // Without damping a sphere could alternate for ever between touching and not touching.
     share = residual_m < kProgress * before_m ? std::min(2.0 * share, 1.0) : 0.5 * share;
     before_m = residual_m;
     if (i == kMaxFixedSteps || !find_slope(organ_) || !newton_step(organ_, kMaxFixedStep_m, share))
@@ -181,10 +181,9 @@ bool MovedContact::solve_fixed() RT_SAFE {
 }
 
 // ML-9   brake_i = -rho F_i dc_i / |dc_i|,   rho = excess / sum F_i |dc_i|
-// What was lost is the work of the spheres in this tick, by the trapezium rule, less what W has
-// gained.
+// Lost energy: work of the spheres in this tick, by the trapezium rule, minus the change of W.
 void MovedContact::brake() RT_SAFE {
-  constexpr double kFree_J = 2e-7;                               // of one contact, in all
+  constexpr double kFree_J = 2e-7;                               // permitted per contact
   constexpr double kTank_ratio = 0.05, kTolerated_ratio = 0.02;  // of W
   constexpr double kMaxBrake_ratio = 0.1;                        // of F
   constexpr double kMaxChange_N = 5e-4;                          // a tick
@@ -209,7 +208,7 @@ void MovedContact::brake() RT_SAFE {
     const Vec3 change_N = wanted_N - b.brake_N;
     const double length_N = norm(change_N);
     b.brake_N += (length_N > kMaxChange_N ? kMaxChange_N / length_N : 1.0) * change_N;
-    // It follows slowly, but never pushes, and is no more than its share of the force.
+    // It changes slowly, never acts along the motion, and is at most kMaxBrake_ratio of the force.
     const Vec3 along = normalized(b.moved_m);
     b.brake_N -= std::max(dot(b.brake_N, along), 0.0) * along;
     const double brake_N = norm(b.brake_N), most_N = kMaxBrake_ratio * norm(b.force_N);

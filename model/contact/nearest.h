@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// nearest.h - the nearest point of one triangle, and what it is on: a face, an edge or a corner.
+// nearest.h - the nearest point of one triangle, and whether it is on the face, an edge or corner.
 //
-// For the two searches of this room: from triangle to triangle (contact_point.h), over all of them
-// (triangle_tree.h).
+// Used by the local search (contact_point.h) and the search over all triangles (triangle_tree.h).
 #pragma once
 
 #include <cstdint>
@@ -22,8 +21,8 @@ struct Nearest {
 };
 
 Nearest nearest_on(const SurfaceView& surface, std::uint32_t triangle, const Vec3& p_m) RT_SAFE;
-/// The point with its sign and its normal, seen from p. On the boundary of an open surface p is
-/// outside.
+/// Contact point with signed distance and normal for p. If it is on the boundary of an open
+/// surface, p counts as outside.
 ContactPoint contact_point_of(const SurfaceView& surface, const Nearest& nearest,
                               const Vec3& p_m) RT_SAFE;
 

@@ -6,7 +6,7 @@
 namespace tact::model::contact {
 namespace {
 
-constexpr double kRounding_m = 1e-9;  // the same point, found from two triangles
+constexpr double kRounding_m = 1e-9;  // difference of one point computed from two triangles
 
 }  // namespace
 
@@ -24,8 +24,8 @@ void Proxy::follow(const SurfaceView& surface, const Vec3& p_m, const Vec3& move
   const Vec3 normal_before = contact_point_.normal;
   const bool lagged = lags_;
   move_to(surface, p_m, norm(tangential(moved_m, normal_before)), radius_m);
-  // Where g is nearest, the depth is a function of p alone. Else its work decides: the trapezium
-  // rule over both normals.
+  // Without lag the depth is a function of p alone. With lag the explained part is that of the
+  // work, by the trapezium rule with both normals.
   const double led_m = -0.5 * dot(normal_before + contact_point_.normal, moved_m);
   lengthened_m_ = lagged || lags_ ? radius_m - contact_point_.distance_m - before_m - led_m : 0.0;
 }
@@ -46,26 +46,26 @@ void Proxy::move_to(const SurfaceView& surface, const Vec3& p_m, double across_m
   lags_ = true;
 }
 
-// Of the line from p to g, what lies along the surface, and what points out of the organ.
+// The line from p to g without a component into the organ.
 Vec3 Proxy::depth_m(const Vec3& p_m) const RT_SAFE {
   const Vec3 line_m = offset_m_ - p_m;
   return tangential(line_m, outward_) + std::max(dot(line_m, outward_), 0.0) * outward_;
 }
 
-// A sphere outside is not drawn towards the point that is nearest to it, where g is above that
-// point, too: round an edge g may stand on the other side.
+// Removes the component towards the nearest point for a sphere outside of the organ, if g is near
+// that point: g may be on the other side of an edge.
 Vec3 Proxy::outward_of(const ContactPoint& nearest, const Vec3& line_m,
                        double radius_m) const RT_SAFE {
   const double inward_m = std::min(dot(line_m, nearest.normal), 0.0);
-  // Beyond the boundary of an open surface, and behind it, is no outside to be kept in.
+  // Not beyond the boundary of an open surface, nor behind it.
   const bool is_in_front = nearest.distance_m > 0.0 && dot(nearest.normal, nearest.outward) > 0.0;
   if (!is_in_front || !(inward_m < 0.0)) return line_m;
-  // Whole at less than a tenth of the radius from that point, not at all at more than the radius.
+  // Completely within a tenth of the radius from that point, not at all beyond one radius.
   const double apart_ratio = norm(nearest.point_m - contact_point_.point_m) / radius_m;
   return line_m - std::clamp((1.0 - apart_ratio) / 0.9, 0.0, 1.0) * inward_m * nearest.normal;
 }
 
-// Along the offset surface. In a crease g stays where a step would throw it over to the other side.
+// Slides g along the offset surface. In a crease g does not move if a step would make it jump.
 void Proxy::slide(const SurfaceView& surface, const Vec3& goal_m, double way_m,
                   double radius_m) RT_SAFE {
   constexpr double kThrown_ratio = 1.5;  // of the step

@@ -1,42 +1,41 @@
 // SPDX-License-Identifier: Apache-2.0
-// proxy.h - the god object of a sphere: where its centre would be if the organ were rigid.
+// proxy.h - the god object of a sphere: the position of its centre if the organ were rigid.
 //
 // The proxy g is a point at the distance r from the surface, outside, r the radius of the sphere
 // [C. Zilles, J. Salisbury, IROS 1995; D. Ruspini, K. Kolarov, O. Khatib, SIGGRAPH 1997]. The
-// sphere's depth is |g - p|, p its centre, and the force points from p to g. g is the point of that
-// offset surface that is nearest to p, found from where g was, so it never passes through the
-// organ. It gets there no faster than
+// sphere's depth is |g - p|, p its centre, and the force points from p to g. The goal of g is the
+// point of that offset surface nearest to p; the search starts at the last g, so g never passes
+// through the organ. Its motion in a step is bounded:
 //
 //     PX-1   |g' - g| <= kSlide_ratio |s|,   s the part of p' - p that is across g - p
 //
-// Where the nearest point moves faster (at an edge, beyond the middle of a thin part) g lags: it
-// slides along the offset surface towards that point, so the force turns at a bounded rate, and a
-// push straight in turns nothing. While it lags, what of g - p points out of the organ is at least
-// 0, at g and where p is nearest, so a lagging proxy never pulls in.
+// If the nearest point moves faster (at an edge, beyond the middle of a thin part), g lags: it
+// slides along the offset surface towards that point, so the force turns at a bounded rate, and not
+// at all during a push straight in. While it lags, the outward component of g - p is at least 0, at
+// g and at the point nearest to p, so a lagging proxy never pulls the sphere in.
 #pragma once
 
 #include "model/contact/contact_point.h"
 
 namespace tact::model::contact {
 
-/// Chosen: at the depth d in a body of curvature radius R the goal of g goes (R + r) / (R + r - d)
+/// Chosen: at depth d in a body of curvature radius R the goal of g moves (R + r) / (R + r - d)
 /// times as far as p.
 inline constexpr double kSlide_ratio = 2.0;
 
 class Proxy {
  public:
-  /// The surface point that g is above. normal is along the force, distance_m is r less
-  /// the depth.
+  /// The surface point below g; normal: direction of the force; distance_m: r minus the depth.
   const ContactPoint& contact_point() const RT_SAFE { return contact_point_; }
-  /// It is not at the nearest point.
+  /// True if g is not at the nearest point.
   bool lags() const RT_SAFE { return lags_; }
-  /// By how much the depth became larger in the last move than the work of its force explains, m;
-  /// below 0: smaller.
+  /// Increase of the depth in the last move beyond what the work of the force explains, m; may be
+  /// negative.
   double lengthened_m() const RT_SAFE { return lengthened_m_; }
 
-  /// The sphere comes from outside, to this contact point.
+  /// Starts at this contact point, for a sphere that comes from outside.
   void restart(const ContactPoint& contact_point, double radius_m) RT_SAFE;
-  /// The sphere's centre is at p now and has moved there since the last call.
+  /// The sphere's centre is now at p and has moved by moved_m since the last call.
   void follow(const SurfaceView& surface, const Vec3& p_m, const Vec3& moved_m,
               double radius_m) RT_SAFE;
 

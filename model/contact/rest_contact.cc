@@ -10,7 +10,7 @@ namespace tact::model::contact {
 namespace {
 
 // The part of a tangential vector along which the nearest point can move: all of it on a face, the
-// edge's share on an edge, nothing in a vertex.
+// component along an edge, nothing in a vertex.
 Vec3 movable(const SurfaceView& s, const SurfacePoint& surface_point, const Vec3& v) RT_SAFE {
   const TriangleCorners& corner = s.triangle[surface_point.triangle];
   for (std::size_t i = 0; i < 3; ++i) {
@@ -59,13 +59,13 @@ Step RestContact::step(Sphere& sphere, const Vec3& moved_m) RT_SAFE {
   if (s.is_held) return Step::kTouches;
   const PressingSphere& pressing = pressing_[sphere.index];
   if (sphere.lets_go && !(pressing.in.indentation_m > 0.0)) return Step::kLeaves;
-  // The offset cancels all of its depth: the sphere may be at another part of the organ by now.
+  // The offset cancels all of the depth: the sphere may be at another part of the organ.
   const bool is_all_offset = s.depth_offset_m > 0.0 && !(pressing.depth_m > 0.0);
   return s.proxy.contact_point().distance_m < sphere.radius_m && !is_all_offset ? Step::kTouches
                                                                                 : Step::kLeaves;
 }
 
-// d and t of this tick; e follows d as a first guess.
+// Sets d and t of this tick, and a first guess of e.
 void RestContact::move(const Sphere& sphere) RT_SAFE {
   const std::size_t i = sphere.index;
   RestSphere& s = sphere_[i];
@@ -74,13 +74,13 @@ void RestContact::move(const Sphere& sphere) RT_SAFE {
   s.moved_m = sphere.moved_m;
   s.velocity_mps = sphere.velocity_mps;
   s.reach_m = sphere.radius_m - s.proxy.contact_point().distance_m;
-  // e moves by what d moves: the guess from which MC-1 is solved is then near.
+  // e changes by the change of d: a good guess for MC-1.
   const double before_m = pressing.depth_m;
   if (s.is_held) {
     pressing.depth_m = s.held_depth_m - dot(sphere.centre_m - s.held_centre_m, s.normal);
   } else {
     move_to_proxy(i);
-    // d = r - phi - slack
+    // d = r - phi - offset
     s.depth_offset_m = std::clamp(s.depth_offset_m + s.unpaid_m, 0.0, std::max(s.reach_m, 0.0));
     pressing.depth_m = s.reach_m - s.depth_offset_m;
     if (pressing.response.law.status != law::LawStatus::kSaturated)
@@ -91,24 +91,24 @@ void RestContact::move(const Sphere& sphere) RT_SAFE {
   pressing.in.indentation_m += pressing.depth_m - before_m;
 }
 
-// Where the proxy is. The axes turn with the normal, t and f with them: that takes no energy.
+// Moves the surface point to the proxy. Axes, t and f turn with the normal, which needs no energy.
 void RestContact::move_to_proxy(std::size_t i) RT_SAFE {
   RestSphere& s = sphere_[i];
   const ContactPoint& contact_point = s.proxy.contact_point();
   s.surface_point = contact_point.surface_point;
   s.point_m = contact_point.point_m;
-  // A press straight down turns nothing: axes that are not made again do not drift.
+  // If the normal has not changed, the axes are kept, so that they do not drift.
   if (contact_point.normal == s.normal && s.axes.unit[0] != Vec3{}) return;
   s.normal = contact_point.normal;
   s.axes = axes_of(s.normal, s.axes);
 }
 
-// A thin part that the sphere has pushed ahead stays between it and its place.
+// False while a thin part of the organ is between the sphere and its surface point.
 bool RestContact::must_let_go(Sphere& sphere) RT_SAFE {
   const RestSphere& s = sphere_[sphere.index];
   const bool is_beyond = pressing_[sphere.index].response.law.status == law::LawStatus::kSaturated;
   const ContactPoint& contact_point = s.proxy.contact_point();
-  // At the nearest point of the side it came from, and nearer than its radius.
+  // At the nearest point of the side from which it came, with its centre outside.
   if (!is_beyond && !s.proxy.lags() && contact_point.distance_m > 0.0) return false;
   return is_outside(scene_, sphere) &&
          (is_beyond || is_open_way(scene_, contact_point.point_m, sphere.centre_m));
@@ -121,7 +121,7 @@ double RestContact::cut_to_law_m(std::size_t i) RT_SAFE {
   return std::max(pressing_[i].depth_m, 0.0);
 }
 
-// d becomes smaller, and so it stays.
+// Reduces d permanently.
 void RestContact::add_depth_offset(std::size_t i, double depth_m) RT_SAFE {
   RestSphere& s = sphere_[i];
   PressingSphere& pressing = pressing_[i];
@@ -135,7 +135,7 @@ void RestContact::add_depth_offset(std::size_t i, double depth_m) RT_SAFE {
   }
 }
 
-// This order holds: couplings before forces.
+// Couplings must be updated before forces.
 void RestContact::respond() RT_SAFE {
   couple_new_spheres();
   keep_definite();
@@ -143,13 +143,13 @@ void RestContact::respond() RT_SAFE {
   for (RestSphere& s : sphere_) s.is_new = false;
 }
 
-// A sphere that has just come couples with those that are there, for as long as it stays. It meets
-// tissue that they have dragged along: its own spring is at rest there.
+// Couples a new sphere with the others until it leaves. They may have displaced its tissue
+// sideways: its tangential spring starts unloaded there.
 void RestContact::couple_new_spheres() RT_SAFE {
   const std::array<bool, kMaxSpheres> before = is_coupled_;
   for (std::size_t i = 0; i < kMaxSpheres; ++i) is_coupled_[i] = pressing_[i].presses;
-  // Couplings stay from touch to release: MC-3 is a potential only while C is constant. Own springs
-  // come first, as couple() bounds each pair by both of them.
+  // Couplings are constant from touch to release, as MC-3 is a potential only for constant C. The
+  // spheres' springs are set first, as couple() bounds each pair by both springs.
   if (is_coupled_ == before) return;
   for (std::size_t i = 0; i < kMaxSpheres; ++i)
     if (!is_coupled_[i])
@@ -173,8 +173,8 @@ void RestContact::couple_new_spheres() RT_SAFE {
     }
 }
 
-// A new contact on tissue displaced by its neighbour would gain energy: that depth is offset. Of
-// the two spheres only one presses so far.
+// A new contact on tissue that its neighbour raises would gain energy: that depth is offset. Only
+// one of the two spheres presses so far.
 void RestContact::couple_pair(std::size_t i, std::size_t j) RT_SAFE {
   const ContactCoupling along = scene_.law->coupling(
       indentation(i), indentation(j), norm(sphere_[i].centre_m - sphere_[j].centre_m));
@@ -202,9 +202,8 @@ void RestContact::press() RT_SAFE {
 }
 
 // MC-6   C <- q C,   slack_i <- slack_i + (1 - q) sum over j of C_ij F_j
-// Sites that are too stiff for their coupling could have two solutions at some depth. Then C
-// becomes smaller, and what presses gets an offset for it: its force stays, and the change gives no
-// energy.
+// With contact points too stiff for their coupling there could be two solutions at some depth. Then
+// C is reduced, and pressing spheres get an offset, so that forces stay and no energy is added.
 void RestContact::keep_definite() RT_SAFE {
   if (std::count(is_coupled_.begin(), is_coupled_.end(), true) < 2) return;
   std::array<double, kMaxSpheres> stiffest_N_per_m{};
@@ -221,14 +220,14 @@ void RestContact::keep_definite() RT_SAFE {
     spared_m[i] = (1.0 - share) * coupled_m(coupling_, pressing(), i);
     spared_J += pressing_[i].response.law.force_N * spared_m[i];
   }
-  // A pull beside a press: scaling C would give energy here.
+  // One sphere pulls, another presses: reducing C would add energy.
   if (!(spared_J >= 0.0)) return;
   for (std::size_t i = 0; i < count(); ++i) add_depth_offset(i, spared_m[i]);
   for (auto& row : coupling_)
     for (double& m_per_N : row) m_per_N *= share;
 }
 
-// Friction last, as its cap is the force of the press.
+// Friction is last, as its cap depends on the normal force.
 void RestContact::finish() RT_SAFE {
   if (is_held_anew_) press();
   is_held_anew_ = false;
@@ -254,7 +253,7 @@ OrganForce RestContact::report(const Sphere& sphere, SphereContact& reported) co
                       0.5 * contact_point.law.force_N * coupled_m(coupling_, pressing(), i) +
                       0.5 * dot(f_N, t_m);
   Vec3 force_N = contact_point.law.force_N * s.normal - s.axes.vector(f_N);
-  // dU/ds belongs to a place that follows the tool; held tissue and a proxy that lags do not.
+  // dU/ds acts only if the surface point follows the tool: not if held or with a lagging proxy.
   if (!s.is_held && !s.proxy.lags())
     force_N -= movable(scene_.surface, s.surface_point, contact_point.slope_N);
   return {force_N, scene_.law->resistance_N(pressing_[i].in, contact_point.law.force_N) * s.normal};

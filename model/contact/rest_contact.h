@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-// rest_contact.h - spheres of one tool on an organ that stays as it was drawn.
+// rest_contact.h - contact of a tool's spheres with an organ whose surface stays at rest.
 //
 // One potential for each sphere (c: centre, r: radius, phi: signed distance of c to the surface,
 // n = grad phi; of the surface at the proxy, proxy.h):
 //
-//   touching  W = U(e, s) + f . t / 2,   d = r - phi - slack,   |f| <= mu F  (Coulomb cap)
-//   held      W = U(e, s) + f . t / 2,   d, s and t measured in the frame of the moment of
+//   touching  W = U(e, s) + f . t / 2,   d = r - phi - offset,   |f| <= mu F  (Coulomb cap)
+//   held      W = U(e, s) + f . t / 2,   d, s and t relative to the frame at the moment of
 //             gripping, no cap, d may be negative (pull)
 //
-// U is the contact point law's (contact_law.h), s the place on the surface; as s follows the tool,
-// the slope of U along the surface is felt too. t: tangential displacement of the tissue, m, f = K
-// t (shear.h), in axes that turn with n. The springs stiffen as the contact grows and stay so until
-// the sphere leaves; stiffening keeps the force and lowers the stored energy. On another triangle
-// the springs are those of the new place, if that stores no more energy at the same force.
+// U is the energy of the contact law (contact_law.h), s the surface point; as s follows the tool,
+// the slope of U along the surface adds to the force. t: tangential displacement of the tissue, m,
+// f = K t (shear.h), in axes that turn with n. The springs stiffen as the contact grows, until the
+// sphere leaves; stiffening keeps the force and lowers the stored energy. On another triangle the
+// springs take the stiffness there, if that stores no more energy at the same force.
 //
-// The law is asked with the sphere's own indentation e: d less what the other spheres have sunk the
-// contact point (coupling.h). How they couple is kept from a sphere's first touch until it leaves.
-// Damping (LW-3) is added last: b of the indentation, times the speed of the sphere's own depth, so
-// that each sphere takes energy by itself.
+// The input of the law is the indentation e: d minus the coupled displacement by the other spheres
+// (coupling.h). The coupling of two spheres is constant from the first touch until one leaves.
+// Damping (LW-3) is added last: b at the indentation times the speed of the sphere's depth, so that
+// each sphere dissipates energy.
 //
-// rest_contact.cc: how deep, how hard. rest_grip.cc: held and let go. rest_slide.cc: forces along
-// the surface.
+// rest_contact.cc: depth and normal force. rest_grip.cc: hold and release. rest_slide.cc:
+// tangential forces.
 #pragma once
 
 #include "model/contact/contact_scene.h"
@@ -31,12 +31,12 @@
 
 namespace tact::model::contact {
 
-/// A sphere that touches.
+/// A touching sphere.
 struct RestSphere {
   bool is_held = false, is_new = false;  // new: since this tick
   Vec3 centre_m, moved_m, velocity_mps;  // of this tick
   Proxy proxy;
-  double unpaid_m = 0.0;  // of the depth, since the last tick: no movement led there
+  double unpaid_m = 0.0;  // depth since the last tick that no motion explains
   double reach_m = 0.0;   // r - phi
   double depth_offset_m = 0.0;
   double within_law_m = 0.0;  // e of the last tick within the range of the law
@@ -46,7 +46,7 @@ struct RestSphere {
   Axes axes;
   Vec3 held_centre_m;
   double held_depth_m = 0.0;
-  TangentCompliance tangent_compliance;  // of give_triangle
+  TangentCompliance tangent_compliance;  // of compliance_triangle
   std::uint32_t compliance_triangle = kNoTriangle;
 };
 
@@ -93,8 +93,8 @@ class RestContact final : public OrganContact {
   ContactScene scene_;
   std::array<RestSphere, kMaxSpheres> sphere_{};
   std::array<PressingSphere, kMaxSpheres> pressing_{};  // d and e
-  std::array<bool, kMaxSpheres> is_coupled_{};          // with those that touched before
-  Coupling coupling_{};                                 // C as it is felt
+  std::array<bool, kMaxSpheres> is_coupled_{};          // with spheres that touched before
+  Coupling coupling_{};                                 // C in use
   Shear shear_;
   Shear::Shifts shift_m_{}, shear_N_{};  // t, f
   double energy_J_ = 0.0;                // of all presses

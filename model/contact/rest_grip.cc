@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tissue at rest that a closed grip holds, pulls and loses: see rest_contact.h.
+// RestContact: hold and release by the grip, and the pulling force.
 #include <algorithm>
 #include <cmath>
 
@@ -7,13 +7,13 @@
 
 namespace tact::model::contact {
 
-// A sphere that hangs in the indentation of another has nothing to hold.
+// A sphere without indentation, in the indentation of another sphere, is not bonded.
 bool RestContact::hold(std::size_t i) RT_SAFE {
   RestSphere& s = sphere_[i];
   if (!(pressing_[i].in.indentation_m > 0.0)) return false;
-  // The frame of this moment: the depth goes on from what it is, so gripping itself moves nothing.
+  // The depth continues from its present value, so gripping changes no force.
   s.held_centre_m = s.centre_m;
-  s.compliance_triangle = kNoTriangle;  // held, it gives less
+  s.compliance_triangle = kNoTriangle;  // the compliance of held tissue is smaller
   s.held_depth_m = pressing_[i].depth_m;
   s.is_held = is_held_anew_ = true;
   return true;
@@ -25,17 +25,17 @@ double RestContact::pull_N(std::size_t i) const RT_SAFE {
 }
 
 // MC-8   d' = max d in 0 .. min(d_now, d_held) with W(d) <= W_held
-// Back to the surface, with no stored shift and no deeper than it was held. Tissue may be stiffer
-// where the tool has been dragged to. So the depth is the largest at which the whole tool stores no
-// more than before. Pressed tissue keeps its memory: relaxation that was forgotten would come back
-// as a stiffer push.
+// Returns the sphere to the surface without tangential displacement, no deeper than it was held.
+// Tissue may be stiffer at the new surface point, so the depth is the largest at which all spheres
+// store no more energy than before. The law keeps its relaxation state: without it the force would
+// rise.
 bool RestContact::release(std::size_t i) RT_SAFE {
-  // MC-8: 1/4096 of the depth. Each one solves the whole tool, so they are few.
+  // MC-8: 1/4096 of the depth. Few, as each solves for all spheres.
   constexpr int kHalvings = 12;
   RestSphere& s = sphere_[i];
   PressingSphere& pressing = pressing_[i];
   const double held_J = energy_J_, held_m = pressing.depth_m;
-  // Pulled out already: nothing to go back to.
+  // Already pulled out of the surface.
   if (!(s.reach_m > 0.0)) {
     leave(i);
     scene_.law->leave(i);
@@ -59,8 +59,7 @@ bool RestContact::release(std::size_t i) RT_SAFE {
   }
   s.depth_offset_m = s.reach_m - low_m;
   if (!(low_m > 0.0)) scene_.law->leave(i);
-  // Once more, as the last depth tried may be another: answers and indentations become those of
-  // low_m.
+  // The last depth tried may differ from low_m: compute responses and indentations at low_m.
   affords(low_m);
   drop_shift(i);
   return true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tissue's springs along the surface, and when a sphere slips: see rest_contact.h.
+// RestContact: tangential springs of the tissue, and slip.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,10 +9,10 @@
 namespace tact::model::contact {
 namespace {
 
-// A sphere that slips ends at its cap up to rounding: it must not slip again in the next sweep.
+// A slipping sphere ends at its cap up to rounding; it must not slip again in the next sweep.
 constexpr double kAboveCap = 1.0 + 1e-12;
 
-// What Coulomb leaves of f at the stiffness K, so that f' lies along the slip g f':
+// Limits f by Coulomb's law at the stiffness K, so that f' is parallel to the slip g f':
 //
 //     MC-9   f' = f - K g f',   |f'| = mu F,   g > 0
 //
@@ -20,7 +20,7 @@ constexpr double kAboveCap = 1.0 + 1e-12;
 //
 //     (|f'| / (mu F) - 1) |f'|^2 / (f' . (I + g K)^-1 K f')
 //
-// kSteps bound the work, and the length is then set.
+// The length is set after kSteps.
 Vec2 slipping_N(const Vec2& f_N, const Tensor2& stiffness_N_per_m, double cap_N) RT_SAFE {
   constexpr int kSteps = 3;
   if (!(cap_N > 0.0)) return {};
@@ -33,16 +33,16 @@ Vec2 slipping_N(const Vec2& f_N, const Tensor2& stiffness_N_per_m, double cap_N)
     const double length2 = dot(left_N, left_N);
     g_m_per_N += (std::sqrt(length2) / cap_N - 1.0) * length2 / dot(left_N, solve(m, k * left_N));
   }
-  // Three steps leave a little of the length; it is set, so that only the direction is not exact.
+  // The length is set exactly; only the direction keeps the error of three steps.
   return (cap_N / norm(left_N)) * left_N;
 }
 
 }  // namespace
 
-// By the contact radius of its own indentation, sqrt(R d): CT-1 for a << R. A held patch is as wide
-// as the sphere.
+// At the contact radius sqrt(R d) of the indentation: CT-1 for a << R. A held patch is as wide as
+// the sphere.
 Tensor2 RestContact::compliance_m_per_N(std::size_t i) const RT_SAFE {
-  // Of the sphere, chosen: G of MC-5 grows without limit as a contact closes.
+  // Least contact radius over that of the sphere, chosen: G of MC-5 is unbounded at radius 0.
   constexpr double kMinRadius_ratio = 0.1;
   const double radius_m = scene_.spheres[i].radius_m;
   if (sphere_[i].is_held) return sphere_[i].tangent_compliance.at(radius_m);
@@ -58,18 +58,18 @@ TangentCompliance RestContact::ask_tangent_compliance(std::size_t i, bool held) 
   return {.rest_m_per_N = {.xx = 1.0 / fixed_N_per_m, .yy = 1.0 / fixed_N_per_m}};
 }
 
-// A sphere without force: any spring is free.
+// Only for a sphere without force: no spring stores energy then.
 void RestContact::start_tangent_spring(std::size_t i) RT_SAFE {
   sphere_[i].compliance_triangle = sphere_[i].surface_point.triangle;
-  // The least that this spring can become, held and as wide as the sphere,
-  // bounds its couplings: they stay definite however it stiffens.
+  // The least compliance of this spring, held and as wide as the sphere, bounds its couplings: the
+  // matrix stays positive definite while the spring stiffens.
   sphere_[i].tangent_compliance = ask_tangent_compliance(i, false);
   const double least_m_per_N =
       ask_tangent_compliance(i, true).at(scene_.spheres[i].radius_m).least_eigenvalue();
   shear_.set_own(i, {at_least(compliance_m_per_N(i), least_m_per_N), least_m_per_N});
 }
 
-// Without it the others share the shift; it goes where they have dragged it.
+// Removes the tangential force of sphere i: its contact point moves with the tissue of the others.
 void RestContact::drop_shift(std::size_t i) RT_SAFE {
   Shear without = shear_;
   without.leave(i);
@@ -82,8 +82,8 @@ void RestContact::drop_shift(std::size_t i) RT_SAFE {
 }
 
 // MC-7   t_i <- t_i + (G_i' - G_i) f_i,   G_i' < G_i
-// In steps of 1 %, and from triangle to triangle. Each keeps its force, so it needs less shift;
-// where it would need more, the spring stays as it is.
+// Springs stiffen in steps of 1 %, and on a new triangle. Each keeps its force and so needs less
+// displacement; if it would need more, the spring is not changed.
 void RestContact::stiffen() RT_SAFE {
   constexpr double kStep_ratio = 0.99;
   Shear::Shifts change_m{};
@@ -100,7 +100,7 @@ void RestContact::stiffen() RT_SAFE {
     const Tensor2 now_m_per_N = compliance_m_per_N(i);
     if (!(now_m_per_N.trace() < most_m_per_N)) continue;
     const OwnCompliance own{at_least(now_m_per_N, before.least_m_per_N), before.least_m_per_N};
-    // MC-7: W falls by f . (G - G') f / 2, or the spring stays.
+    // MC-7: W falls by f . (G - G') f / 2; else the spring is not changed.
     const Vec2 force_N = shear_.force_N(shift_m_, i);
     const Vec2 more_m = own.m_per_N * force_N - before.m_per_N * force_N;
     if (own == before || !(dot(force_N, more_m) <= 0.0)) continue;
@@ -113,8 +113,8 @@ void RestContact::stiffen() RT_SAFE {
   for (std::size_t i = 0; i < kMaxSpheres; ++i) shift_m_[i] = shift_m_[i] + change_m[i];
 }
 
-// t up to |f| = mu F; held tissue has no cap. One sphere's slip changes what the next one carries:
-// kSweeps over all, and what they leave above the cap is cut from the force alone.
+// Limits |f| to mu F by slip of t; held tissue has no cap. Slip of one sphere changes the forces of
+// the others: kSweeps sweeps over all spheres. A remaining excess is removed from the force only.
 void RestContact::resist_sliding() RT_SAFE {
   constexpr int kSweeps = 4;
   for (int sweep = 0; sweep <= kSweeps; ++sweep) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// rotation.h - how far a bending organ turns a surface point: the whole rotation, the share of it
-// along which the chord from the rest position points, and the moment of a load on the slope.
+// rotation.h - rotation of a surface point of a bending organ: the whole rotation, the part of it
+// that gives the direction of the displacement, and the moment of a load on the slope.
 //
 //     Q = exp(theta u),   Q^k = exp(k theta u),   theta = atan|t|,   u = n x t / |t|
 //
@@ -26,7 +26,7 @@ struct Rotation {
   SineCosine whole, chord, rest;          // of theta, k theta and (1 - k) theta
 };
 
-/// v turned about a unit axis; v itself about none.
+/// v rotated about a unit axis; v itself if the axis is 0.
 inline Vec3 rotated(const SineCosine& by, const Vec3& axis, const Vec3& v) RT_SAFE {
   return by.cosine * v + by.sine * cross(axis, v) + ((1.0 - by.cosine) * dot(axis, v)) * axis;
 }
@@ -58,8 +58,8 @@ inline Vec3 jacobian_transposed(const SineCosine& of, double angle_rad, const Ve
   return s * z + ((1.0 - s) * dot(axis, z)) * axis - c * cross(axis, z);
 }
 
-/// Moment on the slope, N m: -d/dt of load . (Q^k shift + Q arm) at a fixed load. All three
-/// vectors as turned: the load as the tool feels it, Q^k shift and Q arm.
+/// Moment on the slope, N m: -d/dt of load . (Q^k shift + Q arm) at a fixed load. All three vectors
+/// are after rotation: the load on the tool, Q^k shift and Q arm.
 inline Vec3 moment_on_slope(const Rotation& q, double chord_ratio, const Vec3& load_N,
                             const Vec3& turned_shift_m, const Vec3& turned_arm_m) RT_SAFE {
   const Vec3 on_chord = jacobian_transposed(q.chord, chord_ratio * q.angle_rad, q.axis,

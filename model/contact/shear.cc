@@ -12,10 +12,10 @@ void Shear::leave(std::size_t i) RT_SAFE {
   for (std::size_t j = 0; j < kMaxSpheres; ++j) couple(i, j, 0.0, {}, {});
 }
 
-// Rows that sum to less than the diagonal: positive definite, and so is what elimination leaves.
+// The matrix is diagonally dominant, hence positive definite.
 void Shear::couple(std::size_t i, std::size_t j, double m_per_N, const Axes& of_i,
                    const Axes& of_j) RT_SAFE {
-  // Of each pair, so that all pairs of a sphere stay below its own spring; 0.9 leaves a margin.
+  // Limit per pair: all pairs of a sphere together stay below its spring; 0.9 is a margin.
   constexpr double kMax = 0.9 / (kMaxSpheres - 1);
   const double most_m_per_N = kMax * std::min(own_[i].least_m_per_N, own_[j].least_m_per_N);
   const double c = std::clamp(m_per_N, -most_m_per_N, most_m_per_N);
@@ -25,7 +25,7 @@ void Shear::couple(std::size_t i, std::size_t j, double m_per_N, const Axes& of_
           c * dot(of_i.unit[p], of_j.unit[q]);
 }
 
-// Of the rows that take force, column by column.
+// Inverts the matrix of the pressing spheres, column by column.
 void Shear::solve() RT_SAFE {
   using Lu = SmallLu<2 * kMaxSpheres>;
   std::array<std::size_t, 2 * kMaxSpheres> row{};

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// shear.h - spheres that drag one tissue sideways: a spring each, coupled as their presses are.
+// shear.h - tangential springs of spheres on the same tissue, one per sphere, coupled.
 //
 //     MC-4   t_i = G_i f_i + sum over j != i of c_ij P_ij f_j        W = sum f_i . t_i / 2
 //            |f_i| <= mu F_i unless held (Coulomb)
 //
-//     t_i   sideways displacement of contact point i, m       f_i   force that it takes, N: in two
-//           axes each
-//     G_i   MC-5, m/N, a tensor: another give in each direction, less while the contact grows
-//     c     h + b of MC-2, kept so small that diag(G) + c P is positive definite
-//     P_ij  turns the axes of j into those of i, without what lies along the normals
+//     t_i   tangential displacement of contact point i, m     f_i   its force, N: in two axes each
+//     G_i   MC-5, m/N, a tensor: depends on the direction, and falls while the contact grows
+//     c     h + b of MC-2, limited so that diag(G) + c P is positive definite
+//     P_ij  projects the axes of j on those of i
 //
-// Half-space: across the line that joins two contact points h is right, along it a factor of 1 / (1
-// - nu) is left out [Johnson, Contact Mechanics (1985), 3.6]. b is that of the normal motion,
-// as the map has no sideways coupling between contact points. The axes of a contact point turn with
+// On a half-space h is exact across the line between two contact points; along it a factor of
+// 1 / (1 - nu) is neglected [Johnson, Contact Mechanics (1985), 3.6]. b is that of the normal
+// motion, as the compliance map has no tangential coupling. The axes of a contact point turn with
 // its normal, G and c P with them.
 #pragma once
 
@@ -24,7 +23,7 @@
 
 namespace tact::model::contact {
 
-/// G now, and the least that it may become in any direction; 0: it takes no force.
+/// Present G, and its lower bound in any direction; 0: no force.
 struct OwnCompliance {
   Tensor2 m_per_N;
   double least_m_per_N = 0.0;
@@ -36,22 +35,22 @@ class Shear {
  public:
   using Shifts = std::array<Vec2, kMaxSpheres>;
 
-  /// Each of these counts from the next solve() on.
+  /// Each of these takes effect with the next solve().
   void set_own(std::size_t i, const OwnCompliance& own) RT_SAFE { own_[i] = own; }
   void couple(std::size_t i, std::size_t j, double m_per_N, const Axes& of_i,
               const Axes& of_j) RT_SAFE;
-  /// It does not press: no force, no coupling.
+  /// The sphere does not press: removes its spring and its couplings.
   void leave(std::size_t i) RT_SAFE;
   void solve() RT_SAFE;
 
   const OwnCompliance& own(std::size_t i) const RT_SAFE { return own_[i]; }
-  /// df_i / dt_i, N/m; 0: it does not press.
+  /// df_i / dt_i, N/m; 0 if it does not press.
   Tensor2 own_N_per_m(std::size_t i) const RT_SAFE;
   /// f_i for displacements t, m.
   Vec2 force_N(const Shifts& t_m, std::size_t i) const RT_SAFE {
     return times(stiffness_N_per_m_, i, t_m);
   }
-  /// t_i with which f_i is 0, where the others' forces are f, N.
+  /// The t_i for which f_i is 0 if the others' forces are f, N.
   Vec2 unloaded_m(const Shifts& f_N, std::size_t i) const RT_SAFE {
     return times(coupling_m_per_N_, i, f_N);
   }
@@ -64,7 +63,7 @@ class Shear {
 
   std::array<OwnCompliance, kMaxSpheres> own_{};
   Matrix coupling_m_per_N_{};   // c P, limited
-  Matrix stiffness_N_per_m_{};  // (diag(G) + c P)^-1 of what takes force, 0 elsewhere
+  Matrix stiffness_N_per_m_{};  // (diag(G) + c P)^-1 of the pressing spheres, else 0
 };
 
 }  // namespace tact::model::contact

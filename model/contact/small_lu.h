@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // small_lu.h - linear equations of at most N unknowns, factorised once and solved often, without
-// allocation: P A = L U by elimination, with exchange of rows where it is asked for.
+// allocation: P A = L U by elimination, with optional row exchange.
 #pragma once
 
 #include <algorithm>
@@ -14,8 +14,8 @@
 
 namespace tact::model::contact {
 
-/// The largest of its column, by exchange of rows; or the diagonal as it is, which is above 0 in
-/// every step if and only if a symmetric matrix is positive definite.
+/// kOfColumn: the largest of its column, by row exchange. kOfDiagonal: the diagonal element; for a
+/// symmetric matrix all pivots are > 0 if and only if it is positive definite.
 enum class Pivot : std::uint8_t { kOfColumn, kOfDiagonal };
 
 template <std::size_t N>
@@ -24,8 +24,8 @@ class SmallLu {
   using Square = std::array<std::array<double, N>, N>;  // [row][column]
   using Column = std::array<double, N>;
 
-  /// Of the first n rows and columns of a; false without a pivot above the least: solve() is then
-  /// not to be called.
+  /// Factorises the first n rows and columns of a. False if a pivot is not above least_pivot;
+  /// solve() must then not be called.
   bool factorise(const Square& a, std::size_t n, Pivot pivot, double least_pivot) RT_SAFE {
     n_ = n;
     for (std::size_t i = 0; i < n; ++i) std::copy_n(a[i].begin(), n, lu_[i].begin());
@@ -46,7 +46,7 @@ class SmallLu {
     return true;
   }
 
-  /// A x = b, x in place of b.
+  /// Solves A x = b; x replaces b.
   void solve(Column& b) const RT_SAFE {
     for (std::size_t k = 0; k < n_; ++k) std::swap(b[k], b[row_[k]]);
     for (std::size_t k = 1; k < n_; ++k)

@@ -21,14 +21,14 @@ struct Map2 {
   double determinant() const RT_SAFE { return xx * yy - xy * yx; }
 };
 
-// How x + h n moves along the axes for a unit way of x along them.
+// Displacement of x + h n along the axes for a unit displacement of x.
 Map2 offset_map(const SurfaceFrame& f, double height_m) RT_SAFE {
   const Vec3 a = f.point_m_per_m[0] + height_m * f.normal_per_m[0];
   const Vec3 b = f.point_m_per_m[1] + height_m * f.normal_per_m[1];
   return {dot(f.axis[0], a), dot(f.axis[0], b), dot(f.axis[1], a), dot(f.axis[1], b)};
 }
 
-// Beyond a centre of curvature the offset surface folds: there the height is reduced, to 0 at last.
+// Beyond a centre of curvature the map is not invertible: the height is halved, finally 0.
 Map2 invertible_offset_map(const SurfaceFrame& f, double height_m) RT_SAFE {
   constexpr double kMinDeterminant = 0.15;
   constexpr int kHalvings = 4;
@@ -60,7 +60,7 @@ SurfacePoint across(const SurfaceView& mesh, const SurfacePoint& surface_point, 
   return out;
 }
 
-// A way in the plane of one triangle, unfolded over an edge into the plane of the next.
+// A vector in the plane of one triangle, rotated about an edge into the plane of the next.
 Vec3 unfolded(const TriangleRecord& from, std::size_t edge, const TriangleRecord& to,
               const Vec3& way_m) RT_SAFE {
   const Vec3 along = normalized(from.corner_m[(edge + 1) % 3] - from.corner_m[edge]);

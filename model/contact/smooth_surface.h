@@ -2,9 +2,9 @@
 // smooth_surface.h - a triangle mesh as one smooth surface, and the compliance of the organ at any
 // of its points.
 //
-// b: weights of the corners x_i, q = sum b_i x_i. At every corner the value and its slope are
-// known. Half of what the slope says is added to the linear value: this meets value and slope at
-// the corners and is exact for a quadratic.
+// b: weights of the corners x_i, q = sum b_i x_i. Value and slope are known at every corner. The
+// linear interpolation plus half of the change by the slopes interpolates both and is exact for a
+// quadratic.
 //
 //     SF-1   x = q + sum b_i ((x_i - q) . n_i) n_i / 2          surface point, m
 //     SF-2   n = sum b_i n_i / |sum b_i n_i|                    normal
@@ -43,39 +43,39 @@ struct SmoothSurface {
   double youngs_modulus_Pa = 1.0;
 };
 
-/// A surface point with all that contact asks of it.
+/// A surface point with the geometry and compliance that contact needs.
 struct SurfaceFrame {
   SurfacePoint surface_point;
   Vec3 point_m, normal;                             // SF-1, SF-2
   std::array<Vec3, 2> axis;                         // unit, along the triangle
-  std::array<Vec3, 2> point_m_per_m, normal_per_m;  // dx and dn for a unit way along each axis
+  std::array<Vec3, 2> point_m_per_m, normal_per_m;  // dx and dn per unit displacement on each axis
   Mat3 compliance_m_per_N;                          // SF-3
   Mat3 slope_per_N;                                 // SF-4
 };
 
-/// SF-1 and SF-2 at frame.place.
+/// SF-1 and SF-2 at frame.surface_point.
 void fill_geometry(const SmoothSurface& surface, SurfaceFrame& frame) RT_SAFE;
 /// SF-3 and SF-4, after fill_geometry().
 void fill_compliance(const SmoothSurface& surface, SurfaceFrame& frame) RT_SAFE;
 
-/// A point in the axes of a surface frame: its height along n, and the rest across n.
+/// A point relative to a surface frame: its height along n, and its offset across n.
 struct LocalPosition {
   double height_m = 0.0;
   Vec3 tangential_m;
 };
 LocalPosition local_position(const SurfaceFrame& frame, const Vec3& point_m) RT_SAFE;
 
-/// Least ratio of the way of the point x + h n to that of x. It is 0 at a centre of curvature.
+/// Least displacement of the point x + h n over that of x; 0 at a centre of curvature.
 double offset_ratio(const SurfaceFrame& frame, double height_m) RT_SAFE;
 
-/// The way of the surface point that takes `tangential_m` away: one Newton step.
+/// Displacement of the surface point that makes `tangential_m` zero: one Newton step.
 Vec3 way_to_foot(const SurfaceFrame& frame, double height_m, const Vec3& tangential_m) RT_SAFE;
 
-/// dn/dy of a point y at this height whose foot follows, 1/m.
+/// dn/dy for a point y at this height, with its foot point following, 1/m.
 Mat3 normal_slope_per_m(const SurfaceFrame& frame, double height_m) RT_SAFE;
 
-/// Moves a surface point along a way in the plane of its triangle, over up to eight edges. It stops
-/// at a boundary.
+/// Moves a surface point by a vector in the plane of its triangle, over up to eight edges. Stops at
+/// a boundary.
 void move_along(const SurfaceView& mesh, SurfacePoint& surface_point, Vec3 way_m) RT_SAFE;
 
 }  // namespace tact::model::contact

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// sphere.h - one probe sphere of a tool: what it is, where it is, and what is told of it.
+// sphere.h - one probe sphere of a tool: geometry, state, and the contact that is reported.
 #pragma once
 
 #include <array>
@@ -16,10 +16,10 @@ namespace tact::model::contact {
 
 inline constexpr double kAnywhere_m = std::numeric_limits<double>::infinity();
 
-/// detect.h says what leads from one to another. kInside: found in the organ, without contact.
+/// Transitions: detect.h. kInside: located inside the organ, without contact.
 enum class ContactState : std::uint8_t { kFree, kTouching, kHeld, kInside };
 
-/// One sphere's share of a tick.
+/// Reported contact of one sphere in a tick.
 struct SphereContact {
   ContactState state = ContactState::kFree;
   law::LawStatus law_status = law::LawStatus::kNoContact;
@@ -31,31 +31,31 @@ struct SphereContact {
   double indentation_m = 0.0;  // e
   double depth_offset_m = 0.0;
   double energy_J = 0.0;  // its share of W
-  Vec3 force_N{};         // on the tool; of a contact that has ended it fades
+  Vec3 force_N{};         // on the tool; may ramp down after the contact has ended
 };
 
-/// What contact knows of a sphere, whatever the organ's form (organ_contact.h knows the rest).
+/// State of a sphere that is common to both implementations of organ_contact.h.
 struct Sphere {
   std::size_t index = 0;
   double radius_m = 0.0;
-  bool is_known = false;  // else it must be found: at the start, after a loss
+  bool is_known = false;  // false at the start and after a loss: it must be located
   ContactState state = ContactState::kFree;
   Vec3 centre_m{};      // c
   Vec3 moved_m{};       // since the last tick
-  Vec3 velocity_mps{};  // of c, as the device tells it
+  Vec3 velocity_mps{};  // of c, from the device's sample
   // Its last search
-  double clear_m = -kAnywhere_m;     // so far c may go before it must be repeated
-  bool was_outside = false;          // what it said of the whole sphere
-  std::uint32_t near = kNoTriangle;  // what it found
+  double clear_m = -kAnywhere_m;     // distance that c may move before a new search
+  bool was_outside = false;          // the whole sphere was outside
+  std::uint32_t near = kNoTriangle;  // nearest triangle
   // A contact that ends
   bool lets_go = false;
   double shrinks_m = 0.0;       // in 0.1 s
-  double unsolved_ratio = 0.0;  // of its last force that it has lost
-  // The force that is told, without what its speed adds
+  double unsolved_ratio = 0.0;  // how far its last force has ramped down, 0 to 1
+  // The reported force, without resistance
   Vec3 reported_N{};
-  double largest_N = 0.0;         // that the organ answered in this contact
-  double lag_N = 0.0;             // what told_N lacked most of what the organ answers; 0: nothing
-  double stiffest_N_per_m = 0.0;  // of its law, when it touched last
+  double largest_N = 0.0;         // largest force of the organ in this contact
+  double lag_N = 0.0;             // largest lag of reported_N behind the organ's force; 0: no lag
+  double stiffest_N_per_m = 0.0;  // of its law, at the last contact
   bool was_held = false;
 
   bool is_in_contact() const RT_SAFE {

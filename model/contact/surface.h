@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// surface.h - what the loop sees of a triangle surface: spans of fixed size, nothing to own.
+// surface.h - view of a triangle surface for the loop: spans of fixed size, without ownership.
 //
 // Triangles are counter-clockwise seen from outside. Edge e of a triangle joins corners e and
 // (e + 1) % 3. The vertex normal is the angle-weighted pseudo-normal: with it (and with the sum of
@@ -18,10 +18,10 @@ namespace tact::model::contact {
 using TriangleCorners = std::array<std::uint32_t, 3>;
 inline constexpr std::uint32_t kNoTriangle = 0xFFFFFFFFu;
 
-inline constexpr std::uint32_t kMaxFan = 128;  // triangles looked at around one vertex
+inline constexpr std::uint32_t kMaxFan = 128;  // triangles searched around one vertex
 
-/// All that a walk needs of one triangle, in one place of memory: a step costs nearly the same on
-/// a surface that no cache holds.
+/// All data of one triangle that a search needs, contiguous in memory: a step costs nearly the same
+/// if the surface does not fit in the cache.
 struct alignas(128) TriangleRecord {
   std::array<Vec3, 3> corner_m;
   Vec3 normal;                              // unit
@@ -32,7 +32,7 @@ struct alignas(128) TriangleRecord {
 };
 static_assert(sizeof(TriangleRecord) == 128);
 
-/// Cosine between the normals of two places: skin that looks further away belongs to another side.
+/// Least cosine between the normals of two surface points on the same side of the organ.
 inline constexpr double kFacing = 0.2;
 
 struct SurfaceView {
@@ -43,7 +43,7 @@ struct SurfaceView {
   std::span<const Vec3> vertex_normal;         // n, unit
   std::span<const std::uint32_t> fan_start;    // n + 1, into fan
   std::span<const std::uint32_t> fan;          // 3 m, triangles around each vertex
-  std::span<const TriangleRecord> record;      // m, the same once more, for contact_point.h
+  std::span<const TriangleRecord> record;      // m, the same data for contact_point.h
 };
 
 }  // namespace tact::model::contact

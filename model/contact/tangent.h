@@ -37,7 +37,7 @@ struct Tensor2 {
 constexpr Vec2 operator*(const Tensor2& t, const Vec2& v) RT_SAFE {
   return {t.xx * v.x + t.xy * v.y, t.xy * v.x + t.yy * v.y};
 }
-/// No eigenvalue below `least`: all of them are raised alike.
+/// Raises both eigenvalues equally until none is below `least`.
 inline Tensor2 at_least(const Tensor2& t, double least) RT_SAFE {
   const double lack = std::max(least - t.least_eigenvalue(), 0.0);
   return {t.xx + lack, t.xy, t.yy + lack};
@@ -57,9 +57,9 @@ struct Axes {
   constexpr Vec3 vector(const Vec2& v) const RT_SAFE { return v.x * unit[0] + v.y * unit[1]; }
 };
 
-/// The axes nearest to `before` of a normal that has turned; any, where there were none.
+/// Axes for a normal that has turned, as near as possible to `before`; any axes if that is 0.
 inline Axes axes_of(const Vec3& normal, const Axes& before = {}) RT_SAFE {
-  constexpr double kFlat = 0.25;  // of a unit vector's square, left along the surface
+  constexpr double kFlat = 0.25;  // least square of a unit vector's part along the surface
   Vec3 a = tangential(before.unit[0], normal);
   if (!(dot(a, a) > kFlat)) a = cross(before.unit[1], normal);
   if (!(dot(a, a) > kFlat)) a = tangential({1.0, 0.0, 0.0}, normal);

@@ -41,7 +41,7 @@ class Builder {
         const Vec3& p = surface_.vertex_m[v];
         const std::array<double, 3> axis{p.x, p.y, p.z};
         for (std::size_t a = 0; a < 3; ++a) {
-          // A double that is rounded to a float must stay within.
+          // Rounding to float must not exclude the vertex.
           const auto rounded = static_cast<float>(axis[a]);
           box.low_m[a] = std::min(box.low_m[a], std::nextafter(rounded, -kMaxFloat));
           box.high_m[a] = std::max(box.high_m[a], std::nextafter(rounded, kMaxFloat));
@@ -92,7 +92,7 @@ double squared_distance_m2(const BoxNode& box, const Vec3& p) RT_SAFE {
   return sum_m2;
 }
 
-// Does the segment meet the box? By the intervals in which it is between each two faces.
+// True if the segment meets the box: intersects its intervals between opposite faces.
 bool meets(const BoxNode& box, const Vec3& from_m, const Vec3& to_m) RT_SAFE {
   const std::array<double, 3> from{from_m.x, from_m.y, from_m.z};
   const std::array<double, 3> way{to_m.x - from_m.x, to_m.y - from_m.y, to_m.z - from_m.z};

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// triangle_tree.h - the nearest point of a whole surface, however many sheets are near.
+// triangle_tree.h - global search of the nearest point of a surface.
 //
 // A tree of boxes over the triangles, at most kLeafTriangles in each leaf. The pseudo-normal at the
-// nearest point of all tells on which side of the surface a point lies [Baerentzen, Aanaes 2005]:
-// exactly, for a closed surface that does not cross itself, however thin its parts are. A point
-// whose nearest point is on the boundary of an open surface is outside.
+// nearest point gives the side of the surface on which a point lies [Baerentzen, Aanaes 2005]; this
+// is exact for a closed surface that does not cross itself, also for thin parts. A point whose
+// nearest point is on the boundary of an open surface counts as outside.
 //
-// A search visits the nearer box first and at most kMaxVisits boxes; after those the nearest point
-// so far stands. 20 to 24 bytes a triangle.
+// A search visits the nearer box first and at most kMaxVisits boxes; then it returns the nearest
+// point so far. 20 to 24 bytes a triangle.
 #pragma once
 
 #include <vector>
@@ -39,15 +39,15 @@ struct TriangleTree {
   TriangleTreeView view() const { return {node, triangle}; }
 };
 
-/// Of a surface with at least one triangle.
+/// The surface must have at least one triangle.
 TriangleTree make_triangle_tree(const SurfaceView& surface);
 
-/// The nearest point of all, where it is nearer than within_m; else its distance is infinite. A
-/// triangle that may be near (or kNoTriangle) shortens the search.
+/// The nearest point of the surface, if nearer than within_m; else its distance is infinite.
+/// `near`, a triangle that may be near or kNoTriangle, shortens the search.
 ContactPoint nearest_contact_point(const TriangleTreeView& tree, const SurfaceView& surface,
                                    const Vec3& p_m, double within_m, std::uint32_t near) RT_SAFE;
 
-/// Does the straight line between two points pass through the surface?
+/// True if the straight line between two points passes through the surface.
 bool is_between(const TriangleTreeView& tree, const SurfaceView& surface, const Vec3& from_m,
                 const Vec3& to_m) RT_SAFE;
 

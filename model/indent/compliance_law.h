@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// compliance_law.h - one place of a linear elastic organ under a round tip: two springs in series.
+// compliance_law.h - a linear elastic organ under a round tip at one surface point: two springs in
+// series.
 //
-//     CL-1   d = d_tip(F) + r F         press: a sphere's own indentation, CT-1 and CT-2
+//     CL-1   d = d_tip(F) + r F         press: indentation by the sphere alone, CT-1 and CT-2
 //     CL-2   d = (c_disc + r) F         pull: a bonded disc of the sphere's radius, CT-5
 //     CL-3   1/K = 1/K_tip + r          K_tip from CT-3 or CT-9 in press, 1/c_disc in pull
 //     CL-4   u_j = taper_j (u_tip(rho_j) + F g_j),  u_0 = d,  0 <= u_j <= u_(j-1)
 //
-//     r     give of the organ at this place beyond that of a half-space, m/N: above 0 where a thin
-//           lobe bends, below 0 near the held side (compliance_map.h says where it comes from)
+//     r     compliance of the organ at this surface point minus that of a half-space, m/N: positive
+//           where a thin lobe bends, negative near the fixed boundary (source: compliance_map.h)
 //     g_j   the same for the surface at radius j pitch, m/N; g_0 = r
 //
-// A point force would sink without limit into a continuum, and on a mesh as far as its elements let
-// it; here the load is always the patch that the tip makes. With tip.large_strain its indentation
-// is that of CT-8, within 0.9 % of every finite-strain sphere of RF-7; press ends where the tip is
-// 2.15 R deep. Without it all is small strain: a block under a sphere of R = 5 mm is 14 % softer at
-// 10 mm than this law says (RF-1). The organ's own give r stays linear, and so does pull. At rest
-// the slope jumps from the pull's to zero; there `stiffness` is the mean of both sides. respond()
-// is a table in press and a product in pull: the loop may call it, and large strain costs it
-// nothing. exact() solves CL-1.
+// The load is always the contact patch of the tip: the displacement under a point force would be
+// unbounded, or depend on the mesh. With tip.large_strain the indentation is that of CT-8, within
+// 0.9 % of every finite-strain sphere of RF-7, up to a depth of 2.15 R. Otherwise strain is small:
+// a block under a sphere of R = 5 mm is 14 % softer at 10 mm than this law (RF-1). r and pull are
+// always linear. At d = 0 the slope jumps from that of pull to zero; `stiffness` is the mean of
+// both. respond() is a table in press and a product in pull: the loop may call it, also at large
+// strain. exact() solves CL-1.
 #pragma once
 
 #include <array>
@@ -71,9 +71,9 @@ class ComplianceCurve final : public law::Law {
 /// The error names the parameter and what is allowed.
 Result<ComplianceCurve> make_compliance_curve(const ComplianceCurveParameters& parameters);
 
-/// A half-space of E* = 1 Pa under a ball: what a law of springs does not know of the indentation.
+/// A half-space of E* = 1 Pa under a ball: the indentation profile for laws of springs.
 Result<ComplianceCurve> half_space_under(double radius_m, double working_depth_m);
-/// The same with rings of its own, 1 to kMaxComplianceRings.
+/// The same with a given number of rings, 1 to kMaxComplianceRings.
 Result<ComplianceCurve> half_space_under(double radius_m, double working_depth_m,
                                          double ring_pitch_m, std::size_t rings);
 

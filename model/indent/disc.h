@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// disc.h - one coned disc spring: its constants from its dimensions, and its force.
+// disc.h - one coned disc spring: constants from dimensions, and force.
 //
 //     DS-1  C = D / d
 //     DS-2  alpha = (1/pi) ((C-1)/C)^2 / ((C+1)/(C-1) - 2/ln C)
@@ -34,12 +34,12 @@ struct DiscDimensions {
   double poisson_ratio = 0.0;  // -1 .. 0.5, both excluded
 };
 
-/// What a stack needs to know of its discs.
+/// Constants of a disc that a stack needs.
 struct Disc {
   double outer_diameter_m = 0.0;   // D
   double stiffness_N_per_m = 0.0;  // k
   double travel_m = 0.0;           // h0
-  double cone_ratio = 0.0;         // eta; the linear form does not look at it
+  double cone_ratio = 0.0;         // eta; not used by the linear form
 
   double flat_force_N() const RT_SAFE { return stiffness_N_per_m * travel_m; }
 };

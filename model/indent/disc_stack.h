@@ -11,10 +11,10 @@
 // i_max h0; beyond, the force stays at i_max k h0 and truncated_by() says why. Closed form, O(1):
 // the loop calls it directly.
 //
-// What to know (X8 .. X13): in the linear form the layers cancel out, F = k d, whatever h0, t1, q
-// and the rate. In the Almen-Laszlo form the stiffness jumps at every layer by the factor
-// (1 + eta^2)/(1 - eta^2/2), 1.26 at eta = 0.4, a texture that can be felt. The delays are a
-// model, not computing time: choose them so that the working depth stays within i_max h0.
+// Properties (X8 .. X13): in the linear form F = k d for any h0, t1, q and rate. In the
+// Almen-Laszlo form the stiffness jumps at every layer by the factor
+// (1 + eta^2)/(1 - eta^2/2), 1.26 at eta = 0.4, which a hand can feel as a texture. The delays are
+// a model, not computing time: choose them so that the working depth stays within i_max h0.
 #pragma once
 
 #include <cstddef>
@@ -28,7 +28,7 @@ namespace tact::model::indent {
 
 inline constexpr std::size_t kMaxLayers = 64;
 
-/// What ends the stack.
+/// What limits the number of layers.
 enum class TruncatedBy : std::uint8_t { kTimeBudget, kLayerCap };
 
 struct LayerDelays {
@@ -52,7 +52,7 @@ struct DiscStackState {
   double stiffness_N_per_m = 0.0;
   std::size_t moving_layers = 0;     // M
   double last_flattening_m = 0.0;    // h_M, of the cut-off layer
-  double unsupported_force_N = 0.0;  // force in: what is beyond the limit
+  double unsupported_force_N = 0.0;  // force in: the part beyond the limit
   law::LawStatus status = law::LawStatus::kOk;
 };
 
@@ -65,8 +65,8 @@ class DiscStack final : public law::Law {
   law::LawRange range() const RT_SAFE override {
     return {.pull_m = 0.0, .press_m = depth_limit_m()};
   }
-  /// u_j = depth less the first j layers, by our choice at radius j D/2: the source's layers go
-  /// along depth (LW-2).
+  /// u_j = depth minus the first j layers, at radius j D/2 by our choice: the source has layers in
+  /// depth only (LW-2).
   std::size_t profile(double depth_m, std::span<double> ring_m) const RT_SAFE override;
   double ring_pitch_m() const RT_SAFE override { return 0.5 * disc_.outer_diameter_m; }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// hex_sheet.h - a skin of hexagonal rings on body springs, in its energy form.
+// hex_sheet.h - a sheet of hexagonal rings of surface springs on body springs, from its energy.
 //
-// The contact node is pushed to w_0 = d, the rim is held at w_m = 0, the rings between take the
-// displacements w_i, m, that make the stored energy least:
+// The contact node has w_0 = d, the boundary w_m = 0; the displacements w_i, m, of all other rings
+// minimise the stored energy:
 //
 //     HX-20  U = K_N0 d^2/2 + sum W_i K_N w_i^2/2 + sum n_i (K_T e_i^2/2 + T0 e_i)
 //            l_i = w_(i-1) - w_i,  s_i = sqrt(r^2 + l_i^2),  e_i = s_i - r = l_i^2/(s_i + r)
@@ -55,7 +55,7 @@ struct HexSheetState {
   double force_N = 0.0;
   double stiffness_N_per_m = 0.0;
   double energy_J = 0.0;
-  double boundary_force_N = 0.0;  // n_m p(l_m), what the rim has to hold
+  double boundary_force_N = 0.0;  // n_m p(l_m), reaction at the boundary
   int iterations = 0;
   std::array<double, kMaxHexRings + 1> ring_m{};  // w_i, m + 1 used
   law::LawStatus status = law::LawStatus::kOk;
@@ -82,9 +82,9 @@ class HexSheet final : public law::Law {
 /// Checks HX-27; the error names the parameter and what is allowed.
 Result<HexSheet> make_hex_sheet(const HexSheetParameters& parameters);
 
-/// The fewest rings whose force at the working depth is within `tolerance_ratio` of the force of
-/// an endless sheet (255 rings); `parameters.rings` is not looked at. An error says by how much the
-/// largest sheet misses.
+/// The fewest rings whose force at the working depth is within `tolerance_ratio` of that of a
+/// sheet of 255 rings; ignores `parameters.rings`. The error contains the deviation of the largest
+/// sheet.
 Result<std::size_t> rings_for_tolerance(const HexSheetParameters& parameters,
                                         double tolerance_ratio);
 

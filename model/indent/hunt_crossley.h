@@ -9,10 +9,10 @@
 //     n    exponent, 1.5 for a ball          lambda  dissipation, s/m
 //
 // [K. Hunt, F. Crossley, J. Appl. Mech. 42 (1975) 440.] The damping grows with the depth, so the
-// force begins at zero however fast the touch. What a slow press stores is U; b d'^2 is lost.
-// Valid for 0 <= d <= d_w; beyond, F and b stay. It cannot pull, and a release faster than 1/lambda
-// feels nothing (LW-3). lambda is of one tip and one tissue. Nothing is said of the surface beside
-// the tip: u_1 = 0 at d_w.
+// force begins at zero at any speed of contact. U is the stored energy; b d'^2 is dissipated.
+// Valid for 0 <= d <= d_w; beyond, F and b are constant. It cannot pull, and a release faster than
+// 1/lambda has no force (LW-3). lambda holds for one tip and one tissue. The surface next to the
+// tip is not modelled: u_1 = 0 at d_w.
 #pragma once
 
 #include "model/law/law.h"

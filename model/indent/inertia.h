@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// inertia.h - how fast a tip may press before the inertia of tissue counts, which no law here has.
+// inertia.h - speed of a press above which tissue inertia matters, which no law includes.
 //
-// A half-space that is pressed carries waves away: beside its spring stands a dashpot.
+// A pressed half-space radiates waves: a dashpot parallel to its spring.
 //
 //     IN-1   F_wave = c v,   c = 3.4 a^2 sqrt(rho G) / (1 - nu)
 //     IN-2   v_q = q F(d) / c        small indentations: v_q = 0.78 q sqrt(G / rho) sqrt(d / R)
 //
-//     F_wave  what the law lacks, N        v    speed of the press, m/s
+//     F_wave  force missing in the law, N  v    speed of the press, m/s
 //     F(d)    force of the half-space, N   v_q  where F_wave is the share q of F(d), m/s
 //     a       radius of contact, m         rho  density, kg/m^3
 //

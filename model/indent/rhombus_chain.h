@@ -10,9 +10,9 @@
 //     RC-11  u_j = sum of x_i, i > j              profile
 //
 // Depths in m, forces in N, press positive. The chain saturates at the force limit of its weakest
-// unit; pulled, it hardens without limit towards straight rods. Softens in press: keep the working
-// depth below about 0.6 of range().press_m. The solution is a bounded Newton iteration, good for
-// set-up, tools and telemetry; the loop reads a table of it (tabulated_law.h).
+// unit. In pull its stiffness grows without limit towards straight rods. In press it softens: keep
+// the working depth below about 0.6 of range().press_m. The solution is a bounded Newton iteration,
+// for set-up, tools and telemetry; the loop reads a table of it (tabulated_law.h).
 #pragma once
 
 #include <array>

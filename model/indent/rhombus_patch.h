@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// rhombus_patch.h - rhombus chains side by side under a round tip, which touches more of them the
-// deeper it sinks in.
+// rhombus_patch.h - parallel rhombus chains under a round tip, which touches more of them with
+// growing depth.
 //
 // One chain stands for the area A of the surface, f and u are its force and energy, and the tip is
 // r^2 / (2 R) above the surface at the radius r:
@@ -11,13 +11,13 @@
 //
 //     d  depth, m     F  force, N     K  stiffness, N/m     U  energy, J     R  tip radius, m
 //
-// The paraboloid is the sphere's at light touch. Deeper it is wider than the sphere: it stands for
-// tissue beside the tip that is drawn down too. Chains that soften make F grow between d and d^2;
-// SOURCES.md says how near that comes to a sphere on an elastic half-space, and why the sphere's
-// own gap comes less near. A chain at its limit keeps its force, while those at the rim go on:
-// valid to twice the range of the chain; beyond, the force stays. No pull: [pull] has it.
-// respond() solves the chain but for U, which is from a table: good for set-up and tools; the loop
-// reads a table of all.
+// The paraboloid approximates the sphere at small depth. At larger depth it is wider than the
+// sphere, which represents tissue next to the tip that is displaced, too. With softening chains F
+// grows between d and d^2; SOURCES.md compares that with a sphere on an elastic half-space, and the
+// gap of the exact sphere, which fits less well. A chain at its limit keeps its force, while those
+// at the contact edge still grow: valid to twice the range of the chain; beyond, the force is
+// constant. Pull is set by [pull]. respond() solves the chain and reads U from a table, for set-up
+// and tools; the loop reads a table of all.
 #pragma once
 
 #include "model/indent/rhombus_chain.h"

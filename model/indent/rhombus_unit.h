@@ -4,8 +4,8 @@
 //     x  shortening of the normal diagonal, m, press positive     f  force, N, press positive
 //     y  widening of the tangential diagonal, m                   theta'  angle of the rods, rad
 //
-// Equations RC-1 .. RC-7; valid from rods straight (x > -2a (1 - sin theta0)) to
-// rods flat (x = 2a sin theta0) or, when the tangential spring is stiff, to the snap before it.
+// Equations RC-1 .. RC-7; valid from straight rods (x > -2a (1 - sin theta0)) to flat rods
+// (x = 2a sin theta0) or, if the tangential spring is stiff, to the snap-through before that.
 #pragma once
 
 #include "model/law/law.h"

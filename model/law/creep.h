@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// creep.h - how a linear compliance grows under load where the material relaxes (relaxation.h).
+// creep.h - growth of a linear compliance under load if the material relaxes (relaxation.h).
 //
-// R(t) = g_0 + sum g_i exp(-t / tau_i) is the relaxation of the modulus. The compliance is then
-// that at once, times J(t), with s^2 R(s) J(s) = 1 for the Laplace transforms [R. Christensen,
+// R(t) = g_0 + sum g_i exp(-t / tau_i) is the relaxation of the modulus. The compliance is then the
+// instantaneous one times J(t), with s^2 R(s) J(s) = 1 for the Laplace transforms [R. Christensen,
 // Theory of Viscoelasticity (1982), 1.2]:
 //
 //     CP-1   J = 1 + sum c_j (1 - exp(-t / lambda_j))
@@ -24,7 +24,7 @@ using CreepState = std::array<Vec3, kMaxPronyTerms>;
 
 class Creep {
  public:
-  /// No terms: the compliance stays.
+  /// Without terms the compliance is constant.
   Creep() = default;
   explicit Creep(const Relaxation& relaxation);
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// hermite_table.h - a curve and its integral from uniform knots of value and slope.
+// hermite_table.h - a curve and its integral, from value and slope at uniform knots.
 //
 //     F(t) = F0 + m0 t + c2 t^2 + c3 t^3,      t = (x - x_k) / h in [0, 1]
 //     c2 = 3 D - 2 m0 - m1,  c3 = m0 + m1 - 2 D,  D = F1 - F0,  m = h F'
 //     U(t) = U0 + h (F0 t + m0 t^2 / 2 + c2 t^3 / 3 + c3 t^4 / 4)
 //
-// U is the exact integral of the interpolated F, so a force and its energy agree to the last bit of
-// rounding whatever the knots are. Look-up is O(1), without branches that depend on history.
+// U is the exact integral of the interpolated F, so force and energy agree up to rounding for any
+// knots. Evaluation is O(1) and has no state.
 #pragma once
 
 #include <array>

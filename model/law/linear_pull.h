@@ -3,8 +3,8 @@
 //
 //     d >= 0: as the law;      d < 0: F = k d,  U = k d^2 / 2,  down to the pull limit
 //
-// A gripped contact point is a bonded patch: in linear elasticity its force is exactly linear,
-// whatever the press does (RF-2), and a law of springs in press need not know how tissue is pulled.
+// A gripped contact point is a bonded patch: in linear elasticity its force is exactly linear for
+// any law in press (RF-2), and a law made for press needs no model of pull.
 // k N/m, depths m, press positive. Profile in pull: the law's own at |d|, mirrored.
 #pragma once
 

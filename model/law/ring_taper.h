@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ring_taper.h - the picture of an indentation ends level where its rings end.
+// ring_taper.h - makes the profile of an indentation end at zero with zero slope.
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace tact::model::law {
 
-/// The taper of CL-4: 1 inside, 0 at the last ring, with level slope at both ends.
+/// The taper of CL-4: 1 inside, 0 at the last ring, with zero slope at both ends.
 inline double ring_taper(std::size_t ring, std::size_t rings) RT_SAFE {
   constexpr double kStart = 0.7;  // of the outermost radius
   const double x = static_cast<double>(ring) / static_cast<double>(rings);

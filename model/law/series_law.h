@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// series_law.h - a law in series with a linear give: what the tip indentations, and what the organ
-// yields.
+// series_law.h - a law in series with a linear compliance: indentation by the tip plus displacement
+// of the organ.
 //
-//     SL-1   d = e + r F(e)                     the law F takes the indentation e, the organ the
-//            rest
+//     SL-1   d = e + r F(e)                     e: indentation of the law F, r F: displacement
 //     SL-2   U = U(e) + r F(e)^2 / 2
 //     SL-3   1/K = 1/K(e) + r
 //     SL-4   b = b(e) / (1 + r K(e))^2          e' = d' / (1 + r K(e)), the same loss; r < 0: b(e)
 //
 //     d   depth, m     F   force, N     U   energy, J     K   stiffness, N/m
-//     r   give of the organ at this place beyond what the law knows, m/N; below 0 near the held
-//         side, above -1/K of the law everywhere
+//     r   compliance of the organ at this surface point that the law does not include, m/N;
+//         negative near the fixed boundary, everywhere above -1/K of the law
 //
-// Valid until the indentation or the depth reaches the range of the law; beyond, the force stays.
-// The profile is another law's, which knows how far the organ follows. respond() solves SL-1, good
-// for set-up and tools; the loop reads a table.
+// Valid until indentation or depth reaches the range of the law; beyond, the force is constant. The
+// profile comes from another law, which includes the displacement of the organ. respond() solves
+// SL-1, for set-up and tools; the loop reads a table.
 #pragma once
 
 #include "model/law/law.h"
@@ -44,7 +43,7 @@ class SeriesLaw final : public Law {
   LawRange range_;
 };
 
-/// Both laws outlive it. An error where the give makes the pair unstable.
+/// Both laws must outlive it. An error if the compliance makes the pair unstable.
 Result<SeriesLaw> make_series_law(const Law& law, double compliance_m_per_N, const Law& shape);
 
 }  // namespace tact::model::law

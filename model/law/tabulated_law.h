@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// tabulated_law.h - any closed-form law as the loop sees it: two Hermite tables, press and pull.
+// tabulated_law.h - two Hermite tables, press and pull, of any closed-form law, for the loop.
 //
-// As many knots a side as asked, over [pull limit, 0] and [0, 0.95 press limit]. 65 under press
+// `knots` knots per table, over [pull limit, 0] and [0, 0.95 press limit]. 65 knots in press
 // reproduce the rhombus chain RC-13 within 1e-8 of its force limit (LW-1). Beyond the tables the
-// force stays at the last knot's value, the energy goes on with it, and the status is kSaturated.
+// force is that of the last knot, the energy is linear, and the status is kSaturated.
 // Damping is linear between the knots of press.
 #pragma once
 
@@ -36,7 +36,7 @@ class TabulatedLaw final : public Law {
   std::vector<double> damping_Ns_per_m_;  // b at the knots of press; empty: none
 };
 
-/// Tables of a law that outlives them. An error if the force does not grow with depth.
+/// `law` must outlive the tables. An error if the force does not grow with depth.
 Result<TabulatedLaw> tabulate(const Law& law, std::size_t knots);
 
 }  // namespace tact::model::law
