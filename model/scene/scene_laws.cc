@@ -27,6 +27,8 @@ constexpr std::array<Choice, kLawNames.size()> law_choices() {
   return out;
 }
 constexpr auto kLaws = law_choices();
+static_assert(std::ranges::is_sorted(kLawNames, {}, &LawName::kind) &&
+              kLawNames.back().kind == LawKind{kLawNames.size() - 1});
 
 void visit_rhombus(Keys& k, Scene& scene) {
   indent::RhombusChainParameters& p = scene.rhombus;
@@ -105,6 +107,8 @@ constexpr std::array kIntegrators{
 };
 static_assert(std::ranges::equal(kIntegrators, springs::kIntegratorNames, {}, &Choice::name,
                                  &springs::IntegratorName::name));
+static_assert(std::ranges::is_sorted(springs::kIntegratorNames, {},
+                                     &springs::IntegratorName::integrator));
 
 void visit_spring_patch(Keys& k, springs::SpringPatchParameters& p) {
   k.number("surface_stiffness_N_per_m", {0.01, 1e5}, "of a spring along an edge of the mesh",
