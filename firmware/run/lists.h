@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "hal/list/list_devices.h"
-#include "model/scene/law_numbers.h"
+#include "model/scene/scene.h"
 
 namespace tact::firmware::run {
 

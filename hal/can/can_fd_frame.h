@@ -62,4 +62,16 @@ struct CanFdBits {
 /// Nothing for a frame that cannot be packed.
 CanFdBits most_can_fd_bits(const CanFdFrame& frame) RT_SAFE;
 
+/// Bit/s of a bus, > 0. Frames are twice as long on a bus at half the rate: the force is later, and
+/// less stiffness is sound (HL-1). A virtual bus tells none; it counts as set up by kLinkType.
+struct CanRate {
+  double slow_bps = kCanFdSlow_bps;  // classic CAN has this one alone
+  double fast_bps = kCanFdFast_bps;  // of CAN FD, behind the bit rate switch
+};
+
+constexpr double bus_time_s(int bits, const CanRate& rate) { return bits / rate.slow_bps; }
+constexpr double bus_time_s(const CanFdBits& bits, const CanRate& rate) {
+  return bits.slow / rate.slow_bps + bits.fast / rate.fast_bps;
+}
+
 }  // namespace tact::hal::can

@@ -166,8 +166,8 @@ std::optional<Error> check_can_link(const CanLink& link, const std::string& name
   return std::nullopt;
 }
 
-std::optional<Error> check_can_fd_link(const CanLink& link, const std::string& name,
-                                       const CanFdBits& cycle, double rate_Hz) {
+std::optional<Error> check_can_link(const CanLink& link, const std::string& name,
+                                    const CanFdBits& cycle, double rate_Hz) {
   if (auto error = check_interface(link, name, CanFdFrame::kLinkType)) return error;
   if (!link.carries_fd) {
     return Error{

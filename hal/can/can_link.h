@@ -19,7 +19,6 @@
 
 #include "hal/can/can_fd_frame.h"
 #include "hal/can/can_frame.h"
-#include "hal/can/can_rate.h"
 #include "model/result.h"
 
 namespace tact::hal::can {
@@ -61,7 +60,7 @@ std::optional<model::Error> check_can_link(const CanLink& link, const std::strin
                                            int cycle_bits, double rate_Hz);
 
 /// The same for CAN FD.
-std::optional<model::Error> check_can_fd_link(const CanLink& link, const std::string& name,
-                                              const CanFdBits& cycle, double rate_Hz);
+std::optional<model::Error> check_can_link(const CanLink& link, const std::string& name,
+                                           const CanFdBits& cycle, double rate_Hz);
 
 }  // namespace tact::hal::can

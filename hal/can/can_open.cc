@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "hal/can/little_endian.h"
+#include "hal/device_lock.h"
 
 namespace tact::hal::can {
 namespace {
@@ -81,28 +82,16 @@ Result<int> open_socket(const std::string& name, int index, std::span<const can_
   return file.release();
 }
 
-Result<std::unique_ptr<CanSocket>> open_can_socket(const std::string& name, const CanLink& link,
-                                                   std::span<const std::uint32_t> ids) {
-  std::vector<can_filter> filters;
-  for (const std::uint32_t id : ids)  // exact: data frames of 11 bits, no requests
-    filters.push_back({.can_id = id, .can_mask = CAN_SFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG});
-  const auto fd = open_socket(name, link.index, filters, false);
+template <class Bytes, class Bits>
+Result<std::unique_ptr<BasicCanSocket<Bytes>>> open_checked(const std::string& name,
+                                                            const Bits& cycle, double rate_Hz,
+                                                            std::span<const can_filter> filters) {
+  const auto link = read_can_link(name);
+  if (!link) return link.error();
+  if (auto error = check_can_link(*link, name, cycle, rate_Hz)) return *error;
+  const auto fd = open_socket(name, link->index, filters, sizeof(Bytes) == kCanFdFrameBytes);
   if (!fd) return fd.error();
-  return std::make_unique<CanSocket>(*fd, link.rate());
-}
-
-Result<std::unique_ptr<CanFdSocket>> open_can_fd_socket(const std::string& name,
-                                                        const CanLink& link,
-                                                        std::span<const std::uint32_t> ids) {
-  std::vector<can_filter> filters;
-  for (const std::uint32_t id : ids) {  // exact
-    constexpr canid_t kAll = CAN_EFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG;
-    filters.push_back({.can_id = id | CAN_EFF_FLAG, .can_mask = kAll});
-    if (id <= CAN_SFF_MASK) filters.push_back({.can_id = id, .can_mask = kAll});
-  }
-  const auto fd = open_socket(name, link.index, filters, true);
-  if (!fd) return fd.error();
-  return std::make_unique<CanFdSocket>(*fd, link.rate());
+  return std::make_unique<BasicCanSocket<Bytes>>(*fd, link->rate());
 }
 
 }  // namespace
@@ -140,19 +129,31 @@ Result<CanLink> read_can_link(const std::string& name) {
 Result<std::unique_ptr<CanSocket>> open_checked_can(const std::string& name, int cycle_bits,
                                                     double rate_Hz,
                                                     std::span<const std::uint32_t> ids) {
-  const auto link = read_can_link(name);
-  if (!link) return link.error();
-  if (auto error = check_can_link(*link, name, cycle_bits, rate_Hz)) return *error;
-  return open_can_socket(name, *link, ids);
+  std::vector<can_filter> filters;
+  for (const std::uint32_t id : ids)  // exact: data frames of 11 bits, no requests
+    filters.push_back({.can_id = id, .can_mask = CAN_SFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG});
+  return open_checked<CanFrameBytes>(name, cycle_bits, rate_Hz, filters);
 }
 
-Result<std::unique_ptr<CanFdSocket>> open_checked_can_fd(const std::string& name,
-                                                         const CanFdBits& cycle, double rate_Hz,
-                                                         std::span<const std::uint32_t> ids) {
-  const auto link = read_can_link(name);
-  if (!link) return link.error();
-  if (auto error = check_can_fd_link(*link, name, cycle, rate_Hz)) return *error;
-  return open_can_fd_socket(name, *link, ids);
+Result<std::unique_ptr<CanFdSocket>> open_checked_can(const std::string& name,
+                                                      const CanFdBits& cycle, double rate_Hz,
+                                                      std::span<const std::uint32_t> ids) {
+  std::vector<can_filter> filters;
+  for (const std::uint32_t id : ids) {  // exact
+    constexpr canid_t kAll = CAN_EFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG;
+    filters.push_back({.can_id = id | CAN_EFF_FLAG, .can_mask = kAll});
+    if (id <= CAN_SFF_MASK) filters.push_back({.can_id = id, .can_mask = kAll});
+  }
+  return open_checked<CanFdFrameBytes>(name, cycle, rate_Hz, filters);
+}
+
+std::optional<Error> lock_drives(const model::CanSettings& settings, bool gives_sync) {
+  std::array<char, IF_NAMESIZE> name{};  // its own: an interface may have other names beside it
+  const unsigned index = if_nametoindex(settings.interface.c_str());
+  if (index == 0 || if_indextoname(index, name.data()) == nullptr) return std::nullopt;
+  for (const int node : settings.node)
+    if (auto error = lock_device(fmt::format("{}, node {}", name.data(), node))) return error;
+  return gives_sync ? lock_device(fmt::format("the SYNC of {}", name.data())) : std::nullopt;
 }
 
 }  // namespace tact::hal::can

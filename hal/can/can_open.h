@@ -6,11 +6,13 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
 #include "hal/can/can_link.h"
 #include "hal/can/can_socket.h"
+#include "model/device_settings.h"
 #include "model/result.h"
 
 namespace tact::hal::can {
@@ -24,9 +26,13 @@ model::Result<CanLink> read_can_link(const std::string& name);
 model::Result<std::unique_ptr<CanSocket>> open_checked_can(const std::string& name, int cycle_bits,
                                                            double rate_Hz,
                                                            std::span<const std::uint32_t> ids);
-model::Result<std::unique_ptr<CanFdSocket>> open_checked_can_fd(const std::string& name,
-                                                                const CanFdBits& cycle,
-                                                                double rate_Hz,
-                                                                std::span<const std::uint32_t> ids);
+model::Result<std::unique_ptr<CanFdSocket>> open_checked_can(const std::string& name,
+                                                             const CanFdBits& cycle, double rate_Hz,
+                                                             std::span<const std::uint32_t> ids);
+
+/// The drives of a scene, for one program alone (hal/device_lock.h): takes each node of the bus.
+/// `gives_sync`: the one who sends SYNC to all nodes, one on a bus. An interface that is not there
+/// has nothing to be taken.
+std::optional<model::Error> lock_drives(const model::CanSettings& settings, bool gives_sync);
 
 }  // namespace tact::hal::can

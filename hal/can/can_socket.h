@@ -20,7 +20,6 @@
 
 #include "hal/can/can_fd_frame.h"
 #include "hal/can/can_frame.h"
-#include "hal/can/can_rate.h"
 #include "hal/can/stamp_age.h"
 
 namespace tact::hal::can {

@@ -6,11 +6,9 @@
 #include <utility>
 
 #include "hal/can/can_device.h"
-#include "hal/can/can_lock.h"
 #include "hal/can/can_open.h"
 #include "hal/cia402/canopen_frames.h"
 #include "hal/cia402/cia402_bring_up.h"
-#include "hal/cia402/cia402_cause.h"
 #include "hal/cia402/cia402_state.h"
 #include "hal/cia402/heartbeat_guard.h"
 #include "model/time_ns.h"

@@ -1,6 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hal/cia402/cia402_state.h"
 
+#include <fmt/core.h>
+
+#include <array>
+#include <cstddef>
+
+#include "hal/cia402/canopen_frames.h"
+#include "hal/cia402/canopen_text.h"
+
 namespace tact::hal::cia402 {
 
 Cia402State cia402_state(std::uint16_t statusword) RT_SAFE {
@@ -32,27 +40,13 @@ Cia402State cia402_state(std::uint16_t statusword) RT_SAFE {
 }
 
 const char* cia402_state_name(Cia402State state) RT_SAFE {
-  switch (state) {
-    case Cia402State::kUnknown:
-      break;
-    case Cia402State::kNotReady:
-      return "not_ready_to_switch_on";
-    case Cia402State::kSwitchOnDisabled:
-      return "switch_on_disabled";
-    case Cia402State::kReady:
-      return "ready_to_switch_on";
-    case Cia402State::kSwitchedOn:
-      return "switched_on";
-    case Cia402State::kOperationEnabled:
-      return "operation_enabled";
-    case Cia402State::kQuickStop:
-      return "quick_stop_active";
-    case Cia402State::kFaultReaction:
-      return "fault_reaction_active";
-    case Cia402State::kFault:
-      return "fault";
-  }
-  return "unknown";
+  // In the order of Cia402State.
+  constexpr std::array kNames{
+      "unknown",     "not_ready_to_switch_on", "switch_on_disabled", "ready_to_switch_on",
+      "switched_on", "operation_enabled",      "quick_stop_active",  "fault_reaction_active",
+      "fault"};
+  const auto place = static_cast<std::size_t>(state);
+  return kNames[place < kNames.size() ? place : 0];
 }
 
 Cia402Flags cia402_flags(std::uint16_t statusword) RT_SAFE {
@@ -82,6 +76,40 @@ std::optional<std::uint16_t> next_controlword(Cia402State state, std::uint16_t l
       break;
   }
   return std::nullopt;
+}
+
+std::string text_of_cia402_cause(const can::FaultCause& cause) {
+  const char* state = cia402_state_name(static_cast<Cia402State>(cause.code));
+  switch (static_cast<Cia402Cause>(cause.kind)) {
+    case Cia402Cause::kEmergency:
+      return fmt::format("{} (code 0x{:04X})",
+                         emergency_message(static_cast<std::uint16_t>(cause.code)), cause.code);
+    case Cia402Cause::kStatus:
+      return "the drive is in its fault state: read object 603F with its vendor's program";
+    case Cia402Cause::kLeftEnabled:
+      return fmt::format(
+          "the drive left operation by itself and is {}: check its enable and safety inputs",
+          state);
+    case Cia402Cause::kNotStarted:
+      return fmt::format(
+          "the drive does not enable operation and is {}: check motor supply, enable and safety "
+          "inputs",
+          state);
+    case Cia402Cause::kNotFollowing:
+      return "the drive is enabled but does not follow the torque: does it support cyclic "
+             "synchronous torque, and does a limit act?";
+    case Cia402Cause::kWaits:
+      return fmt::format(
+          "the drive is {} (statusword 0x{:04X}); it is ready when motor supply, enable and STO "
+          "are there",
+          cia402_state_name(cia402_state(static_cast<std::uint16_t>(cause.code))), cause.code);
+    case Cia402Cause::kUnguarded:
+      return "the drive does not take up its watch over the controller's heartbeat again (object "
+             "1016): start tactd again";
+    case Cia402Cause::kLeftOperational:
+      return nmt_message(static_cast<NmtState>(cause.code));
+  }
+  return {};
 }
 
 }  // namespace tact::hal::cia402

@@ -12,7 +12,9 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
+#include "hal/can/fault_latch.h"
 #include "model/rt.h"
 
 namespace tact::hal::cia402 {
@@ -50,5 +52,22 @@ inline constexpr std::uint16_t kControlFaultReset = 0x80;
 /// fault is reset by a rising edge, so 0x80 is never sent twice in a row. Nothing: wait. It resets
 /// faults, so only a start may ask it; a loop that runs latches a fault and stays off.
 std::optional<std::uint16_t> next_controlword(Cia402State state, std::uint16_t last) RT_SAFE;
+
+// --- Why a drive stops the force, or what it waits for. ---
+
+/// Kinds of FaultCause, after those that all drives have.
+enum class Cia402Cause : std::uint8_t {
+  kEmergency = static_cast<std::uint8_t>(can::CanCause::kFirstOwn),  // code: of the EMCY message
+  kStatus,                                                           // code: Cia402State, a fault
+  kLeftEnabled,                                                      // code: Cia402State it is in
+  kNotStarted,                                                       // code: Cia402State it is in
+  kNotFollowing,     // enabled, but bit 12 says that it does not take the torque
+  kLeftOperational,  // code: NmtState
+  kUnguarded,        // would not notice that the host is gone
+  kWaits,            // code: statusword; for motor supply, enable or STO, before any force
+};
+
+/// For a person, with the remedy; empty for a cause that all drives have. Any thread.
+std::string text_of_cia402_cause(const can::FaultCause& cause);
 
 }  // namespace tact::hal::cia402

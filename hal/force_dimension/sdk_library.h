@@ -8,8 +8,10 @@
 // thread.
 #pragma once
 
+#include <array>
 #include <string>
 
+#include "model/fault.h"
 #include "model/result.h"
 
 namespace tact::hal::force_dimension {
@@ -44,5 +46,25 @@ struct SdkFunctions {
 /// Loads the file that device.force_dimension.library names and finds the functions in it. Unless
 /// the person trusts it, it must be one of root's (vendor_sdk/library_trust.h).
 model::Result<SdkFunctions> load_sdk(const std::string& library, bool trusted);
+
+/// Places in dhdGetStatus.
+enum SdkStatus : int {
+  kSdkPower = 0,
+  kSdkConnected = 1,
+  kSdkReset = 3,
+  kSdkForce = 5,
+  kSdkWristDetected = 8,
+  kSdkError = 9,
+  kSdkWristInit = 12,
+  kSdkForceOffCause = 14,
+};
+using SdkStatusText = std::array<int, kSdkStatusTexts>;
+
+/// What happened and the remedy, of dhdErrorGetLast; never blank.
+const char* text_of_sdk_error(int code);
+/// kDeviceUnplugged when nobody answers, else kDeviceFailed.
+model::Fault fault_of_sdk_error(int code) RT_SAFE;
+/// Why the device switched its forces off, and the remedy; never blank.
+const char* force_off_text(int cause);
 
 }  // namespace tact::hal::force_dimension

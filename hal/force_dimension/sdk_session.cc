@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "hal/device_lock.h"
-#include "hal/force_dimension/sdk_text.h"
 #include "hal/udev_rules.h"
 
 namespace tact::hal::force_dimension {

@@ -9,7 +9,6 @@
 #include <ctime>
 #include <thread>
 
-#include "hal/force_dimension/sdk_text.h"
 #include "hal/monotonic.h"
 #include "hal/vendor_sdk/rotation.h"
 #include "model/time_ns.h"

@@ -27,12 +27,6 @@ struct Chip::Handle {
   }
 };
 
-LineRequest::LineRequest() = default;
-LineRequest::LineRequest(std::unique_ptr<Lines> lines) : lines_(std::move(lines)) {}
-LineRequest::LineRequest(LineRequest&& other) noexcept = default;
-LineRequest& LineRequest::operator=(LineRequest&& other) noexcept = default;
-LineRequest::~LineRequest() = default;
-
 // libgpiod copies the values to and from one ioctl, and allocates nothing.
 #if defined(__clang__) && __clang_major__ >= 20
 #pragma clang diagnostic push
@@ -66,14 +60,10 @@ std::vector<Edge> LineRequest::edges(std::chrono::milliseconds longest) {
   return edges;
 }
 
-Chip::Chip() = default;
 Chip::Chip(const std::string& path) {
   gpiod_chip* chip = gpiod_chip_open(path.c_str());
   if (chip != nullptr) handle_.reset(new Handle{.chip = chip});
 }
-Chip::Chip(Chip&& other) noexcept = default;
-Chip& Chip::operator=(Chip&& other) noexcept = default;
-Chip::~Chip() = default;
 
 bool Chip::gives(int offset) const { return handle_->line(offset) != nullptr; }
 
@@ -100,7 +90,7 @@ LineRequest Chip::request(LineUse use, std::span<const int> offsets, const char*
   else
     refused = gpiod_line_request_bulk_both_edges_events(&bulk, consumer);
   if (refused != 0) return {};
-  return LineRequest(std::unique_ptr<LineRequest::Lines>(new LineRequest::Lines{.bulk = bulk}));
+  return LineRequest(std::shared_ptr<LineRequest::Lines>(new LineRequest::Lines{.bulk = bulk}));
 }
 
 }  // namespace tact::hal::gpio

@@ -40,12 +40,6 @@ struct Chip::Handle {
   }
 };
 
-LineRequest::LineRequest() = default;
-LineRequest::LineRequest(std::unique_ptr<Lines> lines) : lines_(std::move(lines)) {}
-LineRequest::LineRequest(LineRequest&& other) noexcept = default;
-LineRequest& LineRequest::operator=(LineRequest&& other) noexcept = default;
-LineRequest::~LineRequest() = default;
-
 // libgpiod copies the values to and from one ioctl, and allocates nothing.
 #if defined(__clang__) && __clang_major__ >= 20
 #pragma clang diagnostic push
@@ -84,14 +78,10 @@ std::vector<Edge> LineRequest::edges(std::chrono::milliseconds longest) {
   return edges;
 }
 
-Chip::Chip() = default;
 Chip::Chip(const std::string& path) {
   gpiod_chip* chip = gpiod_chip_open(path.c_str());
   if (chip != nullptr) handle_.reset(new Handle{.chip = chip});
 }
-Chip::Chip(Chip&& other) noexcept = default;
-Chip& Chip::operator=(Chip&& other) noexcept = default;
-Chip::~Chip() = default;
 
 bool Chip::gives(int offset) const { return handle_->info(offset) != nullptr; }
 
@@ -120,7 +110,7 @@ LineRequest Chip::request(LineUse use, std::span<const int> offsets, const char*
   gpiod_request_config_set_consumer(config.get(), consumer);
   gpiod_line_request* request = gpiod_chip_request_lines(handle_->chip, config.get(), lines.get());
   if (request == nullptr) return {};
-  return LineRequest(std::unique_ptr<LineRequest::Lines>(
+  return LineRequest(std::shared_ptr<LineRequest::Lines>(
       new LineRequest::Lines{.request = request, .count = offsets.size()}));
 }
 

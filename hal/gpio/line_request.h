@@ -13,6 +13,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "model/rt.h"
@@ -34,11 +35,8 @@ class LineRequest {
  public:
   struct Lines;
 
-  LineRequest();
-  explicit LineRequest(std::unique_ptr<Lines> lines);
-  LineRequest(LineRequest&& other) noexcept;
-  LineRequest& operator=(LineRequest&& other) noexcept;
-  ~LineRequest();
+  LineRequest() = default;
+  explicit LineRequest(std::shared_ptr<Lines> lines) : lines_(std::move(lines)) {}
 
   bool empty() const RT_SAFE { return lines_ == nullptr; }
   /// One ioctl for all, on a chip that does not sleep. False: the chip does not answer.
@@ -48,7 +46,7 @@ class LineRequest {
   std::vector<Edge> edges(std::chrono::milliseconds longest);
 
  private:
-  std::unique_ptr<Lines> lines_;
+  std::shared_ptr<Lines> lines_;  // shared, as only libgpiod's file knows what it is
 };
 
 /// Lives longer than the requests that it gave.
@@ -56,12 +54,9 @@ class Chip {
  public:
   struct Handle;
 
-  Chip();  // empty
+  Chip() = default;  // empty
   /// Empty if it cannot be opened.
   explicit Chip(const std::string& path);
-  Chip(Chip&& other) noexcept;
-  Chip& operator=(Chip&& other) noexcept;
-  ~Chip();
 
   bool empty() const { return handle_ == nullptr; }
   bool gives(int offset) const;
@@ -71,7 +66,7 @@ class Chip {
   LineRequest request(LineUse use, std::span<const int> offsets, const char* consumer);
 
  private:
-  std::unique_ptr<Handle> handle_;
+  std::shared_ptr<Handle> handle_;
 };
 
 }  // namespace tact::hal::gpio

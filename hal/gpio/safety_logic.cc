@@ -1,46 +1,40 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hal/gpio/safety_logic.h"
 
+#include <array>
+#include <cstddef>
+
 namespace tact::hal::gpio {
 
 using model::Fault;
 
 const char* words(LinesCause cause) {
-  switch (cause) {
-    case LinesCause::kNone:
-      break;
-    case LinesCause::kClutchFlaps:
-      return "the clutch line changes faster than a foot can press, and counts as pressed: a wire "
-             "is loose or the switch is broken; repair it (device.lines.clutch), then it counts "
-             "again after a second";
-    case LinesCause::kGripFlaps:
-      return "the grip line changes faster than a foot can press: a wire is loose or the switch is "
-             "broken; repair it (device.lines.grip), then reset and arm";
-    case LinesCause::kDeadManOpen:
-      return "the dead-man switch is open; hold it, then reset and arm";
-    case LinesCause::kOneOpen:
-      return "one channel of the e-stop opened for a moment: it was pressed briefly, or a wire is "
-             "loose; check device.lines.estop_a and estop_b, then reset and arm";
-    case LinesCause::kBothOpen:
-      return "both channels of the e-stop are open: it is pressed, or has no supply; release it, "
-             "then reset and arm";
-    case LinesCause::kAStaysOpen:
-      return "channel A of the e-stop stays open while channel B is closed: repair the wire or the "
-             "contact of A, press and release the e-stop, then reset and arm";
-    case LinesCause::kBStaysOpen:
-      return "channel B of the e-stop stays open while channel A is closed: repair the wire or the "
-             "contact of B, press and release the e-stop, then reset and arm";
-    case LinesCause::kAStaysClosed:
-      return "channel A of the e-stop did not open with channel B: A is welded or shorted, or a "
-             "wire of B broke; repair it, press and release the e-stop, then reset and arm";
-    case LinesCause::kBStaysClosed:
-      return "channel B of the e-stop did not open with channel A: B is welded or shorted, or a "
-             "wire of A broke; repair it, press and release the e-stop, then reset and arm";
-    case LinesCause::kChipLost:
-      return "the GPIO chip of device.lines does not answer any more: check it and its driver "
-             "(gpiodetect lists the chips), then start tactd again";
-  }
-  return "";
+  static constexpr std::array kWords{
+      // in the order of LinesCause
+      "",
+      "the clutch line changes faster than a foot can press, and counts as pressed: a wire "
+      "is loose or the switch is broken; repair it (device.lines.clutch), then it counts "
+      "again after a second",
+      "the grip line changes faster than a foot can press: a wire is loose or the switch is "
+      "broken; repair it (device.lines.grip), then reset and arm",
+      "the dead-man switch is open; hold it, then reset and arm",
+      "one channel of the e-stop opened for a moment: it was pressed briefly, or a wire is "
+      "loose; check device.lines.estop_a and estop_b, then reset and arm",
+      "both channels of the e-stop are open: it is pressed, or has no supply; release it, "
+      "then reset and arm",
+      "channel A of the e-stop stays open while channel B is closed: repair the wire or the "
+      "contact of A, press and release the e-stop, then reset and arm",
+      "channel B of the e-stop stays open while channel A is closed: repair the wire or the "
+      "contact of B, press and release the e-stop, then reset and arm",
+      "channel A of the e-stop did not open with channel B: A is welded or shorted, or a "
+      "wire of B broke; repair it, press and release the e-stop, then reset and arm",
+      "channel B of the e-stop did not open with channel A: B is welded or shorted, or a "
+      "wire of A broke; repair it, press and release the e-stop, then reset and arm",
+      "the GPIO chip of device.lines does not answer any more: check it and its driver "
+      "(gpiodetect lists the chips), then start tactd again",
+  };
+  static_assert(kWords.size() == static_cast<std::size_t>(LinesCause::kChipLost) + 1);
+  return kWords[static_cast<std::size_t>(cause)];
 }
 
 void SafetyLogic::compare(const SafetyLevels& levels) RT_SAFE {

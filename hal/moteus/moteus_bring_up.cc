@@ -7,7 +7,6 @@
 #include <array>
 
 #include "hal/can/can_delta.h"
-#include "hal/moteus/moteus_text.h"
 #include "model/time_ns.h"
 
 namespace tact::hal::moteus {

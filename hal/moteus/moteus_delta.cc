@@ -9,11 +9,9 @@
 #include <utility>
 
 #include "hal/can/can_device.h"
-#include "hal/can/can_lock.h"
 #include "hal/can/can_open.h"
 #include "hal/moteus/moteus_bring_up.h"
 #include "hal/moteus/moteus_protocol.h"
-#include "hal/moteus/moteus_text.h"
 #include "model/time_ns.h"
 
 namespace tact::hal::moteus {
@@ -256,7 +254,7 @@ Result<std::unique_ptr<Device>> open_can_moteus(const model::DeviceSettings& set
   const model::CanSettings& can = settings.can;
   if (auto error = can::lock_drives(can, /*gives_sync=*/false)) return *error;
   auto socket =
-      can::open_checked_can_fd(can.interface, moteus_cycle_bits(can), rate_Hz, moteus_ids(can));
+      can::open_checked_can(can.interface, moteus_cycle_bits(can), rate_Hz, moteus_ids(can));
   if (!socket) return socket.error();
   return start_moteus_delta(std::make_unique<can::CanFdBus>(std::move(*socket)), settings, rate_Hz);
 }

@@ -15,6 +15,8 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <string>
 
 #include "hal/can/can_fd_frame.h"
 
@@ -81,5 +83,23 @@ struct MoteusReply {
 };
 /// Nothing unless it comes from this node to the host and its subframes are whole.
 std::optional<MoteusReply> decode_moteus(const can::CanFdFrame& frame, int node) RT_SAFE;
+
+// --- In words, with the remedy. ---
+
+/// Codes as the vendor's register reference (0x000, 0x00F) and the open firmware (fw/error.h) have
+/// them: 32 and above a fault, which ends torque; 96 and above a limit that acts while it runs.
+struct MoteusFaultText {
+  int code;
+  const char* message;  // for a person: what happened, what to do
+};
+std::span<const MoteusFaultText> moteus_fault_texts() RT_SAFE;
+
+/// With its number, to search for in the vendor's pages.
+std::string moteus_fault_message(int code);
+
+/// "in position mode"; for a mode that is not known here "in another mode".
+const char* moteus_mode_name(int mode) RT_SAFE;
+
+constexpr bool is_moteus_limit(int code) RT_SAFE { return code >= 96; }
 
 }  // namespace tact::hal::moteus

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "hal/can/can_device.h"
-#include "hal/can/can_lock.h"
 #include "hal/can/can_open.h"
 #include "hal/odrive/odrive_axis.h"
 #include "hal/odrive/odrive_bring_up.h"

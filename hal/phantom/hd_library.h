@@ -10,6 +10,7 @@
 
 #include <string>
 
+#include "model/fault.h"
 #include "model/result.h"
 
 namespace tact::hal::phantom {
@@ -75,5 +76,11 @@ model::Result<HdFunctions> load_hd(const std::string& library, bool trusted);
 
 /// Empties the stack: the code of its oldest error, which is the cause; 0 without one.
 unsigned take_hd_errors(const HdFunctions& hd);
+
+/// What happened and the remedy; never blank.
+std::string text_of_hd_error(unsigned code);
+/// kDeviceUnplugged when nobody answers, kForceOff when the forces were too much for the device,
+/// else kDeviceFailed.
+model::Fault fault_of_hd_error(unsigned code);
 
 }  // namespace tact::hal::phantom

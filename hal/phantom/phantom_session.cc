@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "hal/device_lock.h"
-#include "hal/phantom/hd_text.h"
 #include "hal/udev_rules.h"
 
 namespace tact::hal::phantom {

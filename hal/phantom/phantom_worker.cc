@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "hal/monotonic.h"
-#include "hal/phantom/hd_text.h"
 #include "hal/vendor_sdk/rotation.h"
 
 namespace tact::hal::phantom {

@@ -15,6 +15,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "model/reader/scene_document.h"
@@ -96,10 +97,31 @@ class Keys {
   /// `out` becomes the index of the choice. Many choices get a row each in the reference.
   void choice(std::string_view key, std::span<const Choice> choices, std::string_view meaning,
               std::size_t& out, Need need = Need::kRequired);
+  /// The same for an enumeration, or a flag, whose values are in the order of the choices.
+  template <typename T>
+    requires(std::is_enum_v<T> || std::is_same_v<T, bool>)
+  void choice(std::string_view key, std::span<const Choice> choices, std::string_view meaning,
+              T& out, Need need = Need::kRequired) {
+    auto index = static_cast<std::size_t>(out);
+    choice(key, choices, meaning, index, need);
+    out = static_cast<T>(index);
+  }
 
   /// [key]; true when it is there.
   bool section(std::string_view key, std::string_view meaning, const Inside& inside,
                Need need = Need::kRequired);
+  template <typename T>
+  bool section(std::string_view key, std::string_view meaning, void (*visit)(Keys&, T&), T& out,
+               Need need = Need::kRequired) {
+    return section(key, meaning, [&](Keys& keys) { visit(keys, out); }, need);
+  }
+  /// An optional one, kept when it is there.
+  template <typename T>
+  void section(std::string_view key, std::string_view meaning, void (*visit)(Keys&, T&),
+               std::optional<T>& out) {
+    T value;
+    if (section(key, meaning, visit, value, Need::kOptional)) out = value;
+  }
   /// [[key]], visited once for each entry.
   void entries(std::string_view key, CountRange range, std::string_view meaning,
                const Inside& inside);

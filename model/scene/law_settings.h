@@ -48,7 +48,11 @@ inline constexpr std::array kLawNames{
 };
 
 /// Its name in a scene.
-std::string_view name_of(LawKind kind);
+constexpr std::string_view name_of(LawKind kind) {
+  for (const LawName& law : kLawNames)
+    if (law.kind == kind) return law.name;
+  return "";
+}
 
 /// The organ as a linear elastic body; the box is in the mesh's own frame, before organ.position_m.
 struct ElasticSettings {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 
 #include "model/mesh/obj.h"
 #include "model/mesh/turn.h"
@@ -101,6 +102,10 @@ std::string whole_hash(const std::string& text_hash, const Scene& scene) {
   return hash.hex();
 }
 
+void visit_all(reader::SceneVisit& visit, SceneText& text) {
+  Keys::visit_root(visit, [&](Keys& root) { visit_scene(root, text); });
+}
+
 /// The reference, indented as a scene is; `margin` is that of the row before.
 std::string reference_line(const reader::ReferenceRow& row, std::string& margin) {
   const std::string times = row.fallback.empty() ? "" : "; " + row.fallback;
@@ -123,7 +128,7 @@ Result<Scene> load_scene(const std::string& path, const std::vector<std::string>
   if (!document) return document.error();
   SceneText text;
   reader::SceneVisit visit(&*document);
-  reader::Keys::visit_root(visit, [&](reader::Keys& root) { visit_scene(root, text); });
+  visit_all(visit, text);
   if (auto problem = visit.problem()) return *problem;
 
   Scene& scene = text.scene;
@@ -148,10 +153,26 @@ bool Scene::describes(LawKind kind) const {
   return std::find(described.begin(), described.end(), kind) != described.end();
 }
 
+Result<std::vector<reader::SceneNumber>> law_numbers(const Scene& scene,
+                                                     const std::vector<std::string>& overrides) {
+  const Result<reader::SceneDocument> document = reader::load_scene_document(scene.path, overrides);
+  if (!document) return document.error();
+  SceneText text;
+  reader::SceneVisit visit(&*document);
+  visit_all(visit, text);
+  if (auto problem = visit.problem()) return *problem;
+  const std::string section = std::string(name_of(scene.law)) + ".";
+  std::vector<reader::SceneNumber> out;
+  std::ranges::copy_if(
+      visit.numbers(), std::back_inserter(out),
+      [&section](const reader::SceneNumber& number) { return number.key.starts_with(section); });
+  return out;
+}
+
 std::string scene_reference() {
   SceneText text;
   reader::SceneVisit visit(nullptr);
-  reader::Keys::visit_root(visit, [&](reader::Keys& root) { visit_scene(root, text); });
+  visit_all(visit, text);
   std::string reference =
       "A scene is a TOML file. Numbers are SI; a key ends in its unit. The columns are key, "
       "allowed,\n"

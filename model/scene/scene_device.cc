@@ -11,10 +11,8 @@
 namespace tact::model::scene {
 namespace {
 
-constexpr reader::Need kOptional = reader::Need::kOptional;
-
 /// A whole number that may be negative.
-void visit_whole(reader::Keys& k, std::string_view key, reader::Range range, const char* meaning,
+void visit_whole(Keys& k, std::string_view key, reader::Range range, const char* meaning,
                  int& out) {
   // Keys::count knows no number below zero; a number that must be whole is asked afterwards.
   double value = out;
@@ -25,7 +23,7 @@ void visit_whole(reader::Keys& k, std::string_view key, reader::Range range, con
 
 /// Required, all of them: a simulated device that is perfect by
 /// default would hide what a real one cannot show.
-void visit_sim(reader::Keys& k, SimDeviceSettings& sim) {
+void visit_sim(Keys& k, SimDeviceSettings& sim) {
   k.number("counts_per_turn", {100.0, 1e8}, "encoder counts of one turn of a joint",
            sim.counts_per_turn);
   k.number("sample_delay_s", {0.0, 0.005}, "age of a sample when the loop gets it",
@@ -39,7 +37,7 @@ void visit_sim(reader::Keys& k, SimDeviceSettings& sim) {
 }
 
 /// Required: with another device's arm length or mass every force is wrong.
-void visit_delta(reader::Keys& k, DeltaSettings& d) {
+void visit_delta(Keys& k, DeltaSettings& d) {
   k.number("base_radius_m", {0.01, 1.0}, "motor axes from the middle", d.base_radius_m);
   k.number("platform_radius_m", {0.0, 1.0}, "rod ends from the middle of the platform",
            d.platform_radius_m);
@@ -69,7 +67,7 @@ void visit_delta(reader::Keys& k, DeltaSettings& d) {
            d.observer_bandwidth_Hz, kOptional);
 }
 
-void visit_nodes(reader::Keys& k, CanSettings& can) {
+void visit_nodes(Keys& k, CanSettings& can) {
   PerArm node{};
   for (std::size_t i = 0; i < node.size(); ++i) node[i] = can.node[i];
   // A CANopen drive has node 1 to 126, an ODrive 0 to 63: each device refuses the rest by itself.
@@ -85,7 +83,7 @@ void visit_nodes(reader::Keys& k, CanSettings& can) {
 
 /// What one kind of drives takes, another would leave aside without a word: a current that nobody
 /// limits.
-void refuse_foreign_keys(reader::Keys& k, std::string_view kind, const CanSettings& can) {
+void refuse_foreign_keys(Keys& k, std::string_view kind, const CanSettings& can) {
   const auto refuse = [&](std::string_view key, std::string_view owner) {
     k.refuse({key}, fmt::format("device.can.{} is for {}, and a {} would not take it; remove it",
                                 key, owner, kind));
@@ -99,16 +97,14 @@ void refuse_foreign_keys(reader::Keys& k, std::string_view kind, const CanSettin
     refuse("command_at_sync", "a CiA 402 drive");
 }
 
-void visit_can(reader::Keys& k, std::string_view kind, CanSettings& can) {
-  constexpr std::array kHoming{
-      reader::Choice{"absolute", "absolute encoders, zero_turns holds for good"},
-      reader::Choice{"index", "the drives look for the index pulse at start"},
-      reader::Choice{"jig", "the arms rest at home_rad when tactd starts"}};
+void visit_can(Keys& k, DeviceSettings& device) {
+  CanSettings& can = device.can;
+  constexpr std::array kHoming{Choice{"absolute", "absolute encoders, zero_turns holds for good"},
+                               Choice{"index", "the drives look for the index pulse at start"},
+                               Choice{"jig", "the arms rest at home_rad when tactd starts"}};
   k.text("interface", "of the bus, as ip link shows it", can.interface, kOptional);
   visit_nodes(k, can);
-  auto homing = static_cast<std::size_t>(can.homing);
-  k.choice("homing", kHoming, "how the arms' angles are known", homing);
-  can.homing = static_cast<Homing>(homing);
+  k.choice("homing", kHoming, "how the arms' angles are known", can.homing);
   // Each homing needs one of the two; describing has no homing yet.
   const bool on_jig = can.homing == Homing::kJig;
   k.per_arm("zero_turns", {-1e6, 1e6}, "of the motors, arms at 0 rad; the jig finds it",
@@ -135,10 +131,10 @@ void visit_can(reader::Keys& k, std::string_view kind, CanSettings& can) {
          can.command_at_sync, kOptional);
   k.number("rated_torque_Nm", {0.0, 1000.0}, "CiA 402: of a motor; 0: as the drive tells (6076)",
            can.rated_torque_Nm, kOptional);
-  refuse_foreign_keys(k, kind, can);
+  refuse_foreign_keys(k, device.kind, can);
 }
 
-void visit_falcon(reader::Keys& k, FalconSettings& f) {
+void visit_falcon(Keys& k, FalconSettings& f) {
   k.text("bus_path", "which one, as 1-2.3; empty: the only one", f.bus_path, kOptional);
   k.text("firmware", "file of the firmware that you own; empty: it runs already", f.firmware_path,
          kOptional);
@@ -161,7 +157,7 @@ void visit_falcon(reader::Keys& k, FalconSettings& f) {
            f.joint_damping_Nms_per_rad, kOptional);
 }
 
-void visit_force_dimension(reader::Keys& k, ForceDimensionSettings& f) {
+void visit_force_dimension(Keys& k, ForceDimensionSettings& f) {
   k.text("library", "the vendor's, by name or path", f.library, kOptional);
   visit_whole(k, "id", {-1.0, 15.0}, "of the device, -1: the only one", f.id);
   // FD-3: the device counts 255 units of 125 us at most.
@@ -174,7 +170,7 @@ void visit_force_dimension(reader::Keys& k, ForceDimensionSettings& f) {
            f.gripper_open_rad, kOptional);
 }
 
-void visit_phantom(reader::Keys& k, PhantomSettings& p) {
+void visit_phantom(Keys& k, PhantomSettings& p) {
   k.text("library", "the vendor's, by name or path", p.library, kOptional);
   k.text("name", "that the vendor's Touch_Setup gave it; empty: the default device", p.name,
          kOptional);
@@ -184,23 +180,22 @@ void visit_phantom(reader::Keys& k, PhantomSettings& p) {
            kOptional);
 }
 
-void visit_line(reader::Keys& k, std::string_view key, const char* meaning, int& offset) {
+void visit_line(Keys& k, std::string_view key, const char* meaning, int& offset) {
   visit_whole(k, key, {-1.0, 511.0}, meaning, offset);
 }
 
 /// -1, the default of each: that line is not wired.
-void visit_lines(reader::Keys& k, LinesSettings& lines) {
+void visit_lines(Keys& k, LinesSettings& lines) {
   k.text("chip", "label of the GPIO chip, as gpiodetect shows it, or its path", lines.chip,
          kOptional);
   visit_line(k, "estop_a", "in, high = good, channel A of the e-stop; -1: none", lines.estop_a);
   visit_line(k, "estop_b", "in, high = good, channel B", lines.estop_b);
   visit_line(k, "dead_man", "in, high = held", lines.dead_man);
   visit_line(k, "grip", "in, a foot or hand switch that closes the jaws", lines.grip);
-  constexpr std::array kGripLevels{reader::Choice{"high", "the jaws close at the high level"},
-                                   reader::Choice{"low", "at the low level"}};
-  std::size_t level = lines.grip_closes_low ? 1 : 0;
-  k.choice("grip_closes", kGripLevels, "polarity of the grip line", level, kOptional);
-  lines.grip_closes_low = level == 1;
+  constexpr std::array kGripLevels{Choice{"high", "the jaws close at the high level"},
+                                   Choice{"low", "at the low level"}};
+  k.choice("grip_closes", kGripLevels, "polarity of the grip line", lines.grip_closes_low,
+           kOptional);
   visit_line(k, "clutch", "in, high = pressed: the tool stays, the handle moves", lines.clutch);
   visit_line(k, "enable", "out, high = the drives may have power", lines.enable);
   visit_line(k, "heartbeat", "out, toggles after every healthy tick", lines.heartbeat);
@@ -214,7 +209,7 @@ void visit_lines(reader::Keys& k, LinesSettings& lines) {
 
 }  // namespace
 
-void visit_device(reader::Keys& k, DeviceSettings& out) {
+void visit_device(Keys& k, DeviceSettings& out) {
   k.text("kind", "sim-delta is the simulated device; tactd --list-devices", out.kind);
   k.vector("base_orientation_deg", {-360.0, 360.0},
            "turn of its base, axis times angle; 0: axis towards you", out.base_orientation_deg,
@@ -225,29 +220,17 @@ void visit_device(reader::Keys& k, DeviceSettings& out) {
            kOptional);
   // Without a kind, as where the reference is written, the simulated device is the one to show.
   const bool simulated = out.kind.empty() || out.kind == "sim-delta";
-  k.section(
-      "sim", "imperfections of the simulated device",
-      [&](reader::Keys& sim) { visit_sim(sim, out.sim); },
-      simulated ? reader::Need::kRequired : kOptional);
+  k.section("sim", "imperfections of the simulated device", visit_sim, out.sim,
+            simulated ? reader::Need::kRequired : kOptional);
   const reader::Need on_can = out.is_on_can() ? reader::Need::kRequired : kOptional;
-  k.section(
-      "delta", "a delta on CAN: yours, as you measure it",
-      [&](reader::Keys& delta) { visit_delta(delta, out.delta); }, on_can);
-  k.section(
-      "can", "its drives, can-odrive, can-cia402 or can-moteus",
-      [&](reader::Keys& can) { visit_can(can, out.kind, out.can); }, on_can);
-  k.section(
-      "falcon", "a Novint Falcon", [&](reader::Keys& falcon) { visit_falcon(falcon, out.falcon); },
-      kOptional);
-  k.section(
-      "force_dimension", "a Force Dimension device, by its vendor's SDK",
-      [&](reader::Keys& keys) { visit_force_dimension(keys, out.force_dimension); }, kOptional);
-  k.section(
-      "phantom", "a PHANTOM or 3D Systems Touch, by its vendor's SDK",
-      [&](reader::Keys& keys) { visit_phantom(keys, out.phantom); }, kOptional);
-  k.section(
-      "lines", "safety lines", [&](reader::Keys& lines) { visit_lines(lines, out.lines); },
-      kOptional);
+  k.section("delta", "a delta on CAN: yours, as you measure it", visit_delta, out.delta, on_can);
+  k.section("can", "its drives, can-odrive, can-cia402 or can-moteus", visit_can, out, on_can);
+  k.section("falcon", "a Novint Falcon", visit_falcon, out.falcon, kOptional);
+  k.section("force_dimension", "a Force Dimension device, by its vendor's SDK",
+            visit_force_dimension, out.force_dimension, kOptional);
+  k.section("phantom", "a PHANTOM or 3D Systems Touch, by its vendor's SDK", visit_phantom,
+            out.phantom, kOptional);
+  k.section("lines", "safety lines", visit_lines, out.lines, kOptional);
 }
 
 }  // namespace tact::model::scene

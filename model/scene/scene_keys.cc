@@ -15,63 +15,59 @@ constexpr std::size_t kMaxStrokes = 64;
 // A scanner's origin may lie anywhere.
 constexpr reader::Range kAnywhere_m{-1e6, 1e6};
 
-void visit_mesh(reader::Keys& k, MeshText& mesh) {
+void visit_mesh(Keys& k, MeshText& mesh) {
   // For the message that says which line names a file that is not there.
   mesh.position = k.position_of("mesh");
   k.text("mesh", "OBJ file, absolute or from the folder of the scene", mesh.file);
-  k.number("mesh_unit_m", {1e-6, 1.0}, "length of one unit of the file", mesh.unit_m,
-           reader::Need::kOptional);
+  k.number("mesh_unit_m", {1e-6, 1.0}, "length of one unit of the file", mesh.unit_m, kOptional);
 }
 
-void visit_tool(reader::Keys& k, SceneText& out) {
+void visit_blade(Keys& k, contact::Blade& blade) {
+  k.vector("from_m", {-0.2, 0.2}, "one end of the edge, tool frame", blade.a_m);
+  k.vector("to_m", {-0.2, 0.2}, "the other end", blade.b_m);
+}
+
+void visit_tool(Keys& k, SceneText& out) {
   visit_mesh(k, out.tool_mesh);
   k.vector("handle_m", {-0.3, 0.3}, "its point at the device's reference point, tool frame",
-           out.script.handle_m, reader::Need::kOptional);
-  k.entries("sphere", {1, contact::kMaxSpheres}, "what touches the organ",
-            [&](reader::Keys& sphere) {
-              contact::ProbeSphere& probe = out.scene.tool.spheres.emplace_back();
-              sphere.vector("offset_m", {-0.2, 0.2},
-                            "of the centre from the tool's origin, tool frame", probe.offset_m);
-              sphere.number("radius_m", {5e-4, 0.05}, "of the sphere", probe.radius_m);
-            });
-  contact::Blade blade;
-  const auto visit_blade = [&](reader::Keys& keys) {
-    keys.vector("from_m", {-0.2, 0.2}, "one end of the edge, tool frame", blade.a_m);
-    keys.vector("to_m", {-0.2, 0.2}, "the other end", blade.b_m);
-  };
-  if (k.section("blade", "a cutting edge, for law = \"spring_patch\"", visit_blade,
-                reader::Need::kOptional)) {
-    out.scene.tool.blade = blade;
-    // Known by now: visit_scene visits the laws before the tool.
-    const LawKind law = out.scene.law;
-    if (law != LawKind::kSpringPatch && law != LawKind::kAuto)
-      k.refuse({"blade"}, fmt::format("tool.blade cuts nothing with law = \"{}\"; write law = "
-                                      "\"spring_patch\" or leave [tool.blade] out",
-                                      name_of(law)));
-  }
+           out.script.handle_m, kOptional);
+  k.entries("sphere", {1, contact::kMaxSpheres}, "what touches the organ", [&](Keys& sphere) {
+    contact::ProbeSphere& probe = out.scene.tool.spheres.emplace_back();
+    sphere.vector("offset_m", {-0.2, 0.2}, "of the centre from the tool's origin, tool frame",
+                  probe.offset_m);
+    sphere.number("radius_m", {5e-4, 0.05}, "of the sphere", probe.radius_m);
+  });
+  k.section("blade", "a cutting edge, for law = \"spring_patch\"", visit_blade,
+            out.scene.tool.blade);
+  // Known by now: visit_scene visits the laws before the tool.
+  const LawKind law = out.scene.law;
+  if (out.scene.tool.blade && law != LawKind::kSpringPatch && law != LawKind::kAuto)
+    k.refuse({"blade"}, fmt::format("tool.blade cuts nothing with law = \"{}\"; write law = "
+                                    "\"spring_patch\" or leave [tool.blade] out",
+                                    name_of(law)));
 }
 
 // The page has a picture of each: host/web/src/scene/material.ts.
 constexpr std::array kMaterials{
-    reader::Choice{"tissue", "moist and red, paler where it is stretched"},
-    reader::Choice{"skin", "dry, paler where it is stretched"},
-    reader::Choice{"glove", "smooth, of pale blue rubber"},
-    reader::Choice{"paint", "grey lacquer"},
-    reader::Choice{"steel", "polished"},
+    Choice{"tissue", "moist and red, paler where it is stretched"},
+    Choice{"skin", "dry, paler where it is stretched"},
+    Choice{"glove", "smooth, of pale blue rubber"},
+    Choice{"paint", "grey lacquer"},
+    Choice{"steel", "polished"},
 };
 
-void visit_look(reader::Keys& k, SceneText& out) {
+void visit_look(Keys& k, SceneText& out) {
   LookSettings& look = out.scene.look;
   std::size_t organ = 0, tool = kMaterials.size() - 1;
-  k.choice("organ", kMaterials, "what it looks like", organ, reader::Need::kOptional);
-  k.choice("tool", kMaterials, "the same of the tool", tool, reader::Need::kOptional);
+  k.choice("organ", kMaterials, "what it looks like", organ, kOptional);
+  k.choice("tool", kMaterials, "the same of the tool", tool, kOptional);
   look.organ = kMaterials[organ].name;
   look.tool = kMaterials[tool].name;
   k.flag("vertex_colors", "the organ's colours are those of its mesh's vertices",
-         look.has_vertex_colors, reader::Need::kOptional);
+         look.has_vertex_colors, kOptional);
   k.entries("piece", {0, kMaxPieces},
             "a connected piece of the organ's mesh, in its order; the last: all others too",
-            [&](reader::Keys& piece) {
+            [&](Keys& piece) {
               piece.vector("color_ratio", {0.0, 4.0}, "red, green, blue, times the material's",
                            look.piece_color_ratio.emplace_back());
             });
@@ -81,25 +77,22 @@ void visit_look(reader::Keys& k, SceneText& out) {
              "look.vertex_colors and look.piece both colour the organ; leave one of them out");
 }
 
-void visit_contact(reader::Keys& k, Scene& scene) {
+void visit_contact(Keys& k, Scene& scene) {
   contact::ContactParameters& c = scene.contact;
   k.number("friction_ratio", {0.0, 2.0}, "largest sliding force over normal force",
            c.friction_ratio);
   k.number("sliding_stiffness_N_per_m", {0.0, 5000.0}, "of tissue along the surface; 0: its own",
-           c.sliding_stiffness_N_per_m, reader::Need::kOptional);
+           c.sliding_stiffness_N_per_m, kOptional);
   k.number("tear_force_N", {0.01, 20.0}, "a held site lets go above it, for each sphere",
            c.tear_force_N);
   k.number("grip_close_ratio", {0.05, 1.0}, "closing the grip above it holds the tissue",
-           c.grip_close_ratio, reader::Need::kOptional);
+           c.grip_close_ratio, kOptional);
   k.number("grip_open_ratio", {0.0, 0.95}, "opening the grip below it lets go; < grip_close_ratio",
-           c.grip_open_ratio, reader::Need::kOptional);
-  constexpr std::array kGrips{
-      reader::Choice{"hold", "the jaws are closed while the hand presses"},
-      reader::Choice{"toggle", "one press closes them, the next opens them"}};
-  std::size_t grip = scene.grip_toggles ? 1 : 0;
-  k.choice("grip", kGrips, "what a press of the grip, button or switch does", grip,
-           reader::Need::kOptional);
-  scene.grip_toggles = grip == 1;
+           c.grip_open_ratio, kOptional);
+  constexpr std::array kGrips{Choice{"hold", "the jaws are closed while the hand presses"},
+                              Choice{"toggle", "one press closes them, the next opens them"}};
+  k.choice("grip", kGrips, "what a press of the grip, button or switch does", scene.grip_toggles,
+           kOptional);
   // Without a gap between them a trembling hand would grip and let go many times a second.
   if (!(c.grip_open_ratio < c.grip_close_ratio)) {
     k.refuse(
@@ -111,7 +104,7 @@ void visit_contact(reader::Keys& k, Scene& scene) {
   }
 }
 
-void visit_hand(reader::Keys& k, SceneText& out) {
+void visit_hand(Keys& k, SceneText& out) {
   HandSettings& hand = out.scene.hand;
   HandScript& script = out.script;
   k.number("mass_kg", {0.01, 2.0}, "of the hand that moves with the handle", hand.mass_kg);
@@ -126,14 +119,14 @@ void visit_hand(reader::Keys& k, SceneText& out) {
   if (!(norm(script.inward) > 0.0))
     k.refuse({"inward"}, "hand.inward has no direction; allowed: any length but 0");
   k.entries("stroke", {0, kMaxStrokes}, "what the hand does, in this order",
-            [&](reader::Keys& stroke) { visit_stroke(stroke, script.strokes.emplace_back()); });
+            [&](Keys& stroke) { visit_stroke(stroke, script.strokes.emplace_back()); });
   script.repeat = hand.repeat;
   script.home_position = k.position_of("home_m");
 }
 
 }  // namespace
 
-void visit_scene(reader::Keys& k, SceneText& out) {
+void visit_scene(Keys& k, SceneText& out) {
   Scene& scene = out.scene;
   k.text("name", "of the scene, shown by the viewer", scene.name);
   k.number("rate_Hz", {100.0, 10000.0}, "ticks of the control loop", scene.rate_Hz);
@@ -141,25 +134,21 @@ void visit_scene(reader::Keys& k, SceneText& out) {
   visit_laws(k, out);
   visit_law_options(k, scene);
   visit_truth(k, scene);
-  k.section("organ", "what is touched", [&](reader::Keys& organ) {
+  k.section("organ", "what is touched", [&](Keys& organ) {
     visit_mesh(organ, out.organ_mesh);
     organ.vector("orientation_deg", {-360.0, 360.0},
                  "turn about the mesh's origin, axis times angle", out.organ_orientation_deg,
-                 reader::Need::kOptional);
+                 kOptional);
     organ.vector("position_m", kAnywhere_m, "of the mesh's origin, in W", scene.organ.position_m);
   });
-  k.section("tool", "what touches it", [&](reader::Keys& tool) { visit_tool(tool, out); });
-  k.section(
-      "look", "what the viewer paints; no force depends on it",
-      [&](reader::Keys& look) { visit_look(look, out); }, reader::Need::kOptional);
-  k.section("contact", "between tool and organ",
-            [&](reader::Keys& contact) { visit_contact(contact, scene); });
-  k.section("device", "what the hand holds",
-            [&](reader::Keys& device) { visit_device(device, scene.device); });
-  k.section("hand", "the simulated hand", [&](reader::Keys& hand) { visit_hand(hand, out); });
+  k.section("tool", "what touches it", visit_tool, out);
+  k.section("look", "what the viewer paints; no force depends on it", visit_look, out, kOptional);
+  k.section("contact", "between tool and organ", visit_contact, scene);
+  k.section("device", "what the hand holds", visit_device, scene.device);
+  k.section("hand", "the simulated hand", visit_hand, out);
   k.section("limits", "what the gate lets through",
-            [&](reader::Keys& limits) { visit_limits(limits, scene.rate_Hz, scene.limits); });
-  k.section("telemetry", "what the viewer gets", [&](reader::Keys& telemetry) {
+            [&](Keys& limits) { visit_limits(limits, scene.rate_Hz, scene.limits); });
+  k.section("telemetry", "what the viewer gets", [&](Keys& telemetry) {
     telemetry.number("frame_rate_Hz", {1.0, 240.0}, "frames for the viewer", scene.frame_rate_Hz);
   });
 }

@@ -15,6 +15,10 @@
 
 namespace tact::model::scene {
 
+using reader::Choice;
+using reader::Keys;
+using reader::Need::kOptional;
+
 /// A mesh as the scene names it.
 struct MeshText {
   std::string file;  // relative to the scene file

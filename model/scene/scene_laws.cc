@@ -20,15 +20,17 @@ constexpr std::size_t kMaxSiteVertex = 100'000'000;
 constexpr reader::Range kDepth_m{1e-4, 0.1};
 
 /// From the one table of names, so that no law can lack one.
-constexpr std::array<reader::Choice, kLawNames.size()> law_choices() {
-  std::array<reader::Choice, kLawNames.size()> out{};
+constexpr std::array<Choice, kLawNames.size()> law_choices() {
+  std::array<Choice, kLawNames.size()> out{};
   std::transform(kLawNames.begin(), kLawNames.end(), out.begin(),
-                 [](const LawName& law) { return reader::Choice{law.name, law.meaning}; });
+                 [](const LawName& law) { return Choice{law.name, law.meaning}; });
   return out;
 }
 constexpr auto kLaws = law_choices();
+static_assert(std::ranges::is_sorted(kLawNames, {}, &LawName::kind) &&
+              kLawNames.back().kind == LawKind{kLawNames.size() - 1});
 
-void visit_rhombus(reader::Keys& k, Scene& scene) {
+void visit_rhombus(Keys& k, Scene& scene) {
   indent::RhombusChainParameters& p = scene.rhombus;
   k.number("rod_length_m", {1e-4, 0.1}, "length a of each rod", p.rod_length_m);
   k.number("initial_angle_rad", {0.05, 1.5}, "angle of the rods to the surface at rest",
@@ -41,23 +43,18 @@ void visit_rhombus(reader::Keys& k, Scene& scene) {
   k.count("units", {1, kMaxUnits}, "rhombus units in series", p.units);
   k.number("area_m2", {0.0, 0.01},
            "of the surface under one chain; 0: one chain under the whole tip",
-           scene.rhombus_area_m2, reader::Need::kOptional);
+           scene.rhombus_area_m2, kOptional);
 }
 
+// Choices are in the order of the enumerations that they fill.
 constexpr std::array kDiscForms{
-    reader::Choice{"almen-laszlo", "the disc as it is: stiffness jumps at every layer"},
-    reader::Choice{"linear", "its secant: one linear spring"},
+    Choice{"almen-laszlo", "the disc as it is: stiffness jumps at every layer"},
+    Choice{"linear", "its secant: one linear spring"},
 };
-// In the order of the choices above.
-constexpr std::array kFormOf{indent::DiscForm::kAlmenLaszlo, indent::DiscForm::kLinear};
-static_assert(kDiscForms.size() == kFormOf.size());
 
-void visit_disc_stack(reader::Keys& k, Scene& scene) {
-  indent::DiscStackParameters& p = scene.disc_stack;
-  std::size_t form = 0;
+void visit_disc_stack(Keys& k, indent::DiscStackParameters& p) {
   k.choice("form", kDiscForms, "almen-laszlo: stiffness jumps at each layer; linear: one spring",
-           form);
-  p.form = kFormOf[form];
+           p.form);
   k.number("outer_diameter_m", {1e-6, 0.1}, "D of a disc", p.disc.outer_diameter_m);
   k.number("inner_diameter_m", {1e-6, 0.1}, "d of a disc", p.disc.inner_diameter_m);
   k.number("thickness_m", {1e-7, 0.1}, "l of a disc", p.disc.thickness_m);
@@ -73,17 +70,12 @@ void visit_disc_stack(reader::Keys& k, Scene& scene) {
 }
 
 constexpr std::array kHexWeights{
-    reader::Choice{"node", "a body spring per node: an elastic foundation"},
-    reader::Choice{"ring", "a body spring per ring"},
+    Choice{"node", "a body spring per node: an elastic foundation"},
+    Choice{"ring", "a body spring per ring"},
 };
-constexpr std::array kWeightOf{indent::HexWeight::kNode, indent::HexWeight::kRing};
-static_assert(kHexWeights.size() == kWeightOf.size());
 
-void visit_hex_sheet(reader::Keys& k, Scene& scene) {
-  indent::HexSheetParameters& p = scene.hex_sheet;
-  std::size_t weight = 0;
-  k.choice("weight", kHexWeights, "body springs: one per node, or one per ring", weight);
-  p.weight = kWeightOf[weight];
+void visit_hex_sheet(Keys& k, indent::HexSheetParameters& p) {
+  k.choice("weight", kHexWeights, "body springs: one per node, or one per ring", p.weight);
   k.number("ring_pitch_m", {1e-4, 0.05}, "r, length of a surface spring", p.ring_pitch_m);
   k.number("contact_stiffness_N_per_m", {0.0, 1e5}, "K_N0, body spring at the contact",
            p.contact_stiffness_N_per_m);
@@ -94,11 +86,10 @@ void visit_hex_sheet(reader::Keys& k, Scene& scene) {
   k.number("tension_N", {0.0, 100.0}, "T0, of the surface springs at rest", p.tension_N);
   k.number("working_depth_m", kDepth_m, "press and pull up to here", p.working_depth_m);
   k.count("rings", {0, indent::kMaxHexRings}, "m; 0: the fewest that meet [tolerance]", p.rings,
-          reader::Need::kOptional);
+          kOptional);
 }
 
-void visit_hunt_crossley(reader::Keys& k, Scene& scene) {
-  indent::HuntCrossleyParameters& p = scene.hunt_crossley;
+void visit_hunt_crossley(Keys& k, indent::HuntCrossleyParameters& p) {
   k.number("force_N", {1e-4, 100.0}, "of a slow press at working_depth_m", p.force_N);
   k.number("working_depth_m", kDepth_m, "press up to here", p.working_depth_m);
   k.number("exponent", {1.0, 4.0}, "n: the force grows as depth^n", p.exponent);
@@ -107,18 +98,19 @@ void visit_hunt_crossley(reader::Keys& k, Scene& scene) {
 }
 
 constexpr std::array kIntegrators{
-    reader::Choice{"explicit-euler", "grows without damping; for comparison"},
-    reader::Choice{"improved-euler", "semi-implicit: one evaluation, stable to 2 / omega undamped"},
-    reader::Choice{"midpoint-averaging", "two evaluations, second order at alpha 1/2"},
-    reader::Choice{"rk2", "two evaluations, grows without damping"},
-    reader::Choice{"rk4", "four evaluations, fourth order"},
-    reader::Choice{"implicit-euler", "stable at every step, damps; a fixed number of iterations"},
+    Choice{"explicit-euler", "grows without damping; for comparison"},
+    Choice{"improved-euler", "semi-implicit: one evaluation, stable to 2 / omega undamped"},
+    Choice{"midpoint-averaging", "two evaluations, second order at alpha 1/2"},
+    Choice{"rk2", "two evaluations, grows without damping"},
+    Choice{"rk4", "four evaluations, fourth order"},
+    Choice{"implicit-euler", "stable at every step, damps; a fixed number of iterations"},
 };
-static_assert(std::ranges::equal(kIntegrators, springs::kIntegratorNames, {}, &reader::Choice::name,
+static_assert(std::ranges::equal(kIntegrators, springs::kIntegratorNames, {}, &Choice::name,
                                  &springs::IntegratorName::name));
+static_assert(std::ranges::is_sorted(springs::kIntegratorNames, {},
+                                     &springs::IntegratorName::integrator));
 
-void visit_spring_patch(reader::Keys& k, Scene& scene) {
-  springs::SpringPatchParameters& p = scene.spring_patch;
+void visit_spring_patch(Keys& k, springs::SpringPatchParameters& p) {
   k.number("surface_stiffness_N_per_m", {0.01, 1e5}, "of a spring along an edge of the mesh",
            p.tissue.surface_stiffness_N_per_m);
   k.number("body_stiffness_N_per_m", {0.001, 1e5}, "from a vertex to its place at rest",
@@ -135,59 +127,79 @@ void visit_spring_patch(reader::Keys& k, Scene& scene) {
   k.number("working_depth_m", kDepth_m, "press and pull up to here", p.working_depth_m);
   k.count("nodes", {16, springs::kMaxPatchNodes}, "vertices that move, nearest the contact",
           p.nodes);
-  std::size_t integrator = static_cast<std::size_t>(p.method.integrator);
-  k.choice("integrator", kIntegrators, "how a tick is stepped", integrator);
-  p.method.integrator = springs::kIntegratorNames[integrator].integrator;
+  k.choice("integrator", kIntegrators, "how a tick is stepped", p.method.integrator);
   k.number("alpha_ratio", {0.1, 1.0}, "of midpoint-averaging; 0.375 makes energy", p.method.alpha,
-           reader::Need::kOptional);
+           kOptional);
   // count() takes std::size_t; the default is the parameter's own.
-  std::size_t iterations = static_cast<std::size_t>(p.iterations);
-  k.count("iterations", {1, 100}, "of implicit-euler", iterations, reader::Need::kOptional);
-  p.iterations = static_cast<int>(iterations);
-  std::size_t substeps = static_cast<std::size_t>(p.substeps);
-  k.count("substeps", {1, 16}, "of a tick", substeps, reader::Need::kOptional);
-  p.substeps = static_cast<int>(substeps);
+  const auto small_count = [&k](std::string_view key, reader::CountRange range,
+                                std::string_view meaning, int& out_count) {
+    auto value = static_cast<std::size_t>(out_count);
+    k.count(key, range, meaning, value, kOptional);
+    out_count = static_cast<int>(value);
+  };
+  small_count("iterations", {1, 100}, "of implicit-euler", p.iterations);
+  small_count("substeps", {1, 16}, "of a tick", p.substeps);
 }
 
-void visit_compliance(reader::Keys& k, SceneText& out) {
+void visit_compliance(Keys& k, SceneText& out) {
   ComplianceSettings& c = out.scene.compliance;
   out.compliance_map.position = k.position_of("map");
   k.text("map", "file of tact-lab condense, absolute or from the scene's folder",
          out.compliance_map.file);
   k.number("working_depth_m", kDepth_m, "press and pull up to here", c.working_depth_m);
-  k.count("curves", {2, 65}, "of the family, soft to stiff", c.curves, reader::Need::kOptional);
+  k.count("curves", {2, 65}, "of the family, soft to stiff", c.curves, kOptional);
   k.flag("large_strain", "organ and tip; false: small strain, as a linear reference",
-         c.large_strain, reader::Need::kOptional);
+         c.large_strain, kOptional);
+}
+
+void visit_pull(Keys& k, law::LinearPullParameters& pull) {
+  k.number("stiffness_N_per_m", {0.01, 1e5}, "of a held site pulled outward",
+           pull.stiffness_N_per_m);
+  k.number("limit_m", kDepth_m, "beyond it the force stays", pull.limit_m);
+}
+
+void visit_elastic(Keys& k, ElasticSettings& elastic) {
+  k.number("youngs_modulus_Pa", {1.0, 1e9}, "E", elastic.youngs_modulus_Pa);
+  k.number("poisson_ratio", {0.0, 0.495}, "nu", elastic.poisson_ratio);
+  k.vector("fixed_min_m", {-1e6, 1e6}, "low corner of the box whose triangles are held",
+           elastic.fixed_min_m);
+  k.vector("fixed_max_m", {-1e6, 1e6}, "high corner; both of the turned mesh, without position_m",
+           elastic.fixed_max_m);
+}
+
+void visit_tolerance(Keys& k, ToleranceSettings& tolerance) {
+  k.number("force_error_ratio", {0.001, 10.0}, "RMS error of the force over its peak",
+           tolerance.force_error_ratio);
+  k.number("shape_error_ratio", {0.001, 10.0}, "RMS error of the shape over the depth",
+           tolerance.shape_error_ratio);
+  k.number("tick_budget_us", {0.1, 1e4}, "of the law, p99.9; non-rt: median",
+           tolerance.tick_budget_us);
 }
 
 }  // namespace
 
-void visit_laws(reader::Keys& k, SceneText& out) {
+void visit_laws(Keys& k, SceneText& out) {
   Scene& scene = out.scene;
-  std::size_t law = 0;
   k.count("table_knots", {kMinKnots, law::kMaxKnots}, "of the loop's look-up table, each side",
-          scene.table_knots, reader::Need::kOptional);
+          scene.table_knots, kOptional);
   k.flag("varies_by_place", "closed-form laws in series with [compliance], spring_patch by it",
-         scene.varies_by_place, reader::Need::kOptional);
-  k.choice("law", kLaws, "of the tissue", law);
-  scene.law = kLawNames[law].kind;
-  const auto section = [&](LawKind kind, std::string_view meaning,
-                           const reader::Keys::Inside& inside) {
-    if (k.section(name_of(kind), meaning, inside, reader::Need::kOptional))
-      scene.described.push_back(kind);
+         scene.varies_by_place, kOptional);
+  k.choice("law", kLaws, "of the tissue", scene.law);
+  const auto section = [&](LawKind kind, std::string_view meaning, auto* visit, auto& law) {
+    if (k.section(name_of(kind), meaning, visit, law, kOptional)) scene.described.push_back(kind);
   };
-  section(LawKind::kRhombus, "chain of rhombus units under the touched point",
-          [&](reader::Keys& rhombus) { visit_rhombus(rhombus, scene); });
+  section(LawKind::kRhombus, "chain of rhombus units under the touched point", visit_rhombus,
+          scene);
   section(LawKind::kDiscStack, "coned discs under the touched point, flat one after the other",
-          [&](reader::Keys& discs) { visit_disc_stack(discs, scene); });
-  section(LawKind::kHexSheet, "a skin of hexagonal rings on body springs",
-          [&](reader::Keys& sheet) { visit_hex_sheet(sheet, scene); });
-  section(LawKind::kHuntCrossley, "a power law that resists speed as well",
-          [&](reader::Keys& power) { visit_hunt_crossley(power, scene); });
+          visit_disc_stack, scene.disc_stack);
+  section(LawKind::kHexSheet, "a skin of hexagonal rings on body springs", visit_hex_sheet,
+          scene.hex_sheet);
+  section(LawKind::kHuntCrossley, "a power law that resists speed as well", visit_hunt_crossley,
+          scene.hunt_crossley);
   section(LawKind::kSpringPatch, "masses and springs on the organ's mesh near the contact",
-          [&](reader::Keys& patch) { visit_spring_patch(patch, scene); });
+          visit_spring_patch, scene.spring_patch);
   section(LawKind::kCompliance, "the elastic organ of [elastic], condensed to its surface",
-          [&](reader::Keys& compliance) { visit_compliance(compliance, out); });
+          visit_compliance, out);
 
   // After all sections: which of them are there is known only now.
   if (scene.varies_by_place && !scene.describes(LawKind::kCompliance))
@@ -198,60 +210,29 @@ void visit_laws(reader::Keys& k, SceneText& out) {
                                 name_of(scene.law), name_of(scene.law)));
 }
 
-void visit_law_options(reader::Keys& k, Scene& scene) {
-  law::LinearPullParameters pull;
-  const auto visit_pull = [&](reader::Keys& keys) {
-    keys.number("stiffness_N_per_m", {0.01, 1e5}, "of a held site pulled outward",
-                pull.stiffness_N_per_m);
-    keys.number("limit_m", kDepth_m, "beyond it the force stays", pull.limit_m);
-  };
-  if (k.section("pull",
-                "held sites pull on this spring; compliance and spring_patch keep their own pull",
-                visit_pull, reader::Need::kOptional)) {
-    scene.pull = pull;
-  }
+void visit_law_options(Keys& k, Scene& scene) {
+  k.section("pull",
+            "held sites pull on this spring; compliance and spring_patch keep their own pull",
+            visit_pull, scene.pull);
   k.entries("relaxation", {0, law::kMaxPronyTerms}, "a Prony term: force that fades at held depth",
-            [&](reader::Keys& keys) {
+            [&](Keys& keys) {
               law::PronyTerm& term = scene.relaxation.emplace_back();
               keys.number("share_ratio", {1e-6, 1.0}, "of the force at once", term.share);
               keys.number("time_s", {1e-4, 1e5}, "in which it fades to 1/e", term.time_s);
             });
 }
 
-void visit_truth(reader::Keys& k, Scene& scene) {
-  ElasticSettings elastic;
-  const auto visit_elastic = [&](reader::Keys& keys) {
-    keys.number("youngs_modulus_Pa", {1.0, 1e9}, "E", elastic.youngs_modulus_Pa);
-    keys.number("poisson_ratio", {0.0, 0.495}, "nu", elastic.poisson_ratio);
-    keys.vector("fixed_min_m", {-1e6, 1e6}, "low corner of the box whose triangles are held",
-                elastic.fixed_min_m);
-    keys.vector("fixed_max_m", {-1e6, 1e6},
-                "high corner; both of the turned mesh, without position_m", elastic.fixed_max_m);
-  };
-  if (k.section("elastic",
-                "the organ as a linear elastic body, for tact-lab reference and compliance",
-                visit_elastic, reader::Need::kOptional)) {
-    scene.elastic = elastic;
-  }
+void visit_truth(Keys& k, Scene& scene) {
+  k.section("elastic", "the organ as a linear elastic body, for tact-lab reference and compliance",
+            visit_elastic, scene.elastic);
   k.entries("reference_site", {0, kMaxSites}, "a vertex where tact-lab reference solves",
-            [&](reader::Keys& keys) {
+            [&](Keys& keys) {
               ReferenceSite& site = scene.reference_sites.emplace_back();
               keys.count("vertex", {0, kMaxSiteVertex}, "of the organ's mesh, from 0", site.vertex);
               keys.flag("held_out", "not used by tact-lab fit, only to judge", site.held_out);
             });
-  ToleranceSettings tolerance;
-  const auto visit_tolerance = [&](reader::Keys& keys) {
-    keys.number("force_error_ratio", {0.001, 10.0}, "RMS error of the force over its peak",
-                tolerance.force_error_ratio);
-    keys.number("shape_error_ratio", {0.001, 10.0}, "RMS error of the shape over the depth",
-                tolerance.shape_error_ratio);
-    keys.number("tick_budget_us", {0.1, 1e4}, "of the law, p99.9; non-rt: median",
-                tolerance.tick_budget_us);
-  };
-  if (k.section("tolerance", "what is good enough: tact-lab plan chooses by it", visit_tolerance,
-                reader::Need::kOptional)) {
-    scene.tolerance = tolerance;
-  }
+  k.section("tolerance", "what is good enough: tact-lab plan chooses by it", visit_tolerance,
+            scene.tolerance);
 }
 
 }  // namespace tact::model::scene

@@ -9,7 +9,7 @@
 namespace tact::model::scene {
 namespace {
 
-void visit_keys(reader::Keys& k, Limits& limits) {
+void visit_keys(Keys& k, Limits& limits) {
   k.number("force_N", {0.0, 20.0}, "largest force on the hand", limits.force_N);
   k.number("torque_Nm", {0.0, 2.0}, "largest torque on the hand", limits.torque_Nm);
   k.number("slew_N_per_s", {1.0, 1e4}, "largest change of the force", limits.slew_N_per_s);
@@ -19,30 +19,30 @@ void visit_keys(reader::Keys& k, Limits& limits) {
   k.number("workspace_half_length_m", {0.01, 0.5}, "of the cylinder, from the origin of W",
            limits.workspace_half_length_m);
   k.number("speed_mps", {0.05, 10.0}, "faster, the force fades to zero", limits.speed_mps,
-           reader::Need::kOptional);
+           kOptional);
   k.number("turn_radps", {0.5, 100.0}, "turning faster, the force fades to zero", limits.turn_radps,
-           reader::Need::kOptional);
+           kOptional);
   k.number("energy_J", {1e-3, 10.0}, "given to the hand since arming beyond what was taken",
-           limits.energy_J, reader::Need::kOptional);
+           limits.energy_J, kOptional);
   k.number("recovery_W", {0.0, 1.0}, "of that budget; shaking that takes no more is not damped",
-           limits.recovery_W, reader::Need::kOptional);
+           limits.recovery_W, kOptional);
   k.number("continuous_force_N", {0.1, 20.0},
            "largest RMS of the force, at most force_N; torque in proportion",
-           limits.continuous_force_N, reader::Need::kOptional);
+           limits.continuous_force_N, kOptional);
   k.number("thermal_time_s", {0.1, 1000.0}, "time constant of that RMS", limits.thermal_time_s,
-           reader::Need::kOptional);
+           kOptional);
   k.number("power_W", {0.1, 100.0}, "largest power on the hand; held to three quarters of it",
-           limits.power_W, reader::Need::kOptional);
+           limits.power_W, kOptional);
   k.number("grip_force_N", {0.0, 8.0},
            "on the fingers of a gripper; all else in proportion to force_N", limits.grip_force_N,
-           reader::Need::kOptional);
+           kOptional);
 }
 
 /// Rounded up to what a person would write.
 double rounded_up(double value) { return std::ceil(1e3 * value) * 1e-3; }
 
 /// RT-15: in 10 ms the gate fades the largest force to zero, and its slew must not hold that up.
-void refuse_slow_slew(reader::Keys& k, const Limits& limits) {
+void refuse_slow_slew(Keys& k, const Limits& limits) {
   // The gate keeps force_N / ramp_s of the slew for its ramp.
   const double least_N_per_s = limits.force_N / kStaleRampDown_s + limits.force_N / limits.ramp_s;
   if (limits.slew_N_per_s >= least_N_per_s) return;
@@ -54,7 +54,7 @@ void refuse_slow_slew(reader::Keys& k, const Limits& limits) {
 
 // The energy that the largest force gives at the largest speed while it falls at the slew must be
 // there before the force is (firmware/gate/energy_tank.h); else the scene's force is never reached.
-void refuse_small_budget(reader::Keys& k, double rate_Hz, const Limits& limits) {
+void refuse_small_budget(Keys& k, double rate_Hz, const Limits& limits) {
   const double force_N = limits.force_N;
   if (!(force_N > 0.0 && rate_Hz > 0.0)) return;
   const double speed_mps = limits.speed_mps + limits.torque_Nm / force_N * limits.turn_radps;
@@ -67,7 +67,7 @@ void refuse_small_budget(reader::Keys& k, double rate_Hz, const Limits& limits) 
                        limits.energy_J, force_N, limits.speed_mps, rounded_up(least_J)));
 }
 
-void refuse_fast_thermal(reader::Keys& k, double rate_Hz, const Limits& limits) {
+void refuse_fast_thermal(Keys& k, double rate_Hz, const Limits& limits) {
   const double least_s = least_thermal_time_s(limits, rate_Hz);
   if (limits.thermal_time_s >= least_s) return;
   k.refuse({"thermal_time_s", "continuous_force_N"},
@@ -79,7 +79,7 @@ void refuse_fast_thermal(reader::Keys& k, double rate_Hz, const Limits& limits) 
 
 }  // namespace
 
-void visit_limits(reader::Keys& k, double rate_Hz, Limits& limits) {
+void visit_limits(Keys& k, double rate_Hz, Limits& limits) {
   visit_keys(k, limits);
   refuse_slow_slew(k, limits);
   refuse_small_budget(k, rate_Hz, limits);

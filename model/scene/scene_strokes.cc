@@ -17,6 +17,7 @@ namespace tact::model::scene {
 namespace {
 
 constexpr std::array kActions{
+    // in the order of Action
     reader::Choice{"press", "move straight to depth_m below the touched point"},
     reader::Choice{"hold", "stay"},
     reader::Choice{"slide", "move along by offset_m"},
@@ -27,9 +28,6 @@ constexpr std::array kActions{
     reader::Choice{"tear", "pull so far that the tear force is passed and the tissue lets go"},
     reader::Choice{"turn", "turn the tool; a release turns it back"},
 };
-constexpr std::array kActionOf{Action::kPress, Action::kHold, Action::kSlide, Action::kRelease,
-                               Action::kGrip,  Action::kPull, Action::kTear,  Action::kTurn};
-static_assert(kActions.size() == kActionOf.size());
 
 constexpr std::array kPivots{
     reader::Choice{"tip", "the middle of the probe spheres"},
@@ -148,9 +146,8 @@ void visit_turn(reader::Keys& keys, Stroke& stroke) {
   keys.number("angle_deg", kAngles_deg, "about it, from how the tool rests; 0 turns it back",
               angle_deg);
   stroke.angle_rad = angle_deg * std::numbers::pi / 180.0;
-  std::size_t pivot = 0;
-  keys.choice("about", kPivots, "what stays where it is", pivot, reader::Need::kOptional);
-  stroke.about_handle = pivot == 1;
+  keys.choice("about", kPivots, "what stays where it is", stroke.about_handle,
+              reader::Need::kOptional);
 }
 
 }  // namespace
@@ -158,7 +155,7 @@ void visit_turn(reader::Keys& keys, Stroke& stroke) {
 void visit_stroke(reader::Keys& keys, Stroke& stroke) {
   stroke.position = keys.position_of("action");
   keys.one_of("action", kActions, [&](std::size_t index) {
-    stroke.action = kActionOf[index];
+    stroke.action = static_cast<Action>(index);
     switch (stroke.action) {
       case Action::kPress:
         keys.number("depth_m", {0.0, 0.05}, "of the lowest probe sphere, 0 just touches",

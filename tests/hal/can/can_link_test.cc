@@ -163,7 +163,7 @@ TEST(CanLink, ReadsWhetherAnInterfaceCarriesCanFdAndHowFast) {
 
 TEST(CanLink, ALinkForCanFdIsHeldToMoreThanOneForClassicFrames) {
   const auto refusal_fd = [](const CanLink& link, double rate_Hz = 1000.0) {
-    const auto error = check_can_fd_link(link, "can0", {.slow = 273, .fast = 1908}, rate_Hz);
+    const auto error = check_can_link(link, "can0", {.slow = 273, .fast = 1908}, rate_Hz);
     return error ? error->message : std::string();
   };
   const CanLink good{.index = 7,

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hal/can/can_lock.h"
-
 #include <gtest/gtest.h>
 
+#include "hal/can/can_open.h"
 #include "tests/support/forked.h"
 #include "tests/support/message.h"
 

@@ -2,7 +2,7 @@
 // What a Force Dimension device says and does when it fails in the middle of a run.
 #include <gtest/gtest.h>
 
-#include "hal/force_dimension/sdk_text.h"
+#include "hal/force_dimension/sdk_library.h"
 #include "tests/support/device_loop.h"
 #include "tests/support/stub_dhd/stub_client.h"
 

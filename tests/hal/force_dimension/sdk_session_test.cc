@@ -5,7 +5,7 @@
 
 #include <cstring>
 
-#include "hal/force_dimension/sdk_text.h"
+#include "hal/force_dimension/sdk_library.h"
 #include "tests/support/stub_dhd/stub_client.h"
 #include "tests/support/usb_folders.h"
 

@@ -36,11 +36,6 @@ struct Chip::Handle {
   ~Handle() { --played().open; }
 };
 
-LineRequest::LineRequest() = default;
-LineRequest::LineRequest(std::unique_ptr<Lines> lines) : lines_(std::move(lines)) {}
-LineRequest::LineRequest(LineRequest&& other) noexcept = default;
-LineRequest& LineRequest::operator=(LineRequest&& other) noexcept = default;
-LineRequest::~LineRequest() = default;
 bool LineRequest::get(Levels& levels) RT_SAFE {
   for (std::size_t i = 0; i < lines_->offsets.size(); ++i)
     levels[i] = played().level[static_cast<std::size_t>(lines_->offsets[i])];
@@ -53,11 +48,7 @@ bool LineRequest::set(const Levels& levels) RT_SAFE {
 }
 std::vector<Edge> LineRequest::edges(std::chrono::milliseconds /*longest*/) { return {}; }
 
-Chip::Chip() = default;
 Chip::Chip(const std::string& /*path*/) : handle_(new Handle) {}
-Chip::Chip(Chip&& other) noexcept = default;
-Chip& Chip::operator=(Chip&& other) noexcept = default;
-Chip::~Chip() = default;
 bool Chip::gives(int offset) const {
   errno = EINVAL;
   return played().not_given.count(offset) == 0;
@@ -73,7 +64,7 @@ LineRequest Chip::request(LineUse /*use*/, std::span<const int> offsets, const c
     if (played().user.count(offset) != 0) return {};
   }
   played().requested.insert(offsets.begin(), offsets.end());
-  return LineRequest(std::unique_ptr<LineRequest::Lines>(
+  return LineRequest(std::shared_ptr<LineRequest::Lines>(
       new LineRequest::Lines{.offsets = {offsets.begin(), offsets.end()}}));
 }
 

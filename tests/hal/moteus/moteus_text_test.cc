@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hal/moteus/moteus_text.h"
-
 #include <gtest/gtest.h>
 
 #include <set>
+
+#include "hal/moteus/moteus_protocol.h"
 
 namespace tact::hal::moteus::moteus_words_test {
 

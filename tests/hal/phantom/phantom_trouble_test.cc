@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "hal/phantom/hd_library.h"
-#include "hal/phantom/hd_text.h"
 #include "tests/support/device_loop.h"
 #include "tests/support/stub_hd/hd_client.h"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "model/scene/law_numbers.h"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+
+#include "model/scene/scene.h"
 
 namespace tact::model::scene::law_numbers_test {
 
