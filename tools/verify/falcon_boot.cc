@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every request and word of waking a Falcon, in order: requests of the USB adapter by name, words of
-// the boot loader.
+// Every request and word of waking a Falcon, in order: requests of the USB adapter by name, words
+// of the boot loader.
 #include "hal/falcon/falcon_boot.h"
 
 #include <algorithm>
