@@ -96,9 +96,8 @@ PARTS = {
         "self_check": ["mechanics", "odrive", "cia402", "moteus", "falcon"],
     },
     "tools/chart": {
-        "subject": [],
-        "measure": ["subject"],
-        "compare": ["subject", "measure"],
+        "measure": [],
+        "compare": ["measure"],
         "report": ["compare"],
     },
     "tools/jitter": {

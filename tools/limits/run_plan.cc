@@ -25,13 +25,13 @@ namespace {
 using model::Error;
 using model::Result;
 
-/// Where no force may reach the fingers the case of the fingers would show nothing.
-std::vector<Case> without_void(const std::vector<Case>& asked, const model::Limits& limits,
-                               LimitsReport& report) {
+/// The cases of which `why` says nothing; the others go into the report with their reason.
+template <class Why>
+std::vector<Case> possible(const std::vector<Case>& asked, const Why& why, LimitsReport& report) {
   std::vector<Case> cases;
   for (const Case& c : asked)
-    if (c.grip == Grip::kJaws && !(limits.grip_force_N > 0.0))
-      report.not_run.push_back({.name = c.name, .why = kNoGripForce});
+    if (const char* reason = why(c))
+      report.not_run.push_back({.name = c.name, .why = reason});
     else
       cases.push_back(c);
   return cases;
@@ -99,7 +99,11 @@ Result<LimitsReport> run_simulated(const model::scene::Scene& scene, const hal::
   // As the loop's thread does: else the last digits of a fading force would differ from tactd's.
   firmware::pc::flush_denormals();
   LimitsReport report = begin_report(scene, info);
-  const Runs runs = prepare(without_void(options.cases, bench.limits, report), bench);
+  // Where no force may reach the fingers the case of the fingers would show nothing.
+  const auto why = [&bench](const Case& c) {
+    return c.grip == Grip::kJaws && !(bench.limits.grip_force_N > 0.0) ? kNoGripForce : nullptr;
+  };
+  const Runs runs = prepare(possible(options.cases, why, report), bench);
   for (const auto& run : runs)
     if (!run->play()) break;
   name_the_rest(report, options);
@@ -132,12 +136,8 @@ Result<LimitsReport> run_real(const model::scene::Scene& scene, hal::Device& dev
                           .guardian = guardian->get(),
                           .gate_limits = options.gate_limits};
   LimitsReport report = begin_report(scene, info);
-  std::vector<Case> cases;
-  for (const Case& c : options.cases)
-    if (const char* why = why_left_out(c, scene.device.lines))
-      report.not_run.push_back({.name = c.name, .why = why});
-    else
-      cases.push_back(c);
+  const auto why = [&scene](const Case& c) { return why_left_out(c, scene.device.lines); };
+  const std::vector<Case> cases = possible(options.cases, why, report);
   if (options.wall) report.not_run.push_back({.name = std::string(kWallName), .why = kNeedsHand});
   name_the_rest(report, options);
   const Runs runs = prepare(cases, bench);

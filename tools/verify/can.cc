@@ -47,20 +47,20 @@ void compare_equal(Report& report, const json& got, const json& want) {
   json all = got;
   all.update(want);
   for (const auto& [field, ignored] : all.items())
-    report.compare(field, got.value(field, json()), want.value(field, json()), false, 0.0, 0.0);
+    report.equal(field, got.value(field, json()), want.value(field, json()));
 }
 
 void compare_encoded(Report& report, const std::optional<CanFrame>& frame, const json& want) {
   const auto bytes = frame ? hal::can::pack_can_frame(*frame) : std::nullopt;
-  report.compare("encodes", bytes.has_value(), true, false, 0.0, 0.0);
+  report.equal("encodes", bytes.has_value(), true);
   if (!bytes) return;
-  report.compare("id", frame->id, want.at("id"), false, 0.0, 0.0);
-  report.compare("rtr", frame->rtr, want.value("rtr", false), false, 0.0, 0.0);
-  report.compare("data", to_hex(frame->payload()), want.at("data"), false, 0.0, 0.0);
-  if (want.contains("dlc")) report.compare("dlc", frame->length, want["dlc"], false, 0.0, 0.0);
-  report.compare("can_frame", to_hex(*bytes), want.at("can_frame"), false, 0.0, 0.0);
+  report.equal("id", frame->id, want.at("id"));
+  report.equal("rtr", frame->rtr, want.value("rtr", false));
+  report.equal("data", to_hex(frame->payload()), want.at("data"));
+  if (want.contains("dlc")) report.equal("dlc", frame->length, want["dlc"]);
+  report.equal("can_frame", to_hex(*bytes), want.at("can_frame"));
   const auto back = hal::can::unpack_can_frame(from_hex(want.at("can_frame"), report));
-  report.compare("reads back", back == frame, true, false, 0.0, 0.0);
+  report.equal("reads back", back == frame, true);
 }
 
 namespace can_cases {
@@ -77,24 +77,20 @@ bool refuses_damaged_error(const std::vector<std::uint8_t>& bytes) {
 }
 
 void verify_socketcan(const json& file, Report& report) {
-  int number = 0;
-  for (const json& one : file.at("error_frames")) {
-    report.begin_case("error_frames/" + std::to_string(number++));
+  report.each("error_frames", file.at("error_frames"), [&](const json& one) {
     const auto bytes = from_hex(one.at("can_frame"), report);
     const auto error = hal::can::decode_can_error(bytes);
-    report.compare("reads", error.has_value(), true, false, 0.0, 0.0);
-    if (!error) continue;
-    report.compare("bus_gone", error->is_bus_gone(), one.at("bus_gone"), false, 0.0, 0.0);
-    report.compare("refuses damage", refuses_damaged_error(bytes), true, false, 0.0, 0.0);
-  }
-  number = 0;
-  for (const json& one : file.at("bus_bits")) {
-    report.begin_case("bus_bits/" + std::to_string(number++));
+    report.equal("reads", error.has_value(), true);
+    if (!error) return;
+    report.equal("bus_gone", error->is_bus_gone(), one.at("bus_gone"));
+    report.equal("refuses damage", refuses_damaged_error(bytes), true);
+  });
+  report.each("bus_bits", file.at("bus_bits"), [&](const json& one) {
     const CanFrame frame = frame_of(one.at("id"), one.at("data"), report);
     const int most = hal::can::most_can_bits(frame.length);
-    report.compare("bits_max", most, one.at("bits_max"), false, 0.0, 0.0);
-    report.compare("bits <= bits_max", one.at("bits") <= most, true, false, 0.0, 0.0);
-  }
+    report.equal("bits_max", most, one.at("bits_max"));
+    report.equal("bits <= bits_max", one.at("bits") <= most, true);
+  });
 }
 
 /// Messages that no ODrive here receives or sends, by the numbers of their commands.
@@ -140,42 +136,36 @@ std::optional<CanFrame> odrive_encoded(const std::string& message, const json& a
   return std::nullopt;
 }
 
-json to_json(const hal::odrive::OdriveHeartbeat& h) {
-  return {{"axis_error", h.axis_error},
-          {"axis_state", h.axis_state},
-          {"procedure_result", h.procedure_result},
-          {"trajectory_done", h.trajectory_done}};
+json odrive_decoded(const CanFrame& frame, const std::string& name, Report& report) {
+  const hal::odrive::OdriveAddress address = hal::odrive::odrive_address(frame);
+  json got;
+  if (name == "heartbeat") {
+    const auto fields = [](const hal::odrive::OdriveHeartbeat& h) -> json {
+      return {{"axis_error", h.axis_error},
+              {"axis_state", h.axis_state},
+              {"procedure_result", h.procedure_result},
+              {"trajectory_done", h.trajectory_done}};
+    };
+    got = decoded(frame, address.node, hal::odrive::decode_odrive_heartbeat, fields, report);
+  } else if (name == "get_encoder_estimates") {
+    const auto fields = [](const hal::odrive::OdriveEstimates& e) -> json {
+      return {{"pos_turns", e.position_turns}, {"vel_turns_s", e.velocity_turns_per_s}};
+    };
+    got = decoded(frame, address.node, hal::odrive::decode_odrive_estimates, fields, report);
+  } else {
+    report.call_damaged(fmt::format("no reply \"{}\"", name));
+  }
+  got.update({{"node", address.node}, {"cmd", address.command}, {"name", name}});
+  return got;
 }
-json to_json(const hal::odrive::OdriveHeartbeat05& h) {
+
+json heartbeat_05(const hal::odrive::OdriveHeartbeat05& h) {
   return {{"axis_error", h.axis_error},
           {"axis_state", h.axis_state},
           {"motor_error_flag", h.motor_error},
           {"encoder_error_flag", h.encoder_error},
           {"controller_error_flag", h.controller_error},
           {"trajectory_done", h.trajectory_done}};
-}
-json to_json(const hal::odrive::OdriveEstimates& e) {
-  return {{"pos_turns", e.position_turns}, {"vel_turns_s", e.velocity_turns_per_s}};
-}
-
-/// One reply, as its decoder reads it for a node; and the damaged ones.
-template <class Decode>
-json decoded(const CanFrame& frame, int node, Decode decode, Report& report) {
-  const auto read = [&](const CanFrame& f) { return decode(f, node); };
-  report.compare("refuses damage", refuses_damage(frame, read), true, false, 0.0, 0.0);
-  const auto value = read(frame);
-  return value ? to_json(*value) : json::object();
-}
-
-json odrive_decoded(const CanFrame& frame, const std::string& name, Report& report) {
-  const hal::odrive::OdriveAddress address = hal::odrive::odrive_address(frame);
-  const auto read = [&](auto decode) { return decoded(frame, address.node, decode, report); };
-  json got;
-  if (name == "heartbeat") got = read(hal::odrive::decode_odrive_heartbeat);
-  if (name == "get_encoder_estimates") got = read(hal::odrive::decode_odrive_estimates);
-  if (got.is_null()) report.call_damaged(fmt::format("no reply \"{}\"", name));
-  got.update({{"node", address.node}, {"cmd", address.command}, {"name", name}});
-  return got;
 }
 
 /// Every published command and no other, by number.
@@ -212,14 +202,14 @@ void verify_odrive(const json& file, Report& report) {
     const CanFrame frame = frame_of(one.at("id"), one.at("data"), report);
     compare_equal(report, odrive_decoded(frame, expect.at("name"), report), expect);
   }
-  number = 0;
-  for (const json& one : file.at("heartbeat_v0_5")) {
-    report.begin_case("heartbeat_v0_5/" + std::to_string(number++));
+  report.each("heartbeat_v0_5", file.at("heartbeat_v0_5"), [&](const json& one) {
     constexpr int kNode = 5;  // the file leaves it open
     const CanFrame frame = frame_of(kNode << 5 | 1, one.at("data"), report);
-    compare_equal(report, decoded(frame, kNode, hal::odrive::decode_odrive_heartbeat_05, report),
-                  one.at("expect"));
-  }
+    compare_equal(
+        report,
+        decoded(frame, kNode, hal::odrive::decode_odrive_heartbeat_05, heartbeat_05, report),
+        one.at("expect"));
+  });
 }
 
 constexpr Verifier kVerifiers[] = {

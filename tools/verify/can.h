@@ -43,9 +43,21 @@ bool refuses_damage(const hal::can::CanFrame& sound, Decode decode) {
          !decode(remote) && !decode(stranger);
 }
 
+/// One reply, as its decoder reads it for a node and `to_json` tells it; and the damaged ones.
+template <class Decode, class ToJson>
+nlohmann::json decoded(const hal::can::CanFrame& frame, int node, Decode decode, ToJson to_json,
+                       Report& report) {
+  const auto read = [&](const hal::can::CanFrame& f) { return decode(f, node); };
+  report.equal("refuses damage", refuses_damage(frame, read), true);
+  const auto value = read(frame);
+  return value ? to_json(*value) : nlohmann::json::object();
+}
+
 /// Of can_cia402.cc.
 void verify_cia402(const nlohmann::json& file, Report& report);
 /// Of can_moteus.cc.
 void verify_moteus(const nlohmann::json& file, Report& report);
+/// Of falcon_boot.cc: the requests and words that wake a Falcon, each of the order is a case.
+void verify_falcon_boot(const nlohmann::json& ftdi, Report& report);
 
 }  // namespace tact::tools::verify

@@ -29,18 +29,12 @@ hal::cia402::NmtCommand command_of(const std::string& word, Report& report) {
   return {};
 }
 
-const char* word(hal::cia402::NmtState state) {
-  switch (state) {
-    case hal::cia402::NmtState::kBoot:
-      return "boot";
-    case hal::cia402::NmtState::kStopped:
-      return "stopped";
-    case hal::cia402::NmtState::kOperational:
-      return "operational";
-    case hal::cia402::NmtState::kPreOperational:
-      break;
-  }
-  return "pre_operational";
+json state_field(hal::cia402::NmtState state) {
+  using enum hal::cia402::NmtState;
+  return {{"state", state == kBoot          ? "boot"
+                    : state == kStopped     ? "stopped"
+                    : state == kOperational ? "operational"
+                                            : "pre_operational"}};
 }
 
 std::optional<CanFrame> encoded(const std::string& message, const json& args, Report& report) {
@@ -60,13 +54,12 @@ std::optional<CanFrame> encoded(const std::string& message, const json& args, Re
   return std::nullopt;
 }
 
-json to_json(hal::cia402::NmtState state) { return {{"state", word(state)}}; }
-json to_json(const hal::cia402::Emergency& e) {
+json emergency_fields(const hal::cia402::Emergency& e) {
   return {{"code", e.code},
           {"error_register", e.error_register},
           {"manufacturer", to_hex(e.manufacturer)}};
 }
-json to_json(const hal::cia402::CstSample& s) {
+json sample_fields(const hal::cia402::CstSample& s) {
   const hal::cia402::Cia402Flags flags = hal::cia402::cia402_flags(s.statusword);
   return {{"statusword", s.statusword},
           {"state", hal::cia402::cia402_state_name(hal::cia402::cia402_state(s.statusword))},
@@ -76,44 +69,28 @@ json to_json(const hal::cia402::CstSample& s) {
           {"warning", flags.warning},
           {"internal_limit", flags.internal_limit}};
 }
-json to_json(const hal::cia402::SdoReply& r) {
-  json got{{"index", r.index}, {"sub", r.sub}};
-  switch (r.kind) {
-    case hal::cia402::SdoReplyKind::kDownloadDone:
-      got["kind"] = "download_ok";
-      break;
-    case hal::cia402::SdoReplyKind::kAbort:
-      got.update({{"kind", "abort"}, {"code", r.value}});
-      break;
-    case hal::cia402::SdoReplyKind::kUpload:
-      std::string raw;
-      for (unsigned i = 0; i < r.size; ++i) raw += fmt::format("{:02x}", r.value >> (8 * i) & 0xFF);
-      got.update({{"kind", "upload"}, {"size", r.size}, {"raw", raw}});
-      break;
-  }
+json reply_fields(const hal::cia402::SdoReply& r) {
+  json got{{"index", r.index}, {"sub", r.sub}, {"kind", "download_ok"}};
+  if (r.kind == hal::cia402::SdoReplyKind::kAbort)
+    got.update({{"kind", "abort"}, {"code", r.value}});
+  if (r.kind != hal::cia402::SdoReplyKind::kUpload) return got;
+  std::string raw;
+  for (unsigned i = 0; i < r.size; ++i) raw += fmt::format("{:02x}", r.value >> (8 * i) & 0xFF);
+  got.update({{"kind", "upload"}, {"size", r.size}, {"raw", raw}});
   return got;
 }
 
-template <class Decode>
-json decoded_of(const CanFrame& frame, int node, Decode decode, Report& report) {
-  const auto read = [&](const CanFrame& f) { return decode(f, node); };
-  report.compare("refuses damage", refuses_damage(frame, read), true, false, 0.0, 0.0);
-  const auto value = read(frame);
-  json got = value ? to_json(*value) : json::object();
-  got["node"] = node;
-  return got;
-}
-
-json decoded(const std::string& message, const CanFrame& frame, Report& report) {
+json reply_of(const std::string& message, const CanFrame& frame, Report& report) {
   const int node = static_cast<int>(frame.id & 0x7Fu);
-  if (message == "heartbeat")
-    return decoded_of(frame, node, hal::cia402::decode_canopen_heartbeat, report);
-  if (message == "emcy")
-    return decoded_of(frame, node, hal::cia402::decode_canopen_emergency, report);
-  if (message == "sdo_reply")
-    return decoded_of(frame, node, hal::cia402::decode_canopen_sdo, report);
-  if (message == "tpdo1_cst")
-    return decoded_of(frame, node, hal::cia402::decode_cst_sample, report);
+  const auto read = [&](auto decode, auto fields) {
+    json got = decoded(frame, node, decode, fields, report);
+    got["node"] = node;
+    return got;
+  };
+  if (message == "heartbeat") return read(hal::cia402::decode_canopen_heartbeat, state_field);
+  if (message == "emcy") return read(hal::cia402::decode_canopen_emergency, emergency_fields);
+  if (message == "sdo_reply") return read(hal::cia402::decode_canopen_sdo, reply_fields);
+  if (message == "tpdo1_cst") return read(hal::cia402::decode_cst_sample, sample_fields);
   call_unknown(report, "reply", message);
   return json::object();
 }
@@ -124,7 +101,7 @@ void verify_configuration(const json& sequence, Report& report) {
   const auto writes = hal::cia402::cst_configuration(kNode, {.command_transmission_type = 1});
   for (std::size_t i = 0; i < sequence.size(); ++i) {
     report.begin_case("config_sequence_node5/" + std::to_string(i));
-    report.compare("writes", hal::cia402::kCstWrites, sequence.size(), false, 0.0, 0.0);
+    report.equal("writes", hal::cia402::kCstWrites, sequence.size());
     if (!writes || i >= writes->size()) continue;
     const hal::cia402::SdoWrite& write = (*writes)[i];
     const auto frame = hal::cia402::canopen_sdo_download(kNode, write);
@@ -138,10 +115,18 @@ void verify_configuration(const json& sequence, Report& report) {
   }
 }
 
-void verify_states(const json& states, Report& report) {
-  int number = 0;
-  for (const json& one : states) {
-    report.begin_case("states/" + std::to_string(number++));
+}  // namespace
+
+void verify_cia402(const json& file, Report& report) {
+  verify_configuration(file.at("config_sequence_node5"), report);
+  report.each("encode", file.at("encode"), [&](const json& one) {
+    compare_encoded(report, encoded(one.at("message"), one.at("args"), report), one);
+  });
+  report.each("decode", file.at("decode"), [&](const json& one) {
+    const CanFrame frame = frame_of(one.at("id"), one.at("data"), report);
+    compare_equal(report, reply_of(one.at("message"), frame, report), one.at("expect"));
+  });
+  report.each("states", file.at("states"), [&](const json& one) {
     const std::uint16_t statusword = one.at("statusword");
     const hal::cia402::Cia402State state = hal::cia402::cia402_state(statusword);
     const auto next = hal::cia402::next_controlword(state, hal::cia402::kControlDisableVoltage);
@@ -150,37 +135,12 @@ void verify_states(const json& states, Report& report) {
                    {"state", hal::cia402::cia402_state_name(state)},
                    {"next_controlword", next ? json(*next) : json()}},
                   one);
-  }
-}
-
-void verify_torques(const json& torques, Report& report) {
-  int number = 0;
-  for (const json& one : torques) {
-    report.begin_case("torque_conversion/" + std::to_string(number++));
+  });
+  report.each("torque_conversion", file.at("torque_conversion"), [&](const json& one) {
     const double rated_torque_Nm = one.at("rated_mNm").get<double>() / 1000.0;
     const auto permille = hal::cia402::cst_torque_permille(one.at("tau_nm"), rated_torque_Nm);
-    report.compare("permille", permille ? json(*permille) : json(), one.at("permille"), false, 0.0,
-                   0.0);
-  }
-}
-
-}  // namespace
-
-void verify_cia402(const json& file, Report& report) {
-  verify_configuration(file.at("config_sequence_node5"), report);
-  int number = 0;
-  for (const json& one : file.at("encode")) {
-    report.begin_case("encode/" + std::to_string(number++));
-    compare_encoded(report, encoded(one.at("message"), one.at("args"), report), one);
-  }
-  number = 0;
-  for (const json& one : file.at("decode")) {
-    report.begin_case("decode/" + std::to_string(number++));
-    const CanFrame frame = frame_of(one.at("id"), one.at("data"), report);
-    compare_equal(report, decoded(one.at("message"), frame, report), one.at("expect"));
-  }
-  verify_states(file.at("states"), report);
-  verify_torques(file.at("torque_conversion"), report);
+    report.equal("permille", permille ? json(*permille) : json(), one.at("permille"));
+  });
 }
 
 }  // namespace tact::tools::verify

@@ -17,7 +17,7 @@ using hal::moteus::MoteusRegister;
 using nlohmann::json;
 
 void call_unreadable(Report& report, const std::string& why) {
-  report.compare("reads", why, "a whole case", false, 0.0, 0.0);
+  report.equal("reads", why, "a whole case");
 }
 
 void check_encoded(const json& one, Report& report) {
@@ -33,7 +33,7 @@ void check_encoded(const json& one, Report& report) {
     return call_unreadable(report, fmt::format("no message \"{}\"", message));
   }
   const auto bytes = frame ? hal::can::pack_can_frame(*frame) : std::nullopt;
-  report.compare("encodes", bytes.has_value(), true, false, 0.0, 0.0);
+  report.equal("encodes", bytes.has_value(), true);
   if (!bytes) return;
   const json got{{"message", message},
                  {"args", args},
@@ -42,8 +42,7 @@ void check_encoded(const json& one, Report& report) {
                  {"data", to_hex(frame->payload())},
                  {"canfd_frame", to_hex(*bytes)}};
   compare_equal(report, got, one);
-  report.compare("reads back", hal::can::unpack_can_fd_frame(*bytes) == frame, true, false, 0.0,
-                 0.0);
+  report.equal("reads back", hal::can::unpack_can_fd_frame(*bytes) == frame, true);
 }
 
 std::string key_of(MoteusRegister number) {
@@ -87,34 +86,31 @@ void check_decoded(const json& one, Report& report) {
   std::copy(bytes.begin(), bytes.end(), frame.data.begin());
   const auto address = hal::moteus::moteus_address(frame);
   const auto reply = hal::moteus::decode_moteus(frame, address.source);
-  report.compare("decodes", reply.has_value(), true, false, 0.0, 0.0);
+  report.equal("decodes", reply.has_value(), true);
   if (!reply) return;
   const json got{{"source", address.source},
                  {"destination", address.destination},
                  {"registers", registers_of(*reply)}};
   compare_equal(report, got, one.at("expect"));
-  report.compare("refuses damage", refuses_damage(frame, address.source), true, false, 0.0, 0.0);
+  report.equal("refuses damage", refuses_damage(frame, address.source), true);
 }
 
 template <class Check>
 void check_each(const json& file, const char* section, Check check, Report& report) {
-  int number = 0;
-  for (const json& one : file.at(section)) {
-    report.begin_case(fmt::format("{}/{}", section, number++));
+  report.each(section, file.at(section), [&](const json& one) {
     try {  // nlohmann/json reports a field that is missing, or is no number, by exceptions
       check(one, report);
     } catch (const std::exception& damage) {
       call_unreadable(report, damage.what());
     }
-  }
+  });
 }
 
 }  // namespace
 
 void verify_moteus(const json& file, Report& report) {
   report.begin_case("bitrate");
-  report.compare("bitrate", {hal::can::kCanFdSlow_bps, hal::can::kCanFdFast_bps},
-                 file.at("bitrate"), false, 0.0, 0.0);
+  report.equal("bitrate", {hal::can::kCanFdSlow_bps, hal::can::kCanFdFast_bps}, file.at("bitrate"));
   check_each(file, "encode", check_encoded, report);
   check_each(file, "decode", check_decoded, report);
 }

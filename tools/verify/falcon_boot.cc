@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every request and word of waking a Falcon, in order.
-#include "tools/verify/falcon_boot.h"
+// Every request and word of waking a Falcon, in order: requests of the USB adapter by name, words
+// of the boot loader.
+#include "hal/falcon/falcon_boot.h"
 
 #include <algorithm>
 #include <functional>
@@ -10,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "hal/falcon/falcon_boot.h"
 #include "hal/falcon/falcon_packets.h"
 #include "hal/falcon/ftdi_requests.h"
 #include "tools/verify/can.h"
@@ -22,10 +22,6 @@ using hal::falcon::FalconBootAction;
 using hal::falcon::FtdiRequest;
 using nlohmann::json;
 using Bytes = std::vector<std::uint8_t>;
-
-void equal(Report& report, const std::string& field, const json& got, const json& want) {
-  report.compare(field, got, want, false, 0.0, 0.0);
-}
 
 FtdiRequest named(const std::string& name, Report& report) {
   if (name == "purge_rx") return hal::falcon::kFtdiPurgeRx;
@@ -111,18 +107,15 @@ class BootCheck {
     // Checked at the end, against the second time: the file has the block once.
     at_ += ftdi_.at("normal").size();
     const int asked = hal::falcon::FalconBootSettings{}.report_tries;
-    for (int i = 0; i < asked; ++i) equal(report_, "ask", next(), ask_);
-    const json& steps = ftdi_.at("bootloader");
-    for (std::size_t i = 0; i < steps.size(); ++i) {
-      report_.begin_case("ftdi/bootloader/" + std::to_string(i));
-      check_step(steps.at(i));
-    }
+    for (int i = 0; i < asked; ++i) report_.equal("ask", next(), ask_);
+    report_.each("ftdi/bootloader", ftdi_.at("bootloader"),
+                 [this](const json& step) { check_step(step); });
     const std::size_t second_normal = at_;
     check_requests("normal");
-    equal(report_, "ask", next(), ask_);
-    equal(report_, "end", at_, sent_.size());
+    report_.equal("ask", next(), ask_);
+    report_.equal("end", at_, sent_.size());
     for (std::size_t i = 0; i < second_normal && second_normal + i < at_ - 1; ++i)
-      equal(report_, "before the image", sent_.at(first_normal + i), sent_.at(second_normal + i));
+      report_.equal("before the image", sent_.at(first_normal + i), sent_.at(second_normal + i));
   }
 
  private:
@@ -148,36 +141,33 @@ class BootCheck {
   void check_request(json want) {
     const json got = next();
     // The name and the numbers, each by itself: the file must not contradict itself either.
-    equal(report_, "name", to_json(named(want.at("name"), report_)), got);
+    report_.equal("name", to_json(named(want.at("name"), report_)), got);
     want.erase("name");
-    equal(report_, "request", got, want);
+    report_.equal("request", got, want);
   }
 
   void check_requests(const std::string& block) {
-    for (std::size_t i = 0; i < ftdi_.at(block).size(); ++i) {
-      report_.begin_case("ftdi/" + block + "/" + std::to_string(i));
-      check_request(ftdi_.at(block).at(i));
-    }
+    report_.each("ftdi/" + block, ftdi_.at(block), [this](const json& one) { check_request(one); });
   }
 
   void check_step(const json& want) {
     if (want.contains("name")) return check_request(want);
     if (want.contains("bulk_out")) return check_word(want);
-    equal(report_, "upload", want.at("upload"), true);
-    equal(report_, "echo", want.at("echo"), true);
+    report_.equal("upload", want.at("upload"), true);
+    report_.equal("echo", want.at("echo"), true);
     const auto chunk = want.at("chunk").get<std::size_t>();
     for (std::size_t done = 0; done < image_.size(); done += chunk) {
       const auto rest = std::span(image_).subspan(done);
-      equal(report_, "chunk", next(), to_hex(rest.first(std::min(chunk, rest.size()))));
+      report_.equal("chunk", next(), to_hex(rest.first(std::min(chunk, rest.size()))));
     }
   }
 
   void check_word(const json& want) {
     const std::string word = want.at("bulk_out");
-    equal(report_, "bulk_out", next(), word);
-    equal(report_, "retry", count(sent_while_booting(image_, device(false, word)), word),
-          want.at("retry"));
-    equal(report_, "null first", sent_while_booting(image_, device(true, "")), sent_);
+    report_.equal("bulk_out", next(), word);
+    report_.equal("retry", count(sent_while_booting(image_, device(false, word)), word),
+                  want.at("retry"));
+    report_.equal("null first", sent_while_booting(image_, device(true, "")), sent_);
   }
 
   const json& ftdi_;

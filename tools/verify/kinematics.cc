@@ -32,15 +32,7 @@ void compare_matrix(Report& report, const std::string& field, const Mat3& got, c
   double largest = 0.0;
   for (const json& row : want)
     for (const json& value : row) largest = std::max(largest, std::abs(value.get<double>()));
-  report.compare(field, to_json(got), want, true, rel * largest, 0.0);
-}
-void compare_abs(Report& report, const std::string& field, const json& got, const json& want,
-                 double abs) {
-  report.compare(field, got, want, true, abs, 0.0);
-}
-void compare_rel(Report& report, const std::string& field, const json& got, const json& want,
-                 double rel) {
-  report.compare(field, got, want, true, 0.0, rel);
+  report.near(field, to_json(got), want, rel * largest);
 }
 
 DeltaGeometry geometry_of(const json& p) {
@@ -69,20 +61,20 @@ void verify_delta_pose(const DeltaKinematics& delta, const DeltaMasses& masses, 
                        const json& tolerance, Report& report) {
   const Vec3 p = vec3(one.at("p"));
   const hal::delta::DeltaInverse inverse = delta.inverse(p);
-  report.compare("reachable", inverse.reachable, one.at("reachable"), false, 0.0, 0.0);
+  report.equal("reachable", inverse.reachable, one.at("reachable"));
   // A pose that nobody reaches has no numbers; where the two disagree, that has been told.
   if (!inverse.reachable || !one.at("reachable").get<bool>()) return;
   const double tau = tolerance.at("tau_abs");
-  compare_abs(report, "theta", inverse.theta_rad, one.at("theta"), tolerance.at("theta"));
+  report.near("theta", inverse.theta_rad, one.at("theta"), tolerance.at("theta"));
 
   const hal::delta::DeltaForward forward = delta.forward(inverse.theta_rad);
-  compare_abs(report, "fk_far", to_json(forward.far_m), one.at("fk_far"), tolerance.at("p"));
+  report.near("fk_far", to_json(forward.far_m), one.at("fk_far"), tolerance.at("p"));
 
   const hal::delta::DeltaPose pose = delta.pose(p, inverse.theta_rad);
   compare_matrix(report, "K", joint_rate_matrix(pose), one.at("K"), tolerance.at("K_rel"));
   compare_matrix(report, "J", jacobian(pose), one.at("J"), tolerance.at("J_rel"));
-  compare_abs(report, "tau", joint_torques_Nm(pose, vec3(one.at("force"))), one.at("tau"), tau);
-  compare_abs(report, "tau_gravity",
+  report.near("tau", joint_torques_Nm(pose, vec3(one.at("force"))), one.at("tau"), tau);
+  report.near("tau_gravity",
               gravity_torques_Nm(delta.geometry(), masses, pose, vec3(one.at("gravity"))),
               one.at("tau_gravity"), tau);
   compare_matrix(report, "task_inertia", task_inertia_kg(delta.geometry(), masses, pose),
@@ -94,19 +86,14 @@ void verify_delta(const json& file, Report& report) {
   for (const auto& [name, device] : file.at("devices").items()) {
     const DeltaKinematics delta(geometry_of(device.at("params")));
     const DeltaMasses masses = masses_of(device.at("params"));
-    int number = 0;
-    for (const json& one : device.at("cases")) {
-      report.begin_case(name + "/cases/" + std::to_string(number++));
-      verify_delta_pose(delta, masses, one, tolerance, report);
-    }
-    number = 0;
-    for (const json& one : device.at("from_joints")) {
-      report.begin_case(name + "/from_joints/" + std::to_string(number++));
+    report.each(name + "/cases", device.at("cases"),
+                [&](const json& one) { verify_delta_pose(delta, masses, one, tolerance, report); });
+    report.each(name + "/from_joints", device.at("from_joints"), [&](const json& one) {
       const hal::delta::DeltaForward forward = delta.forward(one.at("theta").get<Joints>());
-      report.compare("solvable", forward.solved, one.at("solvable"), false, 0.0, 0.0);
-      if (!one.at("solvable").get<bool>()) continue;
-      compare_abs(report, "fk_far", to_json(forward.far_m), one.at("fk_far"), tolerance.at("p"));
-    }
+      report.equal("solvable", forward.solved, one.at("solvable"));
+      if (!one.at("solvable").get<bool>()) return;
+      report.near("fk_far", to_json(forward.far_m), one.at("fk_far"), tolerance.at("p"));
+    });
   }
 }
 
@@ -139,38 +126,34 @@ void verify_cylinder(const DeltaKinematics& delta, const json& want, double rel,
     }
   }
   report.begin_case("cylinder");
-  report.compare("all_points_reachable", reachable, want.at("all_points_reachable"), false, 0, 0);
-  compare_rel(report, "sigma_max", sigma_max, want.at("sigma_max"), rel);
-  compare_rel(report, "cond_max", cond_max, want.at("cond_max"), rel);
-  compare_rel(report, "column_norm_max", column_max, want.at("column_norm_max"), rel);
-  compare_rel(report, "theta_min", theta_min, want.at("theta_min"), rel);
-  compare_rel(report, "theta_max", theta_max, want.at("theta_max"), rel);
+  report.equal("all_points_reachable", reachable, want.at("all_points_reachable"));
+  report.near_ratio("sigma_max", sigma_max, want.at("sigma_max"), rel);
+  report.near_ratio("cond_max", cond_max, want.at("cond_max"), rel);
+  report.near_ratio("column_norm_max", column_max, want.at("column_norm_max"), rel);
+  report.near_ratio("theta_min", theta_min, want.at("theta_min"), rel);
+  report.near_ratio("theta_max", theta_max, want.at("theta_max"), rel);
 }
 
 void verify_workspace(const json& file, Report& report) {
   const DeltaKinematics delta(geometry_of(file.at("device")));
   const json& tolerance = file.at("tolerance");
   verify_cylinder(delta, file.at("cylinder"), tolerance.at("other_rel"), report);
-  int number = 0;
-  for (const json& one : file.at("cases")) {
-    report.begin_case("cases/" + std::to_string(number++));
+  report.each("cases", file.at("cases"), [&](const json& one) {
     const Vec3 p = vec3(one.at("p"));
     const hal::delta::DeltaInverse inverse = delta.inverse(p);
-    report.compare("reachable", inverse.reachable, one.at("reachable"), false, 0.0, 0.0);
-    if (!inverse.reachable || !one.at("reachable").get<bool>()) continue;
+    report.equal("reachable", inverse.reachable, one.at("reachable"));
+    if (!inverse.reachable || !one.at("reachable").get<bool>()) return;
     const Joints sigma = model::singular_values(jacobian(delta.pose(p, inverse.theta_rad)));
-    compare_abs(report, "theta", inverse.theta_rad, one.at("theta"), tolerance.at("theta"));
-    compare_rel(report, "sigma", sigma, one.at("sigma"), tolerance.at("sigma_rel"));
-  }
+    report.near("theta", inverse.theta_rad, one.at("theta"), tolerance.at("theta"));
+    report.near_ratio("sigma", sigma, one.at("sigma"), tolerance.at("sigma_rel"));
+  });
 }
 
 void verify_trajectory(const json& file, Report& report) {
   const DeltaKinematics delta(geometry_of(file.at("params")));
   const double counts_per_rad =
       file.at("counts_per_joint_rev").get<double>() / (2.0 * std::numbers::pi);
-  int number = 0;
-  for (const json& row : file.at("rows")) {
-    report.begin_case("rows/" + std::to_string(number++));
+  report.each("rows", file.at("rows"), [&](const json& row) {
     const auto counts = row.at("counts").get<std::array<long, 3>>();
     const hal::delta::DeltaInverse inverse = delta.inverse(vec3(row.at("p_true")));
     Joints counted_rad{};
@@ -180,10 +163,10 @@ void verify_trajectory(const json& file, Report& report) {
       // What an encoder would have counted there.
       got_counts[i] = std::lround(inverse.theta_rad[i] * counts_per_rad);
     }
-    report.compare("counts", got_counts, row.at("counts"), false, 0.0, 0.0);
-    compare_abs(report, "p_from_counts", to_json(delta.forward(counted_rad).far_m),
-                row.at("p_from_counts"), file.at("tolerance").at("p_from_counts"));
-  }
+    report.equal("counts", got_counts, row.at("counts"));
+    report.near("p_from_counts", to_json(delta.forward(counted_rad).far_m), row.at("p_from_counts"),
+                file.at("tolerance").at("p_from_counts"));
+  });
 }
 
 double in_deg(double angle_rad) { return angle_rad * 180.0 / std::numbers::pi; }
@@ -196,24 +179,24 @@ Joints falcon_thighs_rad(const json& counts) {
 void verify_falcon_pose(const hal::falcon::FalconKinematics& falcon, const json& one,
                         const json& tolerance, Report& report) {
   const hal::falcon::FalconInverse legs = falcon.inverse(vec3(one.at("p")));
-  report.compare("reachable", legs.reachable, true, false, 0.0, 0.0);
+  report.equal("reachable", legs.reachable, true);
   if (!legs.reachable) return;
-  compare_abs(report, "theta1", legs.thigh_rad, one.at("theta1"), tolerance.at("theta"));
-  compare_abs(report, "theta2", legs.knee_rad, one.at("theta2"), tolerance.at("theta"));
-  compare_abs(report, "theta3", legs.side_rad, one.at("theta3"), tolerance.at("theta"));
+  report.near("theta1", legs.thigh_rad, one.at("theta1"), tolerance.at("theta"));
+  report.near("theta2", legs.knee_rad, one.at("theta2"), tolerance.at("theta"));
+  report.near("theta3", legs.side_rad, one.at("theta3"), tolerance.at("theta"));
   const Mat3 k = falcon.joint_rate_matrix(legs);
   compare_matrix(report, "K", k, one.at("K"), tolerance.at("K_rel"));
   // The file has no tolerance for J; it is the inverse of K.
   compare_matrix(report, "J", model::inverse(k), one.at("J"), tolerance.at("K_rel"));
-  compare_abs(report, "tau", hal::falcon::falcon_torques_Nm(k, vec3(one.at("force"))),
-              one.at("tau"), tolerance.at("tau_abs"));
+  report.near("tau", hal::falcon::falcon_torques_Nm(k, vec3(one.at("force"))), one.at("tau"),
+              tolerance.at("tau_abs"));
   std::array<long, 3> counts{};
   for (std::size_t i = 0; i < 3; ++i)
     counts[i] = std::lround(hal::falcon::falcon_counts(legs.thigh_rad[i]));
-  report.compare("counts_rounded", counts, one.at("counts_rounded"), false, 0.0, 0.0);
+  report.equal("counts_rounded", counts, one.at("counts_rounded"));
   const hal::falcon::FalconForward forward =
       falcon.forward(falcon_thighs_rad(one.at("counts_rounded")), hal::falcon::kFalconHome_m);
-  compare_abs(report, "p_from_counts", to_json(forward.position_m), one.at("p_from_counts"),
+  report.near("p_from_counts", to_json(forward.position_m), one.at("p_from_counts"),
               tolerance.at("p"));
 }
 
@@ -228,20 +211,20 @@ void verify_falcon_constants(const json& want, Report& report) {
                                                                {"f", g.side_shift_m},
                                                                {"r", g.base_radius_m},
                                                                {"s", g.base_shift_m}}};
-  for (const auto& [name, value] : lengths) compare_rel(report, name, value, want.at(name), kRel);
-  compare_rel(report, "phi", g.azimuth_rad, want.at("phi"), kRel);
-  compare_rel(report, "theta_at_zero_counts_deg", in_deg(hal::falcon::falcon_thigh_rad(0.0)),
-              want.at("theta_at_zero_counts_deg"), kRel);
+  for (const auto& [name, value] : lengths) report.near_ratio(name, value, want.at(name), kRel);
+  report.near_ratio("phi", g.azimuth_rad, want.at("phi"), kRel);
+  report.near_ratio("theta_at_zero_counts_deg", in_deg(hal::falcon::falcon_thigh_rad(0.0)),
+                    want.at("theta_at_zero_counts_deg"), kRel);
   const double rad_per_count =
       hal::falcon::falcon_thigh_rad(1.0) - hal::falcon::falcon_thigh_rad(0.0);
-  compare_rel(report, "rad_per_count", rad_per_count, want.at("rad_per_count"), kRel);
+  report.near_ratio("rad_per_count", rad_per_count, want.at("rad_per_count"), kRel);
   // The code has the parts only as this product: each of them, out of it and the others.
   const double motor_rad = 2.0 * std::numbers::pi / want.at("counts_per_motor_rev").get<double>();
   const double drum_m = want.at("drum_diameter"), shaft_m = want.at("shaft_diameter");
-  compare_rel(report, "counts_per_motor_rev", motor_rad * shaft_m / rad_per_count, drum_m, kRel);
+  report.near_ratio("counts_per_motor_rev", motor_rad * shaft_m / rad_per_count, drum_m, kRel);
   // An encoder in quadrature counts four edges a slot.
-  compare_rel(report, "encoder_slots", want.at("counts_per_motor_rev").get<double>() / 4.0,
-              want.at("encoder_slots"), kRel);
+  report.near_ratio("encoder_slots", want.at("counts_per_motor_rev").get<double>() / 4.0,
+                    want.at("encoder_slots"), kRel);
 }
 
 void verify_falcon_kinematics(const json& file, Report& report) {
@@ -249,25 +232,20 @@ void verify_falcon_kinematics(const json& file, Report& report) {
   const json& tolerance = file.at("tolerance");
   report.begin_case("constants");
   verify_falcon_constants(file.at("constants"), report);
-  int number = 0;
-  for (const json& one : file.at("cases")) {
-    report.begin_case("cases/" + std::to_string(number++));
-    verify_falcon_pose(falcon, one, tolerance, report);
-  }
-  number = 0;
-  for (const json& one : file.at("symmetric")) {
-    report.begin_case("symmetric/" + std::to_string(number++));
+  report.each("cases", file.at("cases"),
+              [&](const json& one) { verify_falcon_pose(falcon, one, tolerance, report); });
+  report.each("symmetric", file.at("symmetric"), [&](const json& one) {
     const hal::falcon::FalconForward forward =
         falcon.forward(falcon_thighs_rad(one.at("counts")), hal::falcon::kFalconHome_m);
-    report.compare("solved", forward.solved, true, false, 0.0, 0.0);
-    compare_abs(report, "p", to_json(forward.position_m), one.at("p"), tolerance.at("p"));
+    report.equal("solved", forward.solved, true);
+    report.near("p", to_json(forward.position_m), one.at("p"), tolerance.at("p"));
     json thighs_deg = json::array(), want_deg = json::array();
     for (const double thigh_rad : falcon_thighs_rad(one.at("counts"))) {
       thighs_deg.push_back(in_deg(thigh_rad));
       want_deg.push_back(one.at("theta_deg"));
     }
-    compare_rel(report, "theta_deg", thighs_deg, want_deg, 1e-9);
-  }
+    report.near_ratio("theta_deg", thighs_deg, want_deg, 1e-9);
+  });
 }
 
 constexpr std::array kVerifiers{

@@ -21,7 +21,7 @@ std::optional<double> as_number(const json& value) {
   return std::nullopt;
 }
 
-bool near(double got, double want, double tolerance) {
+bool is_near(double got, double want, double tolerance) {
   // Not by the difference: it would be NaN, which is within no tolerance.
   if (std::isnan(want)) return std::isnan(got);
   if (std::isinf(want)) return got == want;
@@ -84,7 +84,7 @@ void Report::compare(const std::string& field, const json& got, const json& want
   }
   // The larger of the two: rel alone would ask zero to be exact.
   const double tolerance = numeric ? std::max(abs, rel * std::abs(*want_number)) : 0.0;
-  if (!near(*got_number, *want_number, tolerance)) fail({id_, field, got, want, tolerance});
+  if (!is_near(*got_number, *want_number, tolerance)) fail({id_, field, got, want, tolerance});
 }
 
 void Report::compare_all(const json& got, const json& expect, const Tolerance& tolerance) {

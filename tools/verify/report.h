@@ -42,9 +42,29 @@ class Report {
  public:
   /// Everything until the next case belongs to this one; a case passes if all its fields do.
   void begin_case(const std::string& id);
+  /// Each of a list is a case: "name/0", "name/1", ...
+  template <class Check>
+  void each(const std::string& name, const nlohmann::json& list, const Check& check) {
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      begin_case(name + "/" + std::to_string(i));
+      check(list.at(i));
+    }
+  }
   /// The rule above for one field of any shape; `numeric` says that its numbers need not be equal.
   void compare(const std::string& field, const nlohmann::json& got, const nlohmann::json& want,
                bool numeric, double abs, double rel);
+  void equal(const std::string& field, const nlohmann::json& got, const nlohmann::json& want) {
+    compare(field, got, want, false, 0.0, 0.0);
+  }
+  /// The rule with one of its two tolerances.
+  void near(const std::string& field, const nlohmann::json& got, const nlohmann::json& want,
+            double abs) {
+    compare(field, got, want, true, abs, 0.0);
+  }
+  void near_ratio(const std::string& field, const nlohmann::json& got, const nlohmann::json& want,
+                  double rel) {
+    compare(field, got, want, true, 0.0, rel);
+  }
   /// The rule above for all fields in `expect`.
   void compare_all(const nlohmann::json& got, const nlohmann::json& expect,
                    const Tolerance& tolerance);
@@ -70,6 +90,15 @@ class Report {
 /// A number, or NaN, Infinity or -Infinity as a string. Another string is damage, which the library
 /// reports by an exception.
 double number(const nlohmann::json& value);
+
+/// The word of a file for a value that counts from 0.
+template <class Enum, std::size_t N>
+const char* word(const char* const (&words)[N], Enum value) {
+  return words[static_cast<std::size_t>(value)];
+}
+/// For model::law::LawStatus.
+inline constexpr const char* kLawStatus[] = {"OK", "NO_CONTACT", "SATURATED", "SINGULAR",
+                                             "INVALID_ARGUMENT"};
 
 /// For a file whose cases have id, expect and all that `kResults` wants: the recomputed fields.
 template <nlohmann::json (*kResults)(const nlohmann::json& one_case)>

@@ -13,25 +13,7 @@ using model::indent::RhombusUnit;
 using model::law::LawStatus;
 using nlohmann::json;
 
-const char* word(LawStatus status) {
-  switch (status) {
-    case LawStatus::kOk:
-      return "OK";
-    case LawStatus::kNoContact:
-      return "NO_CONTACT";
-    case LawStatus::kSaturated:
-      return "SATURATED";
-    case LawStatus::kSingular:
-      return "SINGULAR";
-    case LawStatus::kInvalid:
-      break;
-  }
-  return "INVALID_ARGUMENT";
-}
-
-const char* word(model::indent::UnitLimit kind) {
-  return kind == model::indent::UnitLimit::kFlat ? "FLAT" : "SNAP";
-}
+constexpr const char* kUnitLimit[] = {"FLAT", "SNAP"};
 
 RhombusUnit unit_of(const json& p, const char* tangential) {
   return {.rod_length_m = number(p.at("a")),
@@ -44,7 +26,7 @@ json unit_results(const json& one_case) {
   const RhombusUnit unit = unit_of(one_case.at("params"), "kT");
   const model::indent::UnitResponse r =
       model::indent::respond(unit, number(one_case.at("inputs").at("x")));
-  json got{{"status", word(r.status)}, {"f", r.force_N}};
+  json got{{"status", word(kLawStatus, r.status)}, {"f", r.force_N}};
   // The file expects nothing more of a unit that is none.
   if (r.status == LawStatus::kInvalid) return got;
   const model::indent::UnitPressLimit limit = model::indent::press_limit(unit);
@@ -56,7 +38,7 @@ json unit_results(const json& one_case) {
               {"U", r.energy_J},
               {"x_lim", limit.shortening_m},
               {"f_lim", limit.force_N},
-              {"lim_kind", word(limit.kind)}});
+              {"lim_kind", word(kUnitLimit, limit.kind)}});
   return got;
 }
 
@@ -93,11 +75,11 @@ void add_lambda_rule(const model::indent::RhombusChain& chain, const model::inde
 json chain_results(const json& one_case) {
   const json& inputs = one_case.at("inputs");
   const auto chain = model::indent::make_rhombus_chain(chain_parameters(one_case.at("params")));
-  if (!chain) return {{"status", word(LawStatus::kInvalid)}, {"F", 0.0}};
+  if (!chain) return {{"status", word(kLawStatus, LawStatus::kInvalid)}, {"F", 0.0}};
   const bool force_in = inputs.at("mode") == "FORCE";
   const model::indent::ChainState at = force_in ? chain->at_force(number(inputs.at("F")))
                                                 : chain->at_depth(number(inputs.at("depth")));
-  json got{{"status", word(at.status)}, {"F", at.force_N}};
+  json got{{"status", word(kLawStatus, at.status)}, {"F", at.force_N}};
   if (at.status == LawStatus::kInvalid) return got;
   std::vector<double> ring_m(chain->unit_count() + 1);
   chain->profile(at.depth_m, ring_m);
@@ -109,7 +91,7 @@ json chain_results(const json& one_case) {
               {"d_lim", chain->range().press_m},
               // The file counts units from 1, as RC-8 does.
               {"lim_unit", chain->weakest_unit() + 1},
-              {"lim_kind", word(chain->limit_kind())},
+              {"lim_kind", word(kUnitLimit, chain->limit_kind())},
               // RC-12: U / depth, as the source prints it.
               {"F_eq12", at.depth_m != 0.0 ? at.energy_J / at.depth_m : 0.0}});
   add_lambda_rule(*chain, at, got);
@@ -155,7 +137,7 @@ json paper_results(const json& one_case) {
   const RhombusUnit unit = unit_of(one_case.at("params"), "kT");
   const double force_N = number(one_case.at("inputs").at("F"));
   const printed::PaperInverse at = printed::paper_inverse(unit, force_N);
-  return {{"status", word(at.status)},
+  return {{"status", word(kLawStatus, at.status)},
           {"D0", printed::paper_initial_stiffness_N_per_m(unit)},
           {"dtheta", at.angle_change_rad},
           {"dl", at.unit.shortening_m},

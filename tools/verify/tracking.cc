@@ -79,19 +79,10 @@ json leg_results(const json& one_case) {
           {"ankle", list(at.end_m, 2)}};
 }
 
-const char* word(host::figure::ReachStatus status) {
-  switch (status) {
-    case host::figure::ReachStatus::kConverged:
-      return "CONVERGED";
-    case host::figure::ReachStatus::kMaxIterations:
-      return "MAX_ITERATIONS";
-    case host::figure::ReachStatus::kUnreachable:
-      return "UNREACHABLE";
-    case host::figure::ReachStatus::kInvalid:
-      break;
-  }
-  return "INVALID_ARGUMENT";
-}
+constexpr const char* kReachStatus[] = {"CONVERGED", "MAX_ITERATIONS", "UNREACHABLE",
+                                        "INVALID_ARGUMENT"};
+constexpr const char* kPoseStatus[] = {"OK", "TOO_FEW_POINTS", "DEGENERATE", "INVALID_ARGUMENT",
+                                       "NO_POSE"};
 
 void add_spatial_joint(const json& j, host::figure::Chain& chain,
                        std::vector<host::figure::JointState>& start) {
@@ -136,30 +127,18 @@ json ccd_results(const json& one_case) {
                            .tolerance_m = number(p.at("eps")),
                            .sweeps = p.at("max_sweeps").get<int>()});
   // Nothing else is defined then.
-  if (at.status == host::figure::ReachStatus::kInvalid) return {{"status", word(at.status)}};
+  if (at.status == host::figure::ReachStatus::kInvalid)
+    return {{"status", word(kReachStatus, at.status)}};
   json points = json::array(), swing = json::array();
   for (const Vector3d& m : at.points_m) points.push_back(list(m, planar ? 2 : 3));
   for (std::size_t i = 0; i < at.joints.size(); ++i)
     swing.push_back(host::figure::swing_rad(chain.bones[i], at.joints[i]));
-  return {{"status", word(at.status)}, {"points", points},
-          {"error", at.error_m},       {"sweeps", at.sweeps},
-          {"updates", at.updates},     {planar ? "angles" : "swing", swing}};
-}
-
-const char* word(host::pose::PoseStatus status) {
-  switch (status) {
-    case host::pose::PoseStatus::kOk:
-      return "OK";
-    case host::pose::PoseStatus::kTooFewPoints:
-      return "TOO_FEW_POINTS";
-    case host::pose::PoseStatus::kDegenerate:
-      return "DEGENERATE";
-    case host::pose::PoseStatus::kNoPose:
-      return "NO_POSE";
-    case host::pose::PoseStatus::kInvalid:
-      break;
-  }
-  return "INVALID_ARGUMENT";
+  return {{"status", word(kReachStatus, at.status)},
+          {"points", points},
+          {"error", at.error_m},
+          {"sweeps", at.sweeps},
+          {"updates", at.updates},
+          {planar ? "angles" : "swing", swing}};
 }
 
 /// The angle between a rotation and a row-major matrix.
@@ -175,22 +154,21 @@ double angle_to(const Quaterniond& got, const json& rows) {
 /// pose beside a noisy one is a check of the fit, to what the raw pose is allowed.
 void verify_pose(const host::pose::PoseEstimate& got, const json& one_case, Report& report) {
   const json& expect = one_case.at("expect");
-  report.compare("status", word(got.status), expect.at("status"), false, 0.0, 0.0);
+  report.equal("status", word(kPoseStatus, got.status), expect.at("status"));
   if (expect.at("status") != "OK") return;
   const auto tolerance = [&](const char* stage, const char* quantity) {
     return number(one_case.at("tolerance").at(stage).at(quantity));
   };
   const double rot_rad = tolerance("refined", "rot_rad"), t_m = tolerance("refined", "trans_m");
-  report.compare("R", angle_to(got.pose.rotation, expect.at("R")), 0.0, true, rot_rad, 0.0);
-  report.compare("q", list(got.pose.rotation), expect.at("q"), true, rot_rad, 0.0);
-  report.compare("t", list(got.pose.position_m), expect.at("t"), true, t_m, 0.0);
-  report.compare("rms_px", got.rms_px, expect.at("rms_px"), true, tolerance("refined", "rms_px"),
-                 0.0);
+  report.near("R", angle_to(got.pose.rotation, expect.at("R")), 0.0, rot_rad);
+  report.near("q", list(got.pose.rotation), expect.at("q"), rot_rad);
+  report.near("t", list(got.pose.position_m), expect.at("t"), t_m);
+  report.near("rms_px", got.rms_px, expect.at("rms_px"), tolerance("refined", "rms_px"));
   if (!expect.contains("R_true")) return;
-  report.compare("R_true", angle_to(got.pose.rotation, expect.at("R_true")), 0.0, true,
-                 tolerance("unrefined", "rot_rad"), 0.0);
-  report.compare("t_true", list(got.pose.position_m), expect.at("t_true"), true,
-                 tolerance("unrefined", "trans_m"), 0.0);
+  report.near("R_true", angle_to(got.pose.rotation, expect.at("R_true")), 0.0,
+              tolerance("unrefined", "rot_rad"));
+  report.near("t_true", list(got.pose.position_m), expect.at("t_true"),
+              tolerance("unrefined", "trans_m"));
 }
 
 void verify_poses(const json& file, Report& report) {

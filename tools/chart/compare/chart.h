@@ -13,13 +13,30 @@
 #include <string>
 #include <vector>
 
+#include "model/scene/plan_file.h"
 #include "tools/chart/compare/tool_check.h"
 #include "tools/chart/measure/measure.h"
-#include "tools/chart/subject/variants.h"
 #include "tools/program/sweep.h"
 #include "tools/report/table.h"
 
 namespace tact::tools::chart {
+
+struct Variant {
+  model::scene::LawSizes sizes{};
+
+  std::string family() const;  // "rhombus"
+  std::string size() const;    // "65 knots"
+};
+
+struct VariantRequest {
+  std::vector<std::string> laws;  // families; empty: all
+  bool quick = false;             // fewer sizes
+};
+
+/// In the order of the table. Laws that the scene does not describe are left out.
+std::vector<Variant> variants_of(const model::scene::Scene& scene, const VariantRequest& request);
+/// Every family there is, for --laws.
+std::vector<std::string> all_families();
 
 struct ChartRow {
   Variant variant{};

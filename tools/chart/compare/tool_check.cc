@@ -126,22 +126,20 @@ Result<Timing> time_tool(const Scene& scene, const TimingSettings& settings) {
 
 ToolErrors summarize_tool(const std::vector<ToolSample>& samples, const std::vector<bool>& unseen) {
   ToolErrors out;
-  out.place_rms_ratio.resize(unseen.size());
   double peak_N = 0.0;
   std::vector<double> place_peak_N(unseen.size(), 0.0);
   for (const ToolSample& s : samples) {
     peak_N = std::max(peak_N, std::abs(s.reference_N));
     place_peak_N[s.place] = std::max(place_peak_N[s.place], std::abs(s.reference_N));
   }
-  double all = 0.0, others = 0.0;
-  std::size_t other_count = 0, rendered_right = 0;
-  std::vector<std::size_t> place_count(unseen.size(), 0);
+  Rms all, others;
+  std::vector<Rms> of_place(unseen.size());
+  std::size_t rendered_right = 0;
   for (const ToolSample& s : samples) {
     const double e_N = s.force_N - s.reference_N, e = e_N / peak_N;
-    all += e * e;
-    if (unseen[s.place]) others += e * e, ++other_count;
-    out.place_rms_ratio[s.place] += (e_N / place_peak_N[s.place]) * (e_N / place_peak_N[s.place]);
-    ++place_count[s.place];
+    all.add(e);
+    if (unseen[s.place]) others.add(e);
+    of_place[s.place].add(e_N / place_peak_N[s.place]);
     out.worst_ratio = std::max(out.worst_ratio, std::abs(e));
     if (out.own_worst_ratio.size() <= s.depth) out.own_worst_ratio.resize(s.depth + 1, 0.0);
     double& own = out.own_worst_ratio[s.depth];
@@ -149,12 +147,10 @@ ToolErrors summarize_tool(const std::vector<ToolSample>& samples, const std::vec
     out.own_largest_ratio = std::max(out.own_largest_ratio, std::abs(own));
     if (std::abs(s.own_ratio()) <= report::kJustNoticeable_ratio) ++rendered_right;
   }
-  out.rms_ratio = std::sqrt(all / static_cast<double>(samples.size()));
+  out.rms_ratio = all.value();
   out.within_jnd_ratio = static_cast<double>(rendered_right) / static_cast<double>(samples.size());
-  out.unseen_rms_ratio = std::sqrt(others / static_cast<double>(other_count));  // 0 / 0: NaN
-  for (std::size_t i = 0; i < unseen.size(); ++i)
-    out.place_rms_ratio[i] =
-        std::sqrt(out.place_rms_ratio[i] / static_cast<double>(place_count[i]));
+  out.unseen_rms_ratio = others.value();
+  for (const Rms& rms : of_place) out.place_rms_ratio.push_back(rms.value());
   return out;
 }
 

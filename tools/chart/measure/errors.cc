@@ -15,20 +15,6 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSameDepth_m = 1e-6;
 
-/// Root of the mean square of what it is given; NaN of nothing.
-class Rms {
- public:
-  void add(double e) {
-    sum_ += e * e;
-    ++count_;
-  }
-  double value() const { return count_ > 0 ? std::sqrt(sum_ / static_cast<double>(count_)) : kNan; }
-
- private:
-  double sum_ = 0.0;
-  std::size_t count_ = 0;
-};
-
 double shape_error(const Sample& s) {
   Rms rms;
   for (std::size_t j = 0; j < std::min(s.ring_m.size(), s.reference_ring_m.size()); ++j) {
@@ -39,6 +25,10 @@ double shape_error(const Sample& s) {
 }
 
 }  // namespace
+
+double Rms::value() const {
+  return count_ > 0 ? std::sqrt(sum_ / static_cast<double>(count_)) : kNan;
+}
 
 ErrorSummary summarize(std::span<const Sample> samples) {
   ErrorSummary out{.cases = samples.size()};

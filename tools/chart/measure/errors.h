@@ -17,6 +17,17 @@
 
 namespace tact::tools::chart {
 
+/// Root of the mean square of what it is given; NaN of nothing.
+class Rms {
+ public:
+  void add(double e) { sum_ += e * e, ++count_; }
+  double value() const;
+
+ private:
+  double sum_ = 0.0;
+  std::size_t count_ = 0;
+};
+
 /// Light touch counts as much as a deep press.
 inline constexpr std::array kOwnDepths_m{0.001, 0.002, 0.005, 0.010};
 

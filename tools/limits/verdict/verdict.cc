@@ -53,17 +53,11 @@ std::optional<double> time_to_zero_s(const std::vector<TickRow>& rows,
   return zero_s;
 }
 
-class Checks {
- public:
-  void add(std::vector<Check> more) {
-    for (Check& check : more) list_.push_back(std::move(check));
-  }
-  void add(bool holds, const char* good, const char* broken) { add(holds, holds ? good : broken); }
-  void add(bool holds, std::string message) { list_.push_back({std::move(message), holds}); }
-  std::vector<Check> list() { return std::move(list_); }
+struct Checks {
+  std::vector<Check> list;
 
- private:
-  std::vector<Check> list_;
+  void add(bool holds, const char* good, const char* broken) { add(holds, holds ? good : broken); }
+  void add(bool holds, std::string message) { list.push_back({std::move(message), holds}); }
 };
 
 void check_silence(Checks& checks, const std::vector<TickRow>& rows) {
@@ -123,52 +117,44 @@ void check_expected(Checks& checks, const CaseVerdict& v) {
 
 }  // namespace
 
-double torque_step_Nm(const model::Limits& limits, double period_s) {
-  return limits.force_N > 0.0 ? limits.slew_N_per_s * period_s * limits.torque_Nm / limits.force_N
-                              : 0.0;
-}
-
-double continuous_torque_Nm(const model::Limits& limits) {
-  return limits.force_N > 0.0
-             ? limits.torque_Nm * std::min(limits.continuous_force_N / limits.force_N, 1.0)
-             : limits.torque_Nm;
+std::array<BoundCheck, kBoundCount> bounds_of(const Extremes& worst, const model::Limits& limits,
+                                              double period_s) {
+  const model::Limits& l = limits;
+  const double step_N = l.slew_N_per_s * period_s;
+  // The slew of the force in proportion; continuous to peak as the force, and never above the peak.
+  const double step_Nm = l.force_N > 0.0 ? step_N * l.torque_Nm / l.force_N : 0.0;
+  const double continuous_Nm =
+      l.force_N > 0.0 ? l.torque_Nm * std::min(l.continuous_force_N / l.force_N, 1.0) : l.torque_Nm;
+  const auto rounded = [](const char* what, const char* unit, double largest, double limit) {
+    return BoundCheck{what, unit, largest, limit, largest <= limit * kRounding_ratio};
+  };
+  return {{{"largest force", "N", worst.force_N, l.force_N, worst.force_N <= l.force_N},
+           {"largest torque", "N m", worst.torque_Nm, l.torque_Nm, worst.torque_Nm <= l.torque_Nm},
+           rounded("largest change in a tick", "N", worst.step_N, step_N),
+           rounded("largest change of torque in a tick", "N m", worst.step_Nm, step_Nm),
+           rounded("largest power", "W", worst.power_W, l.power_W),
+           {"energy given", "J", worst.given_J, l.energy_J, worst.overdrawn_J <= 0.0},
+           {"largest RMS", "N", worst.rms_N, std::min(l.continuous_force_N, l.force_N),
+            worst.rms_N <= l.continuous_force_N * kRounding_ratio},
+           rounded("largest RMS of the torque", "N m", worst.rms_Nm, continuous_Nm),
+           rounded("largest force on the fingers", "N", worst.grip_N, l.grip_force_N)}};
 }
 
 std::vector<Check> check_bounds(const Extremes& worst, const model::Limits& limits,
                                 double period_s) {
-  Checks checks;
-  const double step_N = limits.slew_N_per_s * period_s;
-  checks.add(worst.force_N <= limits.force_N,
-             fmt::format("largest force {:.4g} N, limit {:.4g} N", worst.force_N, limits.force_N));
-  checks.add(worst.torque_Nm <= limits.torque_Nm,
-             fmt::format("largest torque {:.4g} N m, limit {:.4g} N m", worst.torque_Nm,
-                         limits.torque_Nm));
-  checks.add(
-      worst.step_N <= step_N * kRounding_ratio,
-      fmt::format("largest change in a tick {:.4g} N, limit {:.4g} N", worst.step_N, step_N));
-  const double step_Nm = torque_step_Nm(limits, period_s);
-  checks.add(worst.step_Nm <= step_Nm * kRounding_ratio,
-             fmt::format("largest change of torque in a tick {:.4g} N m, limit {:.4g} N m",
-                         worst.step_Nm, step_Nm));
-  checks.add(worst.power_W <= limits.power_W * kRounding_ratio,
-             fmt::format("largest power {:.4g} W, limit {:.4g} W", worst.power_W, limits.power_W));
-  checks.add(worst.overdrawn_J <= 0.0,
-             fmt::format("energy given {:.4g} J, budget {:.4g} J and {:.4g} W", worst.given_J,
-                         limits.energy_J, limits.recovery_W));
-  checks.add(worst.rms_N <= limits.continuous_force_N * kRounding_ratio,
-             fmt::format("largest RMS {:.4g} N, limit {:.4g} N", worst.rms_N,
-                         std::min(limits.continuous_force_N, limits.force_N)));
-  const double continuous_Nm = continuous_torque_Nm(limits);
-  checks.add(worst.rms_Nm <= continuous_Nm * kRounding_ratio,
-             fmt::format("largest RMS of the torque {:.4g} N m, limit {:.4g} N m", worst.rms_Nm,
-                         continuous_Nm));
-  checks.add(worst.grip_N <= limits.grip_force_N * kRounding_ratio,
-             fmt::format("largest force on the fingers {:.4g} N, limit {:.4g} N", worst.grip_N,
-                         limits.grip_force_N));
-  return checks.list();
+  std::vector<Check> checks;
+  for (const BoundCheck& b : bounds_of(worst, limits, period_s))
+    checks.push_back(
+        {fmt::format("{} {:.4g} {}, limit {:.4g} {}", b.what, b.largest, b.unit, b.limit, b.unit),
+         b.holds});
+  // What comes back with time is part of the budget.
+  checks[static_cast<std::size_t>(Bound::kEnergy)].message =
+      fmt::format("energy given {:.4g} J, budget {:.4g} J and {:.4g} W", worst.given_J,
+                  limits.energy_J, limits.recovery_W);
+  return checks;
 }
 
-bool CaseVerdict::passed() const {
+bool all_hold(const std::vector<Check>& checks) {
   return std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.holds; });
 }
 
@@ -215,13 +201,14 @@ CaseVerdict check_rows(const Case& c, const std::vector<TickRow>& rows, const mo
   Checks checks;
   checks.add(!rows.empty() && rows.back().t_s >= 0.0, "it armed, and the case began",
              "it did not arm, or the case did not begin");
-  checks.add(check_bounds(v.worst, limits, period_s));
+  for (Check& bound : check_bounds(v.worst, limits, period_s))
+    checks.list.push_back(std::move(bound));
   const std::string& broken = v.worst.broken;
   checks.add(broken.empty(), broken.empty() ? "every tick kept every limit in full"
                                             : "a limit was broken: " + broken);
   check_silence(checks, rows);
   check_expected(checks, v);
-  v.checks = checks.list();
+  v.checks = std::move(checks.list);
   return v;
 }
 

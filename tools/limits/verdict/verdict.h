@@ -4,6 +4,7 @@
 // last; it is zero exactly while not armed, and from a latched fault on.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@ struct Check {
   std::string message;  // with the numbers
   bool holds = false;
 };
+bool all_hold(const std::vector<Check>& checks);
 
 /// The worst of a record, for the report and for the checks.
 struct Extremes : model::LimitExtremes {
@@ -37,18 +39,24 @@ struct CaseVerdict {
   Fault fault = Fault::kNone;
   std::vector<Check> checks;
 
-  bool passed() const;
+  bool passed() const { return all_hold(checks); }
   /// "slew, magnitude"
   std::string acted_text() const;
 };
 
 Extremes extremes_of(const std::vector<TickRow>& rows, const model::Limits& limits,
                      double period_s);
-/// Largest change in a tick: the slew of the force, in proportion.
-double torque_step_Nm(const model::Limits& limits, double period_s);
-/// Largest RMS of the torque: continuous to peak as the force, and never more than its peak.
-double continuous_torque_Nm(const model::Limits& limits);
-/// The bounds above, each with its largest value.
+/// A limit and the largest value that came near it.
+struct BoundCheck {
+  const char* what;
+  const char* unit;
+  double largest = 0.0, limit = 0.0;
+  bool holds = false;
+};
+/// In the order of Bound.
+std::array<BoundCheck, kBoundCount> bounds_of(const Extremes& worst, const model::Limits& limits,
+                                              double period_s);
+/// The bounds above as messages.
 std::vector<Check> check_bounds(const Extremes& worst, const model::Limits& limits,
                                 double period_s);
 CaseVerdict check_rows(const Case& c, const std::vector<TickRow>& rows, const model::Limits& limits,

@@ -53,39 +53,31 @@ std::optional<WallRun> run_wall(double stiffness_N_per_m, const LimitsBench& ben
   // Judged by the limits that this run's gate had.
   if (!passive) limits = without_passivity(limits);
   const Extremes worst = extremes_of(run.rows(), limits, run.period_s());
-  const std::vector<Check> checks = check_bounds(worst, limits, run.period_s());
   WallRun out{.early_swing_m = swing_m(run.rows(), kEarly),
               .last_swing_m = swing_m(run.rows(), kLast),
               .given_J = worst.given_J,
               .force_N = worst.force_N};
   out.grows = out.last_swing_m > kStill_m && out.last_swing_m > kGrows * out.early_swing_m;
-  out.in_bounds = std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.holds; });
+  out.in_bounds = all_hold(check_bounds(worst, limits, run.period_s()));
   return out;
 }
 
-/// The last stiffness before the first that grows.
-double largest(const std::vector<WallPoint>& points, WallRun WallPoint::* which) {
-  double most = 0.0;
-  for (const WallPoint& point : points) {
-    if ((point.*which).grows) break;
-    most = point.stiffness_N_per_m;
-  }
-  return most;
-}
+bool grows(const WallRun& run) { return run.grows; }
+bool moves(const WallRun& run) { return run.last_swing_m > kStill_m; }
 
-/// The last stiffness before the first that does not come to rest.
-double largest_at_rest(const std::vector<WallPoint>& points, WallRun WallPoint::* which) {
+/// The last stiffness before the first that `ends` it.
+double last_before(const std::vector<WallPoint>& points, WallRun WallPoint::* which,
+                   bool (*ends)(const WallRun&)) {
   double most = 0.0;
   for (const WallPoint& point : points) {
-    if ((point.*which).last_swing_m > kStill_m) break;
+    if (ends(point.*which)) break;
     most = point.stiffness_N_per_m;
   }
   return most;
 }
 
 bool any_grows(const std::vector<WallPoint>& points, WallRun WallPoint::* which) {
-  return std::any_of(points.begin(), points.end(),
-                     [&](const WallPoint& p) { return (p.*which).grows; });
+  return std::ranges::any_of(points, grows, which);
 }
 
 double worst_swing_m(const std::vector<WallPoint>& points, WallRun WallPoint::* which) {
@@ -95,22 +87,22 @@ double worst_swing_m(const std::vector<WallPoint>& points, WallRun WallPoint::* 
 }
 
 void check(WallVerdict& v) {
-  v.bounded_without_N_per_m = largest(v.points, &WallPoint::without);
-  v.bounded_with_N_per_m = largest(v.points, &WallPoint::with);
-  v.rest_without_N_per_m = largest_at_rest(v.points, &WallPoint::without);
-  v.rest_with_N_per_m = largest_at_rest(v.points, &WallPoint::with);
+  v.bounded_without_N_per_m = last_before(v.points, &WallPoint::without, grows);
+  v.bounded_with_N_per_m = last_before(v.points, &WallPoint::with, grows);
+  v.rest_without_N_per_m = last_before(v.points, &WallPoint::without, moves);
+  v.rest_with_N_per_m = last_before(v.points, &WallPoint::with, moves);
   v.swing_without_m = worst_swing_m(v.points, &WallPoint::without);
   v.swing_with_m = worst_swing_m(v.points, &WallPoint::with);
   v.with_is_least = !any_grows(v.points, &WallPoint::with);
   const bool bounded = std::all_of(v.points.begin(), v.points.end(), [](const WallPoint& p) {
     return p.without.in_bounds && p.with.in_bounds;
   });
-  const bool grows = any_grows(v.points, &WallPoint::without);
+  const bool has_grown = any_grows(v.points, &WallPoint::without);
   v.checks = {
-      {grows ? fmt::format("without the passivity stage the motion is bounded up to {:.0f} N/m",
-                           v.bounded_without_N_per_m)
-             : std::string("no motion grew: the test had nothing to show"),
-       grows && v.bounded_without_N_per_m > 0.0},
+      {has_grown ? fmt::format("without the passivity stage the motion is bounded up to {:.0f} N/m",
+                               v.bounded_without_N_per_m)
+                 : std::string("no motion grew: the test had nothing to show"),
+       has_grown && v.bounded_without_N_per_m > 0.0},
       {fmt::format("with it the motion is bounded up to {:.0f} N/m{}: {}{:.1f} times as stiff",
                    v.bounded_with_N_per_m, v.with_is_least ? ", the stiffest tried" : "",
                    v.with_is_least ? "at least " : "", v.bounded_ratio()),
@@ -130,11 +122,6 @@ void check(WallVerdict& v) {
 }
 
 }  // namespace
-
-bool WallVerdict::passed() const {
-  return !checks.empty() &&
-         std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.holds; });
-}
 
 std::optional<WallVerdict> measure_wall(const LimitsBench& bench, const hal::DeviceInfo& device) {
   WallVerdict v;

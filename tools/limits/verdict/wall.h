@@ -43,7 +43,7 @@ struct WallVerdict {
   double bounded_ratio() const { return ratio(bounded_with_N_per_m, bounded_without_N_per_m); }
   double rest_ratio() const { return ratio(rest_with_N_per_m, rest_without_N_per_m); }
   static double ratio(double with, double without) { return without > 0.0 ? with / without : 0.0; }
-  bool passed() const;
+  bool passed() const { return !checks.empty() && all_hold(checks); }
 };
 
 /// Without a value after Ctrl-C.

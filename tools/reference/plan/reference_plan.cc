@@ -36,16 +36,6 @@ struct SiteCases {
   Series press, pull, large_press, large_pull;
 };
 
-/// What is left of the error at the finer level. Edges shrink by k = 0.7 from level to level and
-/// the error with them (the rim of a contact is singular), so the rest of the series is k / (1 - k)
-/// of the last change. At the rim of a bond at large strain the error shrinks slower, k = 0.8.
-double remaining_error(const ground_truth::ReferenceCase& fine,
-                       const ground_truth::ReferenceCase& coarse) {
-  const double shrink =
-      fine.large_strain && !fine.is_press() ? kShrinkOfLargePull : kErrorShrink_ratio;
-  return shrink / (1.0 - shrink) * std::abs(fine.force_N - coarse.force_N) / std::abs(fine.force_N);
-}
-
 std::vector<double> large_strain_depths_m(const ReferencePlan& plan, bool pull) {
   if (!pull) return plan.depths_m;
   const double most_m = kLargePull * plan.tool_radius_m;
@@ -76,7 +66,10 @@ void add_with_errors(const Series& series, std::vector<ground_truth::ReferenceCa
       // The nearer end; at large strain one of them may have no solution.
       if (away_m >= nearest_m || fine == series.fine.end()) continue;
       nearest_m = away_m;
-      out.back().force_error_ratio = remaining_error(**fine, *coarse);
+      // At the rim of a bond at large strain the error shrinks slower.
+      const bool slow = coarse->large_strain && !coarse->is_press();
+      out.back().force_error_ratio = remaining_error(
+          (*fine)->force_N, coarse->force_N, slow ? kShrinkOfLargePull : kErrorShrink_ratio);
     }
   }
 }
@@ -115,6 +108,10 @@ model::Result<ReferencePlan> plan_of(const model::scene::Scene& scene) {
     plan.sites.push_back(static_cast<std::uint32_t>(site.vertex));
   plan.depths_m.assign(std::begin(kDefaultDepths_m), std::end(kDefaultDepths_m));
   return plan;
+}
+
+double remaining_error(double fine_N, double coarse_N, double shrink) {
+  return shrink / (1.0 - shrink) * std::abs(fine_N - coarse_N) / std::abs(fine_N);
 }
 
 model::Result<std::string> solver_versions() {

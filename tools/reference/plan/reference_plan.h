@@ -27,6 +27,11 @@ inline constexpr double kLargePull = 1.3;
 /// Of edges, and of the error, from a level to the next finer one.
 inline constexpr double kErrorShrink_ratio = 0.7;
 
+/// What is left of the error at the finer level, of the force. Edges shrink by k from one level to
+/// the next and the error with them (the rim of a contact is singular), so the rest of the series
+/// is k / (1 - k) of the last change.
+double remaining_error(double fine_N, double coarse_N, double shrink = kErrorShrink_ratio);
+
 struct ReferencePlan {
   Organ organ;
   std::string mesh_name;

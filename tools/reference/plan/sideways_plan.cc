@@ -60,8 +60,7 @@ SidewaysReference assemble_sideways(
                          .held = asked[i].held,
                          .contact_radius_m = asked[i].contact_radius_m,
                          .stiffness_N_per_m = fine_N / kDragged_m,
-                         .error_ratio = kErrorShrink_ratio / (1.0 - kErrorShrink_ratio) *
-                                        std::abs(fine_N - coarse_N) / fine_N});
+                         .error_ratio = remaining_error(fine_N, coarse_N)});
   }
   return out;
 }

@@ -267,10 +267,7 @@ ground_truth::ToolReference assemble(const ToolPlan& plan,
     out.places[i].cases = solved[i];
     for (std::size_t k = 0; k < solved[i].size(); ++k) {
       ToolCase& c = out.places[i].cases[k];
-      const double change_N = c.force_N - solved[n + i][k].force_N;
-      // The rest of the series, as reference_plan.cc has it.
-      c.force_error_ratio =
-          kErrorShrink_ratio / (1.0 - kErrorShrink_ratio) * std::abs(change_N) / c.force_N;
+      c.force_error_ratio = remaining_error(c.force_N, solved[n + i][k].force_N);
     }
   }
   return out;

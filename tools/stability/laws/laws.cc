@@ -12,7 +12,6 @@
 #include "model/indent/rhombus_chain.h"
 #include "model/law/tabulated_law.h"
 #include "tools/printed/hex_paper.h"
-#include "tools/stability/laws/memory_laws.h"
 
 namespace tact::tools::stability {
 namespace {
@@ -144,19 +143,16 @@ std::vector<NamedLaw> make_laws() {
   add(laws, "hex sheet no tension", model::indent::make_hex_sheet(bare),
       "the dent is a spike and the force stays");
   // X15: as printed, the force of both weights grows with the number of rings.
-  add(laws, "hex printed ring",
-      printed::make_hex_paper({.ring_pitch_m = 2e-3,
-                               .body_stiffness_N_per_m = 50.0,
-                               .rings = 25,
-                               .weight = model::indent::HexWeight::kRing,
-                               .working_depth_m = 8e-3}),
+  const auto paper = [](model::indent::HexWeight weight) {
+    return printed::make_hex_paper({.ring_pitch_m = 2e-3,
+                                    .body_stiffness_N_per_m = 50.0,
+                                    .rings = 25,
+                                    .weight = weight,
+                                    .working_depth_m = 8e-3});
+  };
+  add(laws, "hex printed ring", paper(model::indent::HexWeight::kRing),
       "the force stays; it would grow with the number of rings");
-  add(laws, "hex printed node",
-      printed::make_hex_paper({.ring_pitch_m = 2e-3,
-                               .body_stiffness_N_per_m = 50.0,
-                               .rings = 25,
-                               .weight = model::indent::HexWeight::kNode,
-                               .working_depth_m = 8e-3}),
+  add(laws, "hex printed node", paper(model::indent::HexWeight::kNode),
       "20 N/mm: the gate limits the force from 0.4 mm on");
   add(laws, "compliance", compliance(), "the force stays at the working depth's");
   add_memory(laws);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "model/law/law.h"
-#include "tools/stability/laws/felt_tissue.h"
+#include "tools/stability/laws/memory_laws.h"
 
 namespace tact::tools::stability {
 

@@ -104,18 +104,6 @@ Verdict verdict_of(const Window& first, const Window& last, bool counts) {
 
 }  // namespace
 
-const char* name_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kRest:
-      return "rest";
-    case Verdict::kBuzz:
-      return "buzz";
-    case Verdict::kGrow:
-      return "grow";
-  }
-  return "?";
-}
-
 double between_counts_m(double depth_m, double position_step_m) {
   if (!(position_step_m > 0.0)) return depth_m;
   // Counts are rounded, so they change half-way between two.
@@ -169,11 +157,6 @@ LoopRun run_loop(const LoopCase& loop, const TissueForce& tissue, const Check& c
   return run;
 }
 
-double largest_factor(const LoopCase& loop, const TissueForce& tissue, Verdict worse, double low,
-                      double high) {
-  return largest_factor(loop, TissueMaker([&tissue] { return tissue; }), worse, low, high);
-}
-
 double largest_factor(const LoopCase& loop, const TissueMaker& fresh, Verdict worse, double low,
                       double high) {
   const auto holds = [&](double factor) {
@@ -195,7 +178,7 @@ double largest_wall_N_per_m(const LoopCase& loop, Verdict worse) {
   LoopCase at = loop;
   at.balance_m = between_counts_m(loop.balance_m, loop.device.position_step_m);
   const TissueForce wall = [](double depth_m) { return depth_m; };  // 1 N/m
-  return largest_factor(at, wall, worse, 1.0, 1e7);
+  return largest_factor(at, [&wall] { return wall; }, worse, 1.0, 1e7);
 }
 
 }  // namespace tact::tools::stability

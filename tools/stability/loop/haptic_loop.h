@@ -50,7 +50,6 @@ using TissueMaker = std::function<TissueForce()>;
 using Check = std::function<double(double wanted_N, bool fresh)>;
 
 enum class Verdict { kRest, kBuzz, kGrow };
-const char* name_of(Verdict verdict);
 
 struct LoopRun {
   Verdict verdict = Verdict::kRest;
@@ -67,10 +66,6 @@ LoopRun run_loop(const LoopCase& loop, const TissueForce& tissue, const Check& c
 
 /// Largest factor on the tissue's force, within [low, high], with a verdict better than `worse`:
 /// bisection in the logarithm down to one percent; 0 if even `low` is too stiff.
-double largest_factor(const LoopCase& loop, const TissueForce& tissue, Verdict worse, double low,
-                      double high);
-
-/// The same for a tissue with memory.
 double largest_factor(const LoopCase& loop, const TissueMaker& fresh, Verdict worse, double low,
                       double high);
 

@@ -29,21 +29,8 @@ double depth_share(std::size_t i, Grid grid) {
   return -1.5 + 4.0 * static_cast<double>(i) / static_cast<double>(depths(grid) - 1);
 }
 
-const char* word(model::law::LawStatus status) {
-  switch (status) {
-    case model::law::LawStatus::kOk:
-      return "ok";
-    case model::law::LawStatus::kNoContact:
-      return "no contact";
-    case model::law::LawStatus::kSaturated:
-      return "saturated";
-    case model::law::LawStatus::kSingular:
-      return "singular";
-    case model::law::LawStatus::kInvalid:
-      return "invalid";
-  }
-  return "?";
-}
+/// By model::law::LawStatus.
+constexpr const char* kStatus[] = {"ok", "no contact", "saturated", "singular", "invalid"};
 
 report::Row run(std::size_t job, Grid grid) {
   const auto [which, depth] = Axes<2>{{probed_laws().size(), depths(grid)}}.at(job);
@@ -68,7 +55,7 @@ report::Row run(std::size_t job, Grid grid) {
           {"force_N", at.force_N},
           {"force_ratio", at.force_N / edge_N},
           {"tangent_over_mean_ratio", at.stiffness_N_per_m * range_m / edge_N},
-          {"status", word(at.status)},
+          {"status", kStatus[static_cast<std::size_t>(at.status)]},
           {"gate_force_N", gate.written_N()},
           {"gate_max_force_N", gate.max_force_N()},
           {"gate_max_step_N", gate.max_step_N()},

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/chart/subject/subject.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "model/contact/contact_point.h"
+#include "tools/chart/measure/measure.h"
 #include "tools/ground_truth/ring_means.h"
 
 namespace tact::tools::chart {
