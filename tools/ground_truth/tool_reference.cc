@@ -108,19 +108,6 @@ std::string name_of(const ToolPoint& place) {
   return fmt::format("slid {:.3g} mm", norm(place.slid_m) * 1e3);
 }
 
-Quat turn_between(const Vec3& from, const Vec3& to) {
-  const double along = dot(from, to);
-  if (along < -1.0 + 1e-9) {  // half a turn, about any axis across
-    const Vec3 aside = std::abs(from.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-    const Vec3 axis = normalized(cross(from, aside));
-    return {0.0, axis.x, axis.y, axis.z};
-  }
-  // q = (1 + a . b, a x b), normalised: half of the angle between
-  const Vec3 axis = cross(from, to);
-  const double size = std::sqrt(2.0 * (1.0 + along));
-  return {0.5 * size, axis.x / size, axis.y / size, axis.z / size};
-}
-
 Result<ToolReference> read_tool_reference(const std::string& path) {
   return read_json(path, kToolSchema, "tact-lab reference SCENE --tool --out FILE", tool_data_of,
                    check_tool);

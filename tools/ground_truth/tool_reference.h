@@ -50,9 +50,6 @@ struct ToolReference {
 /// "hand's", "slid 10 mm", "1586"
 std::string name_of(const ToolPoint& place);
 
-/// The shortest turn that brings one unit vector to another.
-model::Quat turn_between(const model::Vec3& from, const model::Vec3& to);
-
 /// An error names the file and the key.
 model::Result<ToolReference> read_tool_reference(const std::string& path);
 /// JSON, one case a line, numbers to six digits.

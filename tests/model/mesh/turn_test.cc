@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "tests/support/shapes.h"
 
 namespace tact::model::mesh::turn_test {
@@ -23,8 +26,11 @@ TEST(Turn, ComesBackAsTheSameDegreesTheShorterWayRound) {
 
 TEST(Turn, BringsOneDirectionToAnother) {
   const Vec3 from = normalized(Vec3{1, 2, 3});
-  for (const Vec3 to : {normalized(Vec3{-3, 1, 0.2}), from, -from, Vec3{0, 0, 1}})
-    expect_near(rotate(turn_between(from, to), from), to, 1e-12);
+  for (const Vec3 to : {normalized(Vec3{-3, 1, 0.2}), from, -from, Vec3{0, 0, 1}}) {
+    const Quat turn = turn_between(from, to);
+    expect_near(rotate(turn, from), to, 1e-12);
+    EXPECT_NEAR(2.0 * std::acos(std::min(1.0, turn.w)), std::acos(dot(from, to)), 1e-7);
+  }
   expect_near(rotate(turn_between({0, 0, 1}, {0, 0, -1}), {0, 0, 1}), {0, 0, -1}, 1e-12);
 }
 

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "model/mesh/turn.h"
 #include "tests/support/test_scene.h"
 #include "tests/tools/ground_truth/damaged_file.h"
 #include "tools/ground_truth/reference_fits.h"
@@ -42,7 +43,7 @@ ToolReference example() {
                      {.vertex = 7,
                       .point_m = {0.01, -0.02, 0.03},
                       .direction = {0.6, 0.0, -0.8},
-                      .orientation = turn_between({0, 0, -1}, {0.6, 0.0, -0.8}),
+                      .orientation = model::mesh::turn_between({0, 0, -1}, {0.6, 0.0, -0.8}),
                       .cases = cases}}};
 }
 
@@ -71,15 +72,6 @@ TEST(ToolReference, NamesTheFileAndTheKeyOfADamage) {
   expect_error(text, "\"depth_m\": 0.002", "\"depth_m\": 0.001", "depths");
   expect_error(text, "[0.6, 0, -0.8]", "[0.6, 0, -0.9]", "unit vector");
   expect_error(text, "[0.01, 0.02]", "[0.03]", "sphere_N");
-}
-
-TEST(ToolReference, TurnsByTheShortestWay) {
-  const Vec3 from{0, 0, -1};
-  for (const Vec3& to : {Vec3{0, 0, -1}, Vec3{0.6, 0, -0.8}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {
-    const model::Quat q = turn_between(from, to);
-    EXPECT_NEAR(norm(rotate(q, from) - to), 0.0, 1e-12);
-    EXPECT_NEAR(2.0 * std::acos(std::min(1.0, q.w)), std::acos(dot(from, to)), 1e-7);
-  }
 }
 
 class ToolReferenceFits : public testing::Test {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "model/mesh/turn.h"
 #include "model/scene/scene_strokes.h"
 #include "tools/ground_truth/ring_means.h"
 #include "tools/reference/organ/surface_rays.h"
@@ -65,7 +66,7 @@ class PlaceFinder {
     return {.vertex = vertex,
             .point_m = surface_.vertex_m[vertex],
             .direction = direction,
-            .orientation = ground_truth::turn_between(rest_inward_, direction),
+            .orientation = model::mesh::turn_between(rest_inward_, direction),
             .cases = {}};
   }
 
