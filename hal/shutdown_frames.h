@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// shutdown_frames.h - what takes the force away when the program that drives a device has died.
+// shutdown_frames.h - frames that zero the force after the process that drives a device died.
 //
-// A device gives them when it is opened: the messages of its own stop(), zero force first and then
-// power off, as finished bytes, and the open descriptor that carries them. So a process that knows
-// no device can say them (firmware/guardian), and nothing is computed after the death. The drives'
-// own watch over their host stays on. A message is 16 bytes, as a CAN frame of the kernel and a
+// A device provides them when it is opened: the messages of its own stop(), zero force first and
+// then power off, as complete bytes, and the open descriptor to send them on. So a process that
+// knows no device (firmware/guardian) can send them and computes nothing. The drives' own watchdog
+// on their host stays active. A message is 16 bytes, as a CAN frame of the kernel and a
 // packet of a Falcon are, or the 72 of a CAN FD frame.
 //
 //     kDatagrams   one message each, all of a step by one sendmmsg

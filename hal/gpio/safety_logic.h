@@ -9,12 +9,12 @@
 //   grip switch flaps (grip_switch.h)      -> kGripFlaps, until it has been quiet for a second
 //   clutch      counts after 10 ms, as the grip switch; one that flaps counts as pressed: no force,
 //               and no fault, until it has been quiet for a second
-//   heartbeat   toggles after every healthy tick; the relay beside it drops some 10 ms without
-//   enable      100 ms after the heartbeat has begun; gone in the tick of a fault, or when the
+//   heartbeat   toggles after every healthy tick; the external relay opens 10 ms after the last edge
+//   enable      set 100 ms after the heartbeat has begun; cleared in the tick of a fault, or when the
 //               heartbeat has paused for more than 10 ms: lines need well over 100 ticks a second
 //
-// The supervisor keeps a fault until the operator resets; here it stands while its cause does. Two
-// channels that watch each other: ISO 13850, ISO 13849-1 category 3 (GP-1).
+// The supervisor latches a fault until the operator resets it; here it lasts as long as its cause.
+// Two channels that monitor each other: ISO 13850, ISO 13849-1 category 3 (GP-1).
 #pragma once
 
 #include <atomic>

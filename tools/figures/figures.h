@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/report/picture.h"
+#include "tools/report/plot.h"
 #include "tools/report/table.h"
 
 namespace tact::tools::figures {
@@ -24,7 +24,7 @@ struct Printed {
 struct Figure {
   std::string of;  // "[2] fig. 3"
   std::string shows;
-  report::Picture picture;
+  report::Plot plot;
   report::Table curves;               // what the picture plots, of its name
   std::vector<Printed> numbers = {};  // none: its document prints none
 };

@@ -29,7 +29,7 @@ using tact::model::Error;
 struct Options {
   JitterOptions run;
   std::string out, json_path, peer, submit;
-  bool no_pictures = false;
+  bool no_plots = false;
   std::string before, after;
   double gate_percent = 0.0;
 };
@@ -79,7 +79,7 @@ void add_run_options(CLI::App& app, Options& o) {
   app.add_option("--out", o.out,
                  "folder for jitter.json, report.html, histogram.svg and .csv, and "
                  "ticks.trace.json for ui.perfetto.dev; made if need be");
-  app.add_flag("--no-pictures", o.no_pictures, "no histogram; needs no gnuplot");
+  app.add_flag("--no-pictures", o.no_plots, "no histogram; needs no gnuplot");
   app.add_option("--json", o.json_path, "write the result to this file too, - for stdout alone");
   app.add_option("--submit", o.submit,
                  "write a row of the table of PCs to this file, to send it; a row that stands "
@@ -112,11 +112,11 @@ std::optional<Error> write_folder(const JitterResult& result, const Options& o,
                                   const std::string& command) {
   if (auto error = write_json(to_json(result, command), o.out + "/jitter.json")) return error;
   std::string svg;
-  if (!o.no_pictures && !result.interrupted) {  // after Ctrl-C no program is started any more
+  if (!o.no_plots && !result.interrupted) {  // after Ctrl-C no program is started any more
     if (auto drawn = draw_histogram(result, o.out); !drawn) return drawn.error();
-    auto picture = tact::model::io::read_file(o.out + "/histogram.svg");
-    if (!picture) return picture.error();
-    svg = std::move(*picture);
+    auto plot = tact::model::io::read_file(o.out + "/histogram.svg");
+    if (!plot) return plot.error();
+    svg = std::move(*plot);
   }
   const std::pair<const char*, std::string> files[] = {
       {"report.html", make_page(result, command, svg)},

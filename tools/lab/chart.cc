@@ -28,7 +28,7 @@ struct Options {
   program::SceneArguments scene;
   std::string out, reference, tool_reference, accuracy, peers;
   ChartOptions chart;
-  bool quick = false, no_pictures = false, json = false;
+  bool quick = false, no_plots = false, json = false;
 };
 
 void add_options(CLI::App& app, Options& o) {
@@ -53,7 +53,7 @@ void add_options(CLI::App& app, Options& o) {
          "show these rows of a chart.json, measured before, beside the laws; the liver's, in "
          "the sources: tools/results/peers.json")
       ->needs("--reference");
-  app.add_flag("--no-pictures", o.no_pictures, "tables alone; needs no gnuplot");
+  app.add_flag("--no-pictures", o.no_plots, "tables alone; needs no gnuplot");
   app.add_flag("--json", o.json, "print the table as JSON");
 }
 
@@ -147,13 +147,12 @@ Result<int> make_chart(const program::Program& program, const Options& o, const 
   if (!table) return table.error();
   auto files = write_chart(*table, program.command(), provenance, o.out);
   if (!files) return files.error();
-  if (!o.no_pictures) {
+  if (!o.no_plots) {
     const std::string title =
         fmt::format("{}: speed against accuracy, {}", scene.name, provenance.machine);
-    const auto pictures = draw_chart(*table, title, o.out);
-    if (!pictures)
-      return program.fail(pictures.error(), "the tables are written, the pictures are not");
-    files->insert(files->end(), pictures->begin(), pictures->end());
+    const auto plots = draw_chart(*table, title, o.out);
+    if (!plots) return program.fail(plots.error(), "the tables are written, the pictures are not");
+    files->insert(files->end(), plots->begin(), plots->end());
   }
   if (o.json) {
     fmt::print("{}", chart_json(*table, program.command(), provenance));

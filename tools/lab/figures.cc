@@ -13,12 +13,12 @@ namespace {
 
 struct Options {
   std::string out;
-  bool no_pictures = false;
+  bool no_plots = false;
 };
 
 void add_options(CLI::App& app, Options& o) {
   app.add_option("--out", o.out, "folder for tables and pictures; made if need be")->required();
-  app.add_flag("--no-pictures", o.no_pictures, "tables only, without gnuplot");
+  app.add_flag("--no-pictures", o.no_plots, "tables only, without gnuplot");
 }
 
 model::Result<int> run(const program::Program& program, Options& o) {
@@ -30,12 +30,12 @@ model::Result<int> run(const program::Program& program, Options& o) {
     const std::string kept = "the figures before " + figure.of + " are written";
     if (const auto files = figure.curves.write(o.out); !files)
       return program.fail(files.error(), kept);
-    if (o.no_pictures) continue;
-    if (const auto files = report::draw(figure.picture, o.out); !files)
+    if (o.no_plots) continue;
+    if (const auto files = report::draw(figure.plot, o.out); !files)
       return program.fail(files.error(), kept);
   }
   for (const figures::Figure& figure : all)
-    fmt::print("{:16} {:18} {}{}\n", figure.picture.name, figure.of, figure.shows,
+    fmt::print("{:16} {:18} {}{}\n", figure.plot.name, figure.of, figure.shows,
                figure.numbers.empty() ? "; no printed number: tact's alone" : "");
   fmt::print("\n{:18} {:28} {:>10} {:>10} {:>9}\n", "figure", "quantity", "printed", "tact",
              "differs");

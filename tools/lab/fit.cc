@@ -25,7 +25,7 @@ using model::scene::Scene;
 
 struct Options {
   program::SceneArguments scene;
-  std::string data, relaxation, reference, out, picture;
+  std::string data, relaxation, reference, out, plot;
   std::vector<std::string> held_out, keep, laws{"all"};
   BenchColumns columns;
   FitOptions fit;
@@ -70,7 +70,7 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--terms", o.terms, "of --relaxation (default: the fewest with RMS below 2 %)")
       ->check(model::io::within(1, 3));
   app.add_option("--out", o.out, "TOML to write: sections to paste into the scene");
-  app.add_option("--picture", o.picture, "SVG to draw (and PNG), with gnuplot");
+  app.add_option("--picture", o.plot, "SVG to draw (and PNG), with gnuplot");
   app.add_flag("--json", o.json, "print one JSON object, SI units");
 }
 
@@ -165,7 +165,7 @@ std::optional<Error> check_options(const Options& o) {
     return Error{"--data and --reference exclude each other; fit one after the other"};
   for (const auto& [output, beginning] :
        // Files of ours may be overwritten: by their beginnings they are known.
-       {std::pair{o.out, "# By tact-lab fit"}, std::pair{o.picture, "<?xml version=\"1.0\""}})
+       {std::pair{o.out, "# By tact-lab fit"}, std::pair{o.plot, "<?xml version=\"1.0\""}})
     if (auto error = program::check_output(output, beginning,
                                            {o.scene.path, o.data, o.relaxation, o.reference}))
       return error;
@@ -184,8 +184,8 @@ Result<int> run(const program::Program&, Options& o) {
   report.sort();
   if (!o.out.empty())
     if (auto error = model::io::write_file(o.out, toml_of(report))) return *error;
-  if (!o.picture.empty())
-    if (const auto drawn = draw_fit(report, o.picture); !drawn) return drawn.error();
+  if (!o.plot.empty())
+    if (const auto drawn = draw_fit(report, o.plot); !drawn) return drawn.error();
   if (o.json)
     fmt::print("{}\n", model::io::text_of(json_of(report), 2));
   else

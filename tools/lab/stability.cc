@@ -29,7 +29,7 @@ Example: tact-lab stability --out maps --only loop --quick)";
 struct Options {
   StabilityOptions maps;
   std::vector<std::string> letters{"a", "b", "c", "d"};
-  bool quick = false, no_pictures = false, json = false;
+  bool quick = false, no_plots = false, json = false;
 };
 
 void add_options(CLI::App& app, Options& o) {
@@ -40,7 +40,7 @@ void add_options(CLI::App& app, Options& o) {
       ->check(CLI::IsMember({"a", "b", "c", "d"}));
   app.add_option("--only", o.maps.only, "one map by its name");
   app.add_flag("--quick", o.quick, "coarse grids, seconds instead of minutes");
-  app.add_flag("--no-pictures", o.no_pictures, "tables alone; needs no gnuplot");
+  app.add_flag("--no-pictures", o.no_plots, "tables alone; needs no gnuplot");
   app.add_flag("--json", o.json, "print one JSON document");
 }
 
@@ -78,7 +78,7 @@ model::Result<int> run(const program::Program& program, Options& o) {
   if (auto error = program::prepare_folder(o.maps.out)) return *error;
   for (const std::string& letter : o.letters) o.maps.letters += letter;
   o.maps.grid = o.quick ? Grid::kQuick : Grid::kFull;
-  o.maps.draw_pictures = !o.no_pictures;
+  o.maps.draw_plots = !o.no_plots;
   const auto maps = run_maps(o.maps);
   // Maps that were finished are told even if a later one failed.
   if (o.json)

@@ -35,7 +35,7 @@ struct Options {
   std::string out, vertices = "300", reference;
   std::vector<std::uint32_t> vertex;
   double step_m = 2e-5, depth_m = 0.0, limit_N_per_m = 0.0;
-  bool square = false, upright = false, no_pictures = false, json = false;
+  bool square = false, upright = false, no_plots = false, json = false;
 };
 
 /// 0: all.
@@ -77,7 +77,7 @@ void add_options(CLI::App& app, Options& o) {
   app.add_flag("--upright", o.upright,
                "along hand.inward, the tool as at rest, at vertices that face the hand (default: "
                "both ways)");
-  app.add_flag("--no-pictures", o.no_pictures, "tables alone; needs no gnuplot");
+  app.add_flag("--no-pictures", o.no_plots, "tables alone; needs no gnuplot");
   app.add_flag("--json", o.json, "print one JSON document, SI units");
 }
 
@@ -137,8 +137,8 @@ Result<std::vector<std::string>> write_all(const Options& o, const Scene& scene,
     files->push_back(path);
     return files;
   }
-  if (o.no_pictures) return files;
-  const auto drawn = draw(sweep::presses_picture(sweep), o.out);
+  if (o.no_plots) return files;
+  const auto drawn = draw(sweep::presses_plot(sweep), o.out);
   if (!drawn) return drawn.error();
   files->insert(files->end(), drawn->begin(), drawn->end());
   return files;

@@ -23,7 +23,7 @@ struct Options {
   std::string plan = "all", out;
   program::SceneArguments scene;
   Testers people;
-  bool list = false, json = false, no_pictures = false, consent_from_stdin = false;
+  bool list = false, json = false, no_plots = false, consent_from_stdin = false;
 };
 
 void add_options(CLI::App& app, Options& o) {
@@ -41,7 +41,7 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--report-number", o.people.number,
                  "on every page (default: made of time, limits and host)");
   app.add_flag("--list", o.list, "the cases and what they do, nothing else");
-  app.add_flag("--no-pictures", o.no_pictures, "tables and page without curves; needs no gnuplot");
+  app.add_flag("--no-pictures", o.no_plots, "tables and page without curves; needs no gnuplot");
   app.add_flag("--consent-from-stdin", o.consent_from_stdin,
                "read the words of consent from a pipe: for a test bench that nobody holds");
   app.add_flag("--trust-library", o.scene.trust_library,
@@ -99,7 +99,7 @@ int test_limits(const program::Program& program, const Options& o) {
   close_evidence(*evidence, report->limits);
   report->evidence = std::move(*evidence);
   // Told below even if it could not be written: a run on a device is not repeated lightly.
-  const auto files = write_report(*report, o.out, !o.no_pictures);
+  const auto files = write_report(*report, o.out, !o.no_plots);
   if (o.json)
     fmt::print("{}\n", tact::model::io::text_of(to_json(*report), 2));
   else

@@ -82,7 +82,7 @@ report::Table presses_table(const model::scene::Scene& scene, const PressSweep& 
   return table;
 }
 
-report::Picture presses_picture(const PressSweep& sweep) {
+report::Plot presses_plot(const PressSweep& sweep) {
   constexpr std::size_t kBins = 40;
   const PressResult* stiffest = sweep.stiffest();
   const bool has_slope = stiffest && stiffest->slope_N_per_m.value > 0.0;

@@ -7,7 +7,7 @@
 
 #include "model/scene/press_sweep.h"
 #include "model/scene/scene.h"
-#include "tools/report/picture.h"
+#include "tools/report/plot.h"
 #include "tools/report/table.h"
 
 namespace tact::tools::sweep {
@@ -16,7 +16,7 @@ namespace tact::tools::sweep {
 report::Table presses_table(const model::scene::Scene& scene,
                             const model::scene::PressSweep& sweep);
 /// The largest slope of each place, seen from above, and how often which slope occurs.
-report::Picture presses_picture(const model::scene::PressSweep& sweep);
+report::Plot presses_plot(const model::scene::PressSweep& sweep);
 
 /// The command that repeats one press and writes its force along the way.
 std::string command_to_repeat(const std::string& command, const model::scene::PressPoint& place);

@@ -44,17 +44,16 @@ TEST(Figures, OneWithoutPrintedNumbersSaysSoInItsPicture) {
   for (const Figure& figure : all_figures()) {
     if (!figure.numbers.empty()) continue;
     ++without;
-    EXPECT_NE(figure.picture.script.find("in the copy"), std::string::npos) << figure.picture.name;
-    EXPECT_NE(figure.picture.script.find("ours"), std::string::npos) << figure.picture.name;
+    EXPECT_NE(figure.plot.script.find("in the copy"), std::string::npos) << figure.plot.name;
+    EXPECT_NE(figure.plot.script.find("ours"), std::string::npos) << figure.plot.name;
   }
   EXPECT_EQ(without, 8);
 }
 
 TEST(Figures, APictureReadsItsOwnTable) {
   for (const Figure& figure : all_figures()) {
-    EXPECT_EQ(figure.curves.name(), figure.picture.name);
-    EXPECT_NE(figure.picture.script.find("f = '" + figure.picture.name + ".csv'"),
-              std::string::npos);
+    EXPECT_EQ(figure.curves.name(), figure.plot.name);
+    EXPECT_NE(figure.plot.script.find("f = '" + figure.plot.name + ".csv'"), std::string::npos);
   }
 }
 
@@ -97,7 +96,7 @@ TEST(FiguresProgram, WritesTablesAndPicturesAndPrintsTheNumbers) {
   EXPECT_TRUE(fs::exists(out + "/numbers.csv"));
   for (const Figure& figure : all_figures())
     for (const char* end : {".csv", ".json", ".svg", ".png", ".gp"})
-      EXPECT_TRUE(fs::exists(out + "/" + figure.picture.name + end)) << figure.picture.name << end;
+      EXPECT_TRUE(fs::exists(out + "/" + figure.plot.name + end)) << figure.plot.name << end;
   fs::remove_all(out);
 }
 

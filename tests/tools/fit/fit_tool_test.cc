@@ -108,10 +108,10 @@ TEST_F(FitTool, NeverWritesOverWhatWasMeasured) {
       "tact-lab fit", kOnePlace + " --law disc_stack_linear --data " + data + " --out " + csv);
   EXPECT_EQ(same.status, 2) << same.output;
   EXPECT_NE(same.output.find("would be overwritten"), std::string::npos) << same.output;
-  const std::string picture = std::filesystem::path(csv).replace_extension(".svg").string();
-  const auto drawn = run_program("tact-lab fit", kOnePlace + " --law disc_stack_linear --data " +
-                                                     data + " --picture " + picture);
-  EXPECT_TRUE(std::filesystem::exists(picture)) << drawn.output;
+  const std::string plot = std::filesystem::path(csv).replace_extension(".svg").string();
+  const auto drawn = run_program(
+      "tact-lab fit", kOnePlace + " --law disc_stack_linear --data " + data + " --picture " + plot);
+  EXPECT_TRUE(std::filesystem::exists(plot)) << drawn.output;
   EXPECT_EQ(std::filesystem::file_size(csv), before);
 }
 

@@ -22,8 +22,7 @@ class RunMaps : public testing::Test {
   ~RunMaps() override { fs::remove_all(folder_); }
   StabilityOptions options(const std::string& only, const std::string& below = "whole") const {
     fs::create_directories(folder_ + "/" + below);
-    return {
-        .out = folder_ + "/" + below, .only = only, .grid = Grid::kQuick, .draw_pictures = false};
+    return {.out = folder_ + "/" + below, .only = only, .grid = Grid::kQuick, .draw_plots = false};
   }
   void check_findings(const std::string& only) {
     const auto run = run_maps(options(only));

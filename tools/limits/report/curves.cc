@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // One panel a case: what was commanded, what the gate let through, what the device was handed, and
-// the limit as two lines. Gnuplot reads the traces beside the picture.
+// the limit as two lines. Gnuplot reads the traces beside the plot.
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "tools/limits/report/report.h"
 #include "tools/limits/report/scripts.h"
-#include "tools/report/picture.h"
+#include "tools/report/plot.h"
 
 namespace tact::tools::limits {
 namespace {
@@ -24,7 +24,7 @@ bool has_cause(const Case& c) {
 }
 
 /// Of up to kPanels cases from `first` on.
-report::Picture curves(const LimitsReport& report, std::size_t first) {
+report::Plot curves(const LimitsReport& report, std::size_t first) {
   const std::size_t panels = std::min(kPanels, report.cases.size() - first);
   const std::size_t rows = (panels + kColumns - 1) / kColumns;
   std::vector<std::string> cases, limits, seconds, columns, failed, causes;
@@ -53,7 +53,7 @@ report::Picture curves(const LimitsReport& report, std::size_t first) {
                         {"causes", causes}}};
 }
 
-report::Picture wall_picture(const WallVerdict& wall) {
+report::Plot wall_plot(const WallVerdict& wall) {
   return {.name = "wall",
           .width_px = kWidth_px,
           .height_px = 380,
@@ -67,13 +67,13 @@ report::Picture wall_picture(const WallVerdict& wall) {
 
 Result<std::vector<std::string>> draw_curves(const LimitsReport& report,
                                              const std::string& directory) {
-  std::vector<report::Picture> pictures;
+  std::vector<report::Plot> plots;
   for (std::size_t first = 0; first < report.cases.size(); first += kPanels)
-    pictures.push_back(curves(report, first));
-  if (report.wall) pictures.push_back(wall_picture(*report.wall));
+    plots.push_back(curves(report, first));
+  if (report.wall) plots.push_back(wall_plot(*report.wall));
   std::vector<std::string> files;
-  for (const report::Picture& picture : pictures) {
-    const auto drawn = draw(picture, directory);
+  for (const report::Plot& plot : plots) {
+    const auto drawn = draw(plot, directory);
     if (!drawn) return drawn.error();
     files.insert(files.end(), drawn->begin(), drawn->end());
   }

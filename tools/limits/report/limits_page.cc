@@ -119,13 +119,13 @@ json case_data(const CaseVerdict& v, const LimitsReport& report) {
           {"holds", v.passed()}};
 }
 
-json wall_data(const WallVerdict& wall, const std::string& picture) {
+json wall_data(const WallVerdict& wall, const std::string& plot) {
   json checks = json::array();
   for (const Check& c : wall.checks)
     checks.push_back({{"holds", c.holds}, {"sentence", c.message}});
   return {{"checks", checks},
           {"theory", fmt::format("{:.4g}", wall.theory_N_per_m)},
-          {"picture", picture}};
+          {"picture", plot}};
 }
 
 /// What the page fills in as it is: words, numbers, and what is there to be told.

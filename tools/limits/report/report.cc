@@ -147,7 +147,7 @@ std::string to_text(const LimitsReport& report) {
 }
 
 Result<std::vector<std::string>> write_report(const LimitsReport& report,
-                                              const std::string& directory, bool draw_pictures) {
+                                              const std::string& directory, bool draw_plots) {
   std::vector<std::string> files;
   const auto write = [&](const std::string& name, const std::string& content) {
     files.push_back((fs::path(directory) / name).string());
@@ -169,7 +169,7 @@ Result<std::vector<std::string>> write_report(const LimitsReport& report,
     return *error;
   std::vector<std::string> drawings;
   // Tables first: without gnuplot the numbers are there all the same.
-  if (draw_pictures) {
+  if (draw_plots) {
     const auto drawn = draw_curves(report, directory);
     if (!drawn) return drawn.error();
     for (const std::string& path : *drawn) {

@@ -58,8 +58,7 @@ std::string to_text(const LimitsReport& report);
 /// limits.json, cases.csv, a trace_NAME.csv for each case, wall.csv, curves.* and wall.*,
 /// limits.html. Returns the paths.
 model::Result<std::vector<std::string>> write_report(const LimitsReport& report,
-                                                     const std::string& directory,
-                                                     bool draw_pictures);
+                                                     const std::string& directory, bool draw_plots);
 
 /// The pictures beside the tables: paths without ending of the folder.
 model::Result<std::vector<std::string>> draw_curves(const LimitsReport& report,

@@ -159,7 +159,7 @@ Map integrator_map() {
           [](Grid grid) { return std::size(kProbedMethods) * cells(grid).zeta * cells(grid).z; },
       .run = run,
       .check = check,
-      .picture = {.width_px = 1600, .height_px = 850, .script = kIntegratorsScript},
+      .plot = {.width_px = 1600, .height_px = 850, .script = kIntegratorsScript},
       .variables = variables};
 }
 

@@ -90,7 +90,7 @@ Map law_limit_map() {
           .jobs = [](Grid grid) { return probed_laws().size() * depths(grid); },
           .run = run,
           .check = check,
-          .picture = {.width_px = 1600, .height_px = 800, .script = kLawLimitsScript},
+          .plot = {.width_px = 1600, .height_px = 800, .script = kLawLimitsScript},
           .variables = [](Grid) { return report::Variables{{"laws", names_of_laws()}}; }};
 }
 

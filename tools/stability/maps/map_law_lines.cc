@@ -173,7 +173,7 @@ Map law_line_map() {
           .jobs = [](Grid grid) { return std::size(kStudies) * points(grid); },
           .run = run,
           .check = check,
-          .picture = {.width_px = 1400, .height_px = 1000, .script = kLawLinesScript}};
+          .plot = {.width_px = 1400, .height_px = 1000, .script = kLawLinesScript}};
 }
 
 }  // namespace tact::tools::stability

@@ -126,7 +126,7 @@ Map law_loop_map() {
           .jobs = [](Grid grid) { return axes(grid).jobs(); },
           .run = run,
           .check = check,
-          .picture = {.width_px = 1200, .height_px = 800, .script = kLoopLawsScript},
+          .plot = {.width_px = 1200, .height_px = 800, .script = kLoopLawsScript},
           .variables = [](Grid) { return report::Variables{{"laws", names_of_laws()}}; }};
 }
 

@@ -139,7 +139,7 @@ Map loop_map() {
           .jobs = [](Grid grid) { return axes(settings(grid)).jobs(); },
           .run = run,
           .check = check,
-          .picture = {.width_px = 1400, .height_px = 1050, .script = kLoopScript}};
+          .plot = {.width_px = 1400, .height_px = 1050, .script = kLoopScript}};
 }
 
 }  // namespace tact::tools::stability

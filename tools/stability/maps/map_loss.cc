@@ -96,7 +96,7 @@ Map loss_map() {
           .jobs = [](Grid grid) { return axes(grid).jobs(); },
           .run = run,
           .check = check,
-          .picture = {.width_px = 1200, .height_px = 800, .script = kLossScript}};
+          .plot = {.width_px = 1200, .height_px = 800, .script = kLossScript}};
 }
 
 }  // namespace tact::tools::stability

@@ -129,7 +129,7 @@ Map printed_rhombus_map() {
           .jobs = [](Grid grid) { return cells(grid).angles * cells(grid).ratios; },
           .run = run,
           .check = check,
-          .picture = {.width_px = 1200, .height_px = 800, .script = kPrintedRhombusScript},
+          .plot = {.width_px = 1200, .height_px = 800, .script = kPrintedRhombusScript},
           .variables = variables};
 }
 

@@ -85,7 +85,7 @@ Map tick_map() {
           .jobs = [](Grid grid) { return axes(grid).jobs(); },
           .run = run,
           .check = check,
-          .picture = {.width_px = 1200, .height_px = 700, .script = kTicksScript}};
+          .plot = {.width_px = 1200, .height_px = 700, .script = kTicksScript}};
 }
 
 }  // namespace tact::tools::stability

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/report/picture.h"
+#include "tools/report/plot.h"
 #include "tools/report/table.h"
 
 namespace tact::tools::stability {
@@ -42,7 +42,7 @@ struct Map {
   std::size_t (*jobs)(Grid grid) = nullptr;
   report::Row (*run)(std::size_t job, Grid grid) = nullptr;
   std::vector<Finding> (*check)(const report::Table& table) = nullptr;
-  report::Picture picture{};  // of the map's name; none without a script
+  report::Plot plot{};  // of the map's name; none without a script
   report::Variables (*variables)(Grid grid) = nullptr;
 };
 

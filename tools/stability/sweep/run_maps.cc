@@ -33,11 +33,11 @@ Result<MapReport> finished(const Map& map, const report::Table& table,
   if (!files) return files.error();
   report.files = std::move(*files);
   report.findings = map.check(table);
-  if (!options.draw_pictures || map.picture.script.empty()) return report;
-  report::Picture picture = map.picture;
-  picture.name = map.name;
-  if (map.variables != nullptr) picture.variables = map.variables(options.grid);
-  const auto drawn = draw(picture, options.out);
+  if (!options.draw_plots || map.plot.script.empty()) return report;
+  report::Plot plot = map.plot;
+  plot.name = map.name;
+  if (map.variables != nullptr) plot.variables = map.variables(options.grid);
+  const auto drawn = draw(plot, options.out);
   if (!drawn) return drawn.error();
   report.files.insert(report.files.end(), drawn->begin(), drawn->end());
   return report;

@@ -15,7 +15,7 @@ struct StabilityOptions {
   std::string letters{};  // maps to make, "abcd"
   std::string only{};     // one map by its name; empty: all of the letters
   Grid grid = Grid::kFull;
-  bool draw_pictures = true;
+  bool draw_plots = true;
 };
 
 /// What became of one map.

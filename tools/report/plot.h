@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// picture.h - a picture by gnuplot: SVG for pages, PNG for everything else.
+// plot.h - a plot by gnuplot: SVG for pages, PNG for everything else.
 //
 // The script is a file NAME.gp of the sources, of which CMake makes a constant (tact_room_scripts).
 // It plots files of its own folder and names neither terminal nor output. What the program knows
-// stands in front of it as variables. All of it is kept beside the picture as NAME.gp, so anyone
+// stands in front of it as variables. All of it is kept beside the plot as NAME.gp, so anyone
 // can draw it again, or another way, from that folder:
 //
 //     gnuplot -e "kind='png'" NAME.gp
@@ -22,7 +22,7 @@ namespace tact::tools::report {
 using Value = std::variant<double, std::string, std::vector<std::string>>;
 using Variables = std::vector<std::pair<std::string, Value>>;
 
-struct Picture {
+struct Plot {
   std::string name{};  // of the files, without ending
   int width_px = 1200;
   int height_px = 800;
@@ -32,6 +32,6 @@ struct Picture {
 
 /// Draws NAME.svg and NAME.png into a folder and returns their paths. An error says what to install
 /// or what gnuplot had to say.
-model::Result<std::vector<std::string>> draw(const Picture& picture, const std::string& directory);
+model::Result<std::vector<std::string>> draw(const Plot& plot, const std::string& directory);
 
 }  // namespace tact::tools::report

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Needs gnuplot: without it every picture is an error that says what to install.
-#include "tools/report/picture.h"
+// Needs gnuplot: without it every plot is an error that says what to install.
+#include "tools/report/plot.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -11,7 +11,7 @@
 #include "tests/support/files.h"
 #include "tools/report/table.h"
 
-namespace tact::tools::report::picture_test {
+namespace tact::tools::report::plot_test {
 
 namespace fs = std::filesystem;
 using tests::content;
@@ -60,11 +60,11 @@ TEST_F(PictureFiles, AScriptReadsWhatStandsInFrontOfIt) {
 }
 
 TEST_F(PictureFiles, TheSameScriptGivesTheSameBytes) {
-  const Picture picture{.name = "curve", .script = "plot 'curve.csv' using 2:3 with lines\n"};
-  const auto files = draw(picture, folder_);
+  const Plot plot{.name = "curve", .script = "plot 'curve.csv' using 2:3 with lines\n"};
+  const auto files = draw(plot, folder_);
   ASSERT_TRUE(files);
   const std::string svg = content((*files)[0]), png = content((*files)[1]);
-  ASSERT_TRUE(draw(picture, folder_));
+  ASSERT_TRUE(draw(plot, folder_));
   EXPECT_EQ(content((*files)[0]), svg);
   EXPECT_EQ(content((*files)[1]), png);
 }
@@ -85,4 +85,4 @@ TEST_F(PictureFiles, WithoutGnuplotItSaysWhatToInstall) {
       << files.error().message;
 }
 
-}  // namespace tact::tools::report::picture_test
+}  // namespace tact::tools::report::plot_test

@@ -8,7 +8,7 @@
 #include "model/io/file_writer.h"
 #include "tools/jitter/report/jitter_report.h"
 #include "tools/jitter/report/scripts.h"
-#include "tools/report/picture.h"
+#include "tools/report/plot.h"
 
 namespace tact::tools::jitter {
 namespace {

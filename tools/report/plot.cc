@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/report/picture.h"
+#include "tools/report/plot.h"
 
 #include <fmt/format.h>
 
@@ -36,25 +36,25 @@ std::string line_of(const std::string& name, const Value& value) {
   return fmt::format("{} = {}\n", name, gnuplot_text(list));
 }
 
-std::string whole_script(const Picture& p) {
+std::string whole_script(const Plot& p) {
   std::string out = fmt::format(
       "# Draw again, in this folder: gnuplot -e \"kind='png'\" {}.gp\nname = {}\nwidth_px = {}\n"
       "height_px = {}\n{}",
-      p.name, gnuplot_text(p.name), p.width_px, p.height_px, kPictureScript);
+      p.name, gnuplot_text(p.name), p.width_px, p.height_px, kPlotScript);
   for (const auto& [name, value] : p.variables) out += line_of(name, value);
   return out + p.script;
 }
 
 }  // namespace
 
-Result<std::vector<std::string>> draw(const Picture& picture, const std::string& directory) {
+Result<std::vector<std::string>> draw(const Plot& plot, const std::string& directory) {
   std::error_code error;
   const fs::path folder = fs::absolute(directory, error);
-  const std::string script = (folder / (picture.name + ".gp")).string();
-  if (auto failed = model::io::write_file(script, whole_script(picture))) return *failed;
+  const std::string script = (folder / (plot.name + ".gp")).string();
+  if (auto failed = model::io::write_file(script, whole_script(plot))) return *failed;
   std::vector<std::string> files;
   for (const std::string kind : {"svg", "png"}) {
-    const std::string log = (folder / (picture.name + ".gnuplot.txt")).string();
+    const std::string log = (folder / (plot.name + ".gnuplot.txt")).string();
     const auto said = program::run_program({.program = "gnuplot",
                                             .arguments = {"-e", "kind='" + kind + "'", script},
                                             .directory = folder.string(),
@@ -64,7 +64,7 @@ Result<std::vector<std::string>> draw(const Picture& picture, const std::string&
                                             .environment = {}});
     if (!said) return said.error();
     fs::remove(log, error);
-    files.push_back((fs::path(directory) / (picture.name + "." + kind)).string());
+    files.push_back((fs::path(directory) / (plot.name + "." + kind)).string());
     if (!fs::exists(files.back()))
       return Error{fmt::format("gnuplot drew no {}; its script is {}", files.back(), script)};
   }

@@ -11,7 +11,7 @@
 
 #include "tools/chart/report/report.h"
 #include "tools/chart/report/scripts.h"
-#include "tools/report/picture.h"
+#include "tools/report/plot.h"
 
 namespace tact::tools::chart {
 namespace {

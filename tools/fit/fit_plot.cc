@@ -8,7 +8,7 @@
 #include "model/io/file_writer.h"
 #include "tools/fit/fit_report.h"
 #include "tools/fit/scripts.h"
-#include "tools/report/picture.h"
+#include "tools/report/plot.h"
 
 namespace tact::tools::fit {
 namespace {
