@@ -15,6 +15,7 @@
 #include "model/io/program/within.h"
 #include "tools/calibrate/gated_run.h"
 #include "tools/program/program.h"
+#include "tools/program/run_program.h"
 
 namespace {
 
