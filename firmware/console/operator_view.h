@@ -51,4 +51,9 @@ class OperatorView {
 std::string trouble_behind(model::Fault fault, const hal::Device& device,
                            const hal::SafetyLines& lines);
 
+/// One run in one line, for a terminal: time, rate, late ticks, force, state, the fault or limit
+/// that acts, and how often contact was lost. The rate is ticks over time since `before`; 0 when no
+/// time has passed.
+std::string status_line(const telemetry::Frame& frame, const telemetry::Frame& before);
+
 }  // namespace tact::firmware::console

@@ -9,15 +9,7 @@
 namespace tact::firmware::pc {
 
 const char* name_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kGreen:
-      return "green";
-    case Verdict::kRed:
-      return "red";
-    case Verdict::kUnknown:
-      break;
-  }
-  return "unknown";
+  return verdict == Verdict::kGreen ? "green" : verdict == Verdict::kRed ? "red" : "unknown";
 }
 
 int core_in_question(const PcQuestion& question) {

@@ -43,9 +43,7 @@ PcRow isolation_row(const PcQuestion& q) {
   const bool known = q.files.is_there(fmt::format("{}/isolated", kCpus));
   const bool isolated = contains(cpu_list(q.files, "isolated"), q.core);
   return {.name = "isolated core",
-          .verdict = !known     ? Verdict::kUnknown
-                     : isolated ? Verdict::kGreen
-                                : Verdict::kRed,
+          .verdict = verdict_of(known, isolated),
           .found = !known ? "not told"
                           : fmt::format("core {} is {}isolated", q.core, isolated ? "" : "not "),
           .why = "other programs run on the core of the loop; each costs it a switch and its cache",
@@ -57,9 +55,7 @@ PcRow tick_row(const PcQuestion& q) {
   const bool known = q.files.is_there(fmt::format("{}/nohz_full", kCpus));
   const bool quiet = contains(cpu_list(q.files, "nohz_full"), q.core);
   return {.name = "timer tick",
-          .verdict = quiet   ? Verdict::kGreen
-                     : known ? Verdict::kRed
-                             : Verdict::kUnknown,
+          .verdict = verdict_of(quiet || known, quiet),
           .found = quiet   ? fmt::format("core {} has none while the loop runs", q.core)
                    : known ? fmt::format("core {} is not in nohz_full", q.core)
                            : "this kernel has no nohz_full",
@@ -123,9 +119,7 @@ PcRow governor_row(const PcQuestion& q) {
   const auto governor = q.files.line(path);
   const bool steady = governor == "performance";
   return {.name = "CPU governor",
-          .verdict = !governor ? Verdict::kUnknown
-                     : steady  ? Verdict::kGreen
-                               : Verdict::kRed,
+          .verdict = verdict_of(governor.has_value(), steady),
           .found = governor.value_or("the kernel does not set the CPU's speed"),
           .why = "a CPU that slows down between ticks begins each at its lowest speed",
           .remedy = governor
@@ -166,9 +160,7 @@ PcRow sibling_row(const PcQuestion& q) {
   siblings.erase(std::remove(siblings.begin(), siblings.end(), q.core), siblings.end());
   PcRow row{
       .name = "SMT sibling",
-      .verdict = !list              ? Verdict::kUnknown
-                 : siblings.empty() ? Verdict::kGreen
-                                    : Verdict::kRed,
+      .verdict = verdict_of(list.has_value(), siblings.empty()),
       .found = !list ? "not told" : "the core is not shared",
       .why = "two hardware threads share one core's units: what runs beside the loop slows it",
       .remedy = "switch SMT off in the firmware (BIOS)"};

@@ -44,9 +44,7 @@ PcRow kernel_row(const PcFiles& files) {
   const auto release = files.line("/proc/sys/kernel/osrelease");
   const bool known = realtime || files.line("/proc/sys/kernel/version").has_value();
   return {.name = "kernel",
-          .verdict = realtime ? Verdict::kGreen
-                     : known  ? Verdict::kRed
-                              : Verdict::kUnknown,
+          .verdict = verdict_of(known, realtime),
           .found = fmt::format("{}{}", release.value_or("not told"),
                                realtime ? ", PREEMPT_RT"
                                : known  ? ", not PREEMPT_RT"
@@ -61,9 +59,7 @@ PcRow machine_row(const PcFiles& files) {
   // With the leading blank: the word is one of the processor's flags.
   const bool guest = cpu && cpu->find(" hypervisor") != std::string::npos;
   return {.name = "machine",
-          .verdict = !cpu    ? Verdict::kUnknown
-                     : guest ? Verdict::kRed
-                             : Verdict::kGreen,
+          .verdict = verdict_of(cpu.has_value(), !guest),
           .found = !cpu    ? "not told"
                    : guest ? "a virtual machine"
                            : "no hypervisor",
@@ -120,9 +116,7 @@ PcRow priority_row(const PcFiles& files) {
   const bool enough =
       free || limit == "unlimited" || std::strtol(limit.c_str(), nullptr, 10) >= kHighestPriority;
   return {.name = "real-time priority",
-          .verdict = limit.empty() && !free ? Verdict::kUnknown
-                     : enough               ? Verdict::kGreen
-                                            : Verdict::kRed,
+          .verdict = verdict_of(free || !limit.empty(), enough),
           .found = free            ? "any (CAP_SYS_NICE)"
                    : limit.empty() ? "not told"
                                    : fmt::format("up to {} of {}", limit, kHighestPriority),
@@ -135,9 +129,7 @@ PcRow memory_row(const PcFiles& files) {
   const std::string limit = soft_limit(files, "Max locked memory");
   const bool free = has_capability(files, kCapIpcLock);
   return {.name = "locked memory",
-          .verdict = free || limit == "unlimited" ? Verdict::kGreen
-                     : limit.empty()              ? Verdict::kUnknown
-                                                  : Verdict::kRed,
+          .verdict = verdict_of(free || !limit.empty(), free || limit == "unlimited"),
           .found = free                   ? "any (CAP_IPC_LOCK)"
                    : limit.empty()        ? "not told"
                    : limit == "unlimited" ? limit
@@ -150,9 +142,7 @@ PcRow memory_row(const PcFiles& files) {
 PcRow time_limit_row(const PcFiles& files) {
   const std::string limit = soft_limit(files, "Max realtime timeout");
   return {.name = "real-time time limit",
-          .verdict = limit == "unlimited" ? Verdict::kGreen
-                     : limit.empty()      ? Verdict::kUnknown
-                                          : Verdict::kRed,
+          .verdict = verdict_of(!limit.empty(), limit == "unlimited"),
           .found = limit.empty()          ? "not told"
                    : limit == "unlimited" ? "none"
                                           : fmt::format("{} us", limit),

@@ -55,9 +55,7 @@ PcRow swap_row(const PcFiles& files) {
   const auto swaps = files.text("/proc/swaps");
   const auto lines = swaps ? std::count(swaps->begin(), swaps->end(), '\n') : 0;
   return {.name = "swap",
-          .verdict = !swaps      ? Verdict::kUnknown
-                     : lines > 1 ? Verdict::kRed
-                                 : Verdict::kGreen,
+          .verdict = verdict_of(swaps.has_value(), lines <= 1),
           .found = !swaps      ? "not told"
                    : lines > 1 ? fmt::format("{} in use", lines - 1)
                                : "none",
@@ -71,9 +69,7 @@ PcRow balancer_row(const PcFiles& files, const std::vector<Thread>& threads) {
   const bool runs = std::any_of(threads.begin(), threads.end(),
                                 [](const Thread& t) { return t.name == "irqbalance"; });
   return {.name = "irqbalance",
-          .verdict = !known ? Verdict::kUnknown
-                     : runs ? Verdict::kRed
-                            : Verdict::kGreen,
+          .verdict = verdict_of(known, !runs),
           .found = !known ? "not told"
                    : runs ? "it runs"
                           : "it does not run",

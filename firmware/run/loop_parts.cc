@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "firmware/admission/thermal_check.h"
+#include "firmware/admission/refusals.h"
 #include "firmware/gate/limits_for.h"
 #include "hal/gpio/gpio_lines.h"
 #include "model/io/limits_checksum.h"

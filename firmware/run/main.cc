@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "firmware/admission/unattended.h"
+#include "firmware/admission/refusals.h"
 #include "firmware/console/operator_signals.h"
 #include "firmware/console/say.h"
 #include "firmware/console/service_manager.h"

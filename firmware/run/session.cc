@@ -15,7 +15,6 @@
 #include "firmware/loop/release_schedule.h"
 #include "firmware/run/loop_executor.h"
 #include "firmware/run/loop_parts.h"
-#include "firmware/run/real_time.h"
 #include "firmware/run/report.h"
 #include "firmware/run/start_text.h"
 #include "firmware/run/telemetry_setup.h"

@@ -5,6 +5,8 @@
 
 #include "firmware/admission/notes.h"
 #include "firmware/console/say.h"
+#include "firmware/pc/pc_check.h"
+#include "firmware/watch/runaway.h"
 #include "hal/mounting.h"
 #include "hal/registry/open_device.h"
 #include "model/scene/accuracy_file.h"
@@ -59,6 +61,20 @@ std::string check_lines(const model::scene::Scene& scene, const LoopParts& parts
                            : "");
   out += "\n" + hal::text_of(hal::mounting_of(scene.device));
   return out + "\n" + model::scene::accuracy_line(scene);
+}
+
+void RealTime::enter(const pc::RtSettings& settings) {
+  process_.emplace(shortfalls_);
+  if (auto limited = watch::lift_rttime_limit()) shortfalls_.push_back(std::move(*limited));
+  for (pc::Shortfall& s : probe_rt_threads(settings)) shortfalls_.push_back(std::move(s));
+}
+
+// The last line is a summary of tact-doctor.
+void RealTime::report(const pc::RtSettings& settings) const {
+  for (const pc::Shortfall& s : shortfalls_) console::say(stderr, "tactd: {}\n", s.message);
+  const std::string red =
+      name_red_rows(pc::check_pc({.files = pc::PcFiles{}, .core = choose_core(settings)}));
+  if (!red.empty()) console::say(stderr, "tactd: {}\n", red);
 }
 
 }  // namespace tact::firmware::run

@@ -16,7 +16,6 @@
 #include <span>
 
 #include "hal/falcon/falcon_packets.h"
-#include "hal/falcon/falcon_stream.h"
 #include "hal/falcon/ftdi_requests.h"
 
 namespace tact::hal::falcon {

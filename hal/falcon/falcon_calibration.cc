@@ -35,7 +35,7 @@ std::vector<delta::Joints> unit_torques_Nm(std::span<const FalconBalance> sample
     const FalconInverse legs = falcon.inverse(s.position_m);
     out.push_back(
         legs.reachable
-            // Up is y of the device's frame (falcon_frame.h).
+            // Up is y of the device's frame (falcon_kinematics.h).
             ? falcon_torques_Nm(falcon.joint_rate_matrix(legs), {0.0, model::kGravity_mps2, 0.0})
             : delta::Joints{});
   }

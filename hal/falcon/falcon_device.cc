@@ -6,7 +6,7 @@
 
 #include "hal/falcon/falcon_at_tool.h"
 #include "hal/falcon/falcon_boot.h"
-#include "hal/falcon/falcon_frame.h"
+#include "hal/falcon/falcon_kinematics.h"
 #include "model/units.h"
 
 namespace tact::hal::falcon {

@@ -61,7 +61,7 @@ model::Mat3 FalconKinematics::joint_rate_matrix(const FalconInverse& legs) const
   for (std::size_t i = 0; i < 3; ++i) {
     // FK-2: K_i = [cos t2, cot t3, sin t2] / (a sin(t2 - t1)), turned back by phi
     const double t2 = legs.knee_rad[i], t3 = legs.side_rad[i];
-    // 0 where thigh and shin align: outside kFalconRadius_m only (falcon_frame.h).
+    // 0 where thigh and shin align: outside kFalconRadius_m only (falcon_kinematics.h).
     const double scale = geometry_.thigh_m * std::sin(t2 - legs.thigh_rad[i]);
     const double ku = std::cos(t2) / scale, kw = std::sin(t2) / scale;
     const double kv = std::cos(t3) / std::sin(t3) / scale;

@@ -36,7 +36,7 @@ struct FalconPipeHealth {
   int error = 0;                    // errno behind the end; 0: none
   std::uint64_t dropped_bytes = 0;  // of no report, and one for each transfer without its status
   std::uint8_t line_errors = 0;     // ftdi_requests.h, all that were seen
-  bool stood_in = false;            // for a silent loop, with zeros, ever (loop_silence.h)
+  bool stood_in = false;            // for a silent loop, with zeros, ever (usbfs_pipe.h)
 };
 
 class FalconPipe {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hal/falcon/falcon_trouble.h"
-
+// What keeps a Falcon from making force, in words.
 #include <fmt/core.h>
 
 #include <array>
 #include <cstring>
 
+#include "hal/falcon/falcon_device.h"
 #include "hal/falcon/ftdi_requests.h"
 
 namespace tact::hal::falcon {

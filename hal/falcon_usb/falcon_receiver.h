@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <span>
 
+#include "hal/falcon/falcon_packets.h"
 #include "hal/falcon/falcon_pipe.h"
-#include "hal/falcon/falcon_stream.h"
 #include "hal/falcon/ftdi_requests.h"
 #include "hal/latest_slot.h"
 

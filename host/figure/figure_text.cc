@@ -2,6 +2,7 @@
 #include "host/figure/figure_text.h"
 
 #include <algorithm>
+#include <array>
 
 #include "host/tracking/tracking_setup.h"
 
@@ -14,27 +15,16 @@ std::string text_of(BodyRole role) {
 }
 
 const char* text_of(TrackingTrouble trouble) {
-  switch (trouble) {
-    case TrackingTrouble::kNone:
-      return "no pose";
-    case TrackingTrouble::kSilent:
-      return "silent";
-    case TrackingTrouble::kTooFewPoints:
-      return "too few points seen";
-    case TrackingTrouble::kDegenerate:
-      return "points on a line";
-    case TrackingTrouble::kInvalid:
-      return "a number that is none";
-    case TrackingTrouble::kNoPose:
-      return "no pose fits";
-    case TrackingTrouble::kJump:
-      return "it jumps";
-    case TrackingTrouble::kFrozen:
-      return "frozen";
-    case TrackingTrouble::kOutOfOrder:
-      return "out of order";
-  }
-  return "no pose";
+  static constexpr std::array kTexts{"no pose",
+                                     "silent",
+                                     "too few points seen",
+                                     "points on a line",
+                                     "a number that is none",
+                                     "no pose fits",
+                                     "it jumps",
+                                     "frozen",
+                                     "out of order"};
+  return kTexts[static_cast<std::size_t>(trouble)];
 }
 
 void report(const TrackedOperator& bodies, FigurePose& pose) {

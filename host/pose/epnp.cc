@@ -187,6 +187,7 @@ PoseEstimate estimate_pose(const Camera& camera, std::span<const Vector3d> point
 
   PoseEstimate out{.status = PoseStatus::kNoPose,
                    .rms_px = std::numeric_limits<double>::infinity()};
+  const MarkerView view{.camera = camera, .points_m = cloud.points, .pixels_px = pixels_px};
   std::vector<Pose> polished;
   const auto try_all = [&](const std::vector<Pose>& found) {
     for (const Pose& start : found) {
@@ -194,9 +195,9 @@ PoseEstimate estimate_pose(const Camera& camera, std::span<const Vector3d> point
           std::ranges::any_of(polished, [&](const Pose& pose) { return is_near(start, pose); });
       // Polishing takes most of the time: skip a start that would end at a known pose.
       if (known) continue;
-      const Pose pose = polish_pose(camera, cloud.points, pixels_px, start);
+      const Pose pose = polish_pose({&view, 1}, start);
       polished.push_back(pose);
-      const double rms_px = reprojection_rms_px(camera, cloud.points, pixels_px, pose);
+      const double rms_px = reprojection_rms_px({&view, 1}, pose);
       // EP-9: the smallest rms; it is infinite if a point lies behind the camera.
       if (!(rms_px < out.rms_px)) continue;
       out = {.status = PoseStatus::kOk, .pose = pose, .rms_px = rms_px};

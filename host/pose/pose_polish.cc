@@ -127,10 +127,4 @@ Pose polish_pose(std::span<const MarkerView> views, const Pose& start) {
   return pose;
 }
 
-Pose polish_pose(const Camera& camera, std::span<const Vector3d> points_m,
-                 std::span<const Vector2d> pixels_px, const Pose& start) {
-  const MarkerView view{.camera = camera, .points_m = points_m, .pixels_px = pixels_px};
-  return polish_pose({&view, 1}, start);
-}
-
 }  // namespace tact::host::pose

@@ -49,8 +49,4 @@ Pose polish_pose(std::span<const MarkerView> views, const Pose& start);
 double reprojection_rms_px(const Camera& camera, std::span<const Eigen::Vector3d> points_m,
                            std::span<const Eigen::Vector2d> pixels_px, const Pose& pose);
 
-/// EP-10 from `start`; points and pixels correspond by their order, three or more.
-Pose polish_pose(const Camera& camera, std::span<const Eigen::Vector3d> points_m,
-                 std::span<const Eigen::Vector2d> pixels_px, const Pose& start);
-
 }  // namespace tact::host::pose

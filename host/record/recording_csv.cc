@@ -16,32 +16,14 @@
 namespace tact::host::record {
 namespace {
 
-const char* name_of(firmware::telemetry::SiteState state) {
-  switch (state) {
-    case firmware::telemetry::SiteState::kFree:
-      return "free";
-    case firmware::telemetry::SiteState::kTouching:
-      return "touching";
-    case firmware::telemetry::SiteState::kHeld:
-      return "held";
-    case firmware::telemetry::SiteState::kInside:
-      return "inside";
-  }
-  return "unknown";
-}
+constexpr std::array kSiteNames{"free", "touching", "held", "inside"};
+constexpr std::array kBodyNames{"absent", "tracked", "held", "lost"};
 
-const char* name_of(tracking::BodyState state) {
-  switch (state) {
-    case tracking::BodyState::kAbsent:
-      return "absent";
-    case tracking::BodyState::kTracked:
-      return "tracked";
-    case tracking::BodyState::kHeld:
-      return "held";
-    case tracking::BodyState::kLost:
-      return "lost";
-  }
-  return "unknown";
+/// Of a state from a file or socket, which may be none.
+template <typename State>
+const char* name_of(State state, const std::array<const char*, 4>& names) {
+  const auto at = static_cast<std::size_t>(state);
+  return at < names.size() ? names[at] : "unknown";
 }
 
 /// Bounds the count again, so that the array access does not rely on an earlier check.
@@ -70,8 +52,9 @@ void put_patch(std::string& out, const firmware::telemetry::FramePatch& patch) {
 void put_body(std::string& out, const tracking::TrackedBody& body) {
   const Eigen::Quaterniond& q = body.raw.rotation;
   const Eigen::Vector3d& p = body.raw.position_m;
-  fmt::format_to(std::back_inserter(out), ",{},{},{},{},{},{},{},{},{},{}", name_of(body.state),
-                 p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z(), body.rms_px, body.age_s);
+  fmt::format_to(std::back_inserter(out), ",{},{},{},{},{},{},{},{},{},{}",
+                 name_of(body.state, kBodyNames), p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z(),
+                 body.rms_px, body.age_s);
 }
 
 /// Collects which bodies appear.
@@ -174,7 +157,7 @@ void append_csv_row(std::string& out, const Frame& frame, const Hello& hello,
   for (std::size_t i = 0; i < sites_of(hello); ++i) {
     const firmware::telemetry::FrameSite& site = frame.site[i];
     out += ',';
-    out += name_of(site.state);
+    out += name_of(site.state, kSiteNames);
     put(out, site.surface_point_m);
     put(out, site.normal);
     put(out, site.shift_m);

@@ -50,9 +50,6 @@ void warn_of_silence(double silence_s) {
   warn(fmt::format("no news from tactd for {:.1f} s: its force is not known", silence_s));
 }
 
-/// Repairs a file name with broken UTF-8 instead of throwing.
-std::string to_text(const nlohmann::json& json) { return model::io::text_of(json); }
-
 /// Reads the answers to requests, as lines of standard input, from the program that set --scenes.
 class Answers {
  public:
@@ -134,7 +131,7 @@ int export_csv(const Options& options, const record::ReadResult& read) {
         {"format", "tact-view-export"},     {"version", 1},
         {"file", options.export_csv},       {"frames", recording.frames.size()},
         {"length_s", recording.length_s()}, {"damage", read.damage}};
-    fmt::print("{}\n", to_text(summary));
+    fmt::print("{}\n", model::io::text_of(summary));
   } else {
     fmt::print("{}: {} frames, {:.1f} s\n", options.export_csv, recording.frames.size(),
                recording.length_s());
@@ -155,7 +152,7 @@ void say_ready(const Options& options, const server::ViewerServer& server) {
                                {"url", server.url()},
                                {"port", server.port()},
                                {"token", server.token()}};
-    say_line(to_text(ready));
+    say_line(model::io::text_of(ready));
   } else {
     say_line("tact-view: " + server.url());
   }

@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "host/server/page_message.h"
 #include "model/io/json.h"
 
 namespace tact::host::server {

@@ -2,6 +2,7 @@
 #include "host/server/live_view.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -12,19 +13,7 @@
 namespace tact::host::server {
 namespace {
 
-const char* name_of(Link link) {
-  switch (link) {
-    case Link::kWaiting:
-      return "waiting";
-    case Link::kLive:
-      return "live";
-    case Link::kLost:
-      return "lost";
-    case Link::kReplay:
-      return "replay";
-  }
-  return "waiting";
-}
+constexpr std::array kLinkNames{"waiting", "live", "lost", "replay"};  // by Link
 
 }  // namespace
 
@@ -98,7 +87,7 @@ void LiveView::report_picker(const nlohmann::json& picker) {
 
 void LiveView::report() {
   nlohmann::json status{{"kind", "status"},
-                        {"link", name_of(link_)},
+                        {"link", kLinkNames[static_cast<std::size_t>(link_)]},
                         {"detail", detail_},
                         {"scene_number", scene_number_},
                         {"kept_s", record::RecentFrames::kKeep_s}};

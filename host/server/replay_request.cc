@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 
-#include "host/server/page_message.h"
+#include "model/io/json.h"
 
 namespace tact::host::server {
 namespace {
@@ -36,6 +36,13 @@ bool take(const nlohmann::json& value, std::optional<int>& into) {
 }
 
 }  // namespace
+
+nlohmann::json object_in(const std::string& text, const char* key) {
+  const auto message = model::io::parse_json(text, "request");
+  if (!message || !message->is_object()) return {};
+  const auto found = message->find(key);
+  return found != message->end() && found->is_object() ? *found : nlohmann::json();
+}
 
 std::optional<ReplayRequest> parse_replay(const std::string& text) {
   const nlohmann::json replay = object_in(text, "replay");

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <functional>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
@@ -22,6 +23,9 @@ struct ReplayRequest {
 };
 
 using Steer = std::function<void(const ReplayRequest&)>;
+
+/// The object that a page's message has under this key; null: none, or it is no JSON object.
+nlohmann::json object_in(const std::string& text, const char* key);
 
 /// None if the message has no "replay", or an invalid one.
 std::optional<ReplayRequest> parse_replay(const std::string& text);

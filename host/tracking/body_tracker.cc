@@ -2,6 +2,7 @@
 #include "host/tracking/body_tracker.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace tact::host::tracking {
@@ -10,21 +11,9 @@ namespace {
 // Noise and camera calibration may add this to a motion.
 constexpr double kNoise_m = 0.02, kNoise_rad = 0.1;
 
-TrackingTrouble trouble_of(pose::PoseStatus status) {
-  switch (status) {
-    case pose::PoseStatus::kOk:
-      return TrackingTrouble::kNone;
-    case pose::PoseStatus::kTooFewPoints:
-      return TrackingTrouble::kTooFewPoints;
-    case pose::PoseStatus::kDegenerate:
-      return TrackingTrouble::kDegenerate;
-    case pose::PoseStatus::kInvalid:
-      return TrackingTrouble::kInvalid;
-    case pose::PoseStatus::kNoPose:
-      return TrackingTrouble::kNoPose;
-  }
-  return TrackingTrouble::kInvalid;
-}
+constexpr std::array kTroubleOf{TrackingTrouble::kNone, TrackingTrouble::kTooFewPoints,
+                                TrackingTrouble::kDegenerate, TrackingTrouble::kInvalid,
+                                TrackingTrouble::kNoPose};  // by pose::PoseStatus
 
 bool is_reachable(const Pose& from, const Pose& to, double since_s) {
   const double period_s = std::min(since_s, kHold_s);  // limits the reach after a long gap
@@ -94,7 +83,7 @@ bool BodyTracker::is_believed(const Timed& next) {
 
 bool BodyTracker::take(const pose::PoseEstimate& estimate, double time_s, double now_s) {
   if (anchored_ && time_s <= good_.time_s) return false;
-  body_.trouble = trouble_of(estimate.status);
+  body_.trouble = kTroubleOf[static_cast<std::size_t>(estimate.status)];
   if (estimate.status != pose::PoseStatus::kOk) return false;
   const Timed next{.pose = estimate.pose, .time_s = time_s};
   if (!is_believed(next)) {

@@ -2,7 +2,7 @@
 // From any bytes, cut anywhere, come exactly the reports that stand in them whole.
 #include <vector>
 
-#include "hal/falcon/falcon_stream.h"
+#include "hal/falcon/falcon_packets.h"
 #include "tests/fuzz/fuzz.h"
 
 namespace {

@@ -6,7 +6,6 @@
 
 #include "hal/falcon/falcon_boot.h"
 #include "hal/falcon/falcon_packets.h"
-#include "hal/falcon/falcon_stream.h"
 #include "hal/falcon/ftdi_requests.h"
 #include "tools/verify/can.h"
 

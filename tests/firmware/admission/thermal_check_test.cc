@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware/admission/thermal_check.h"
-
 #include <gtest/gtest.h>
+
+#include "firmware/admission/refusals.h"
 
 namespace tact::firmware::admission::thermal_check_test {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware/console/status_line.h"
-
 #include <gtest/gtest.h>
+
+#include "firmware/console/operator_view.h"
 
 namespace tact::firmware::console::status_line_test {
 

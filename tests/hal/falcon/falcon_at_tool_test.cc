@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "hal/falcon/falcon_frame.h"
+#include "hal/falcon/falcon_kinematics.h"
 #include "hal/falcon/falcon_packets.h"
 
 namespace tact::hal::falcon::falcon_at_tool_test {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "hal/falcon/falcon_device.h"
-#include "hal/falcon/falcon_frame.h"
+#include "hal/falcon/falcon_kinematics.h"
 
 namespace tact::tests {
 

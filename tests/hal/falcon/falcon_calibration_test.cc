@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "hal/falcon/falcon_frame.h"
+#include "hal/falcon/falcon_kinematics.h"
 
 namespace tact::hal::falcon::falcon_calibration_test {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hal/falcon/falcon_exchange.h"
-
 #include <gtest/gtest.h>
+
+#include "hal/falcon/falcon_device.h"
 
 namespace tact::hal::falcon::falcon_exchange_test {
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hal/falcon/falcon_stream.h"
-
 #include <gtest/gtest.h>
 
 #include <random>
 #include <vector>
 
+#include "hal/falcon/falcon_packets.h"
 #include "tests/support/no_alloc.h"
 
 namespace tact::hal::falcon::falcon_stream_test {

@@ -8,7 +8,6 @@
 
 #include "hal/falcon/falcon_device.h"
 #include "hal/falcon_usb/falcon_open.h"
-#include "hal/falcon_usb/falcon_wake.h"
 #include "hal/registry/open_device.h"
 #include "hal/udev_rules.h"
 #include "tests/hal/falcon_usb/fake_libusb.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hal/falcon_usb/loop_silence.h"
-
 #include <gtest/gtest.h>
+
+#include "hal/falcon_usb/usbfs_pipe.h"
 
 namespace tact::hal::falcon_usb::loop_silence_test {
 

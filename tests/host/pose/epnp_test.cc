@@ -83,6 +83,10 @@ TEST(Epnp, FindsThePoseExactlyWithoutNoise) {
   }
 }
 
+MarkerView marker_view(const View& view) {
+  return {.camera = view.camera, .points_m = view.points_m, .pixels_px = view.pixels_px};
+}
+
 TEST(Epnp, AloneItMissesFlatObjectsAndSomeOfFourPoints) {
   // The source says n >= 4 is enough. 300 views each; polished like ours, from EPnP's start only.
   Views views;
@@ -90,8 +94,8 @@ TEST(Epnp, AloneItMissesFlatObjectsAndSomeOfFourPoints) {
     int out = 0;
     for (int i = 0; i < 300; ++i) {
       const View view = views.next(count, flat, 0.0);
-      const Pose polished =
-          polish_pose(view.camera, view.points_m, view.pixels_px, epnp_alone(view));
+      const MarkerView seen = marker_view(view);
+      const Pose polished = polish_pose({&seen, 1}, epnp_alone(view));
       if (!(distance(polished, view.truth) < 1e-6)) ++out;
     }
     return out;
@@ -129,8 +133,9 @@ TEST(Epnp, NoPoseNearTheTruthExplainsThePixelsBetter) {
   for (const int count : {4, 6, 20}) {
     for (int i = 0; i < 50; ++i) {
       const View view = views.next(count, i % 2 == 0, 0.5);
-      const Pose near = polish_pose(view.camera, view.points_m, view.pixels_px, view.truth);
-      const double near_px = reprojection_rms_px(view.camera, view.points_m, view.pixels_px, near);
+      const MarkerView seen = marker_view(view);
+      const Pose near = polish_pose({&seen, 1}, view.truth);
+      const double near_px = reprojection_rms_px({&seen, 1}, near);
       EXPECT_LE(view.estimate().rms_px, near_px * (1.0 + 1e-6) + 1e-9);
     }
   }

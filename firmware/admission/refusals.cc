@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware/admission/thermal_check.h"
+#include "firmware/admission/refusals.h"
 
 #include <fmt/format.h>
 
@@ -18,6 +18,17 @@ std::optional<model::Error> check_thermal(const model::scene::Scene& scene,
       "and {:.3g} N at most; allowed: {:.2f} or more, or a lower limits.force_N",
       scene.path, limits.thermal_time_s, limits.continuous_force_N, limits.force_N,
       std::ceil(100.0 * least_s) / 100.0)};
+}
+
+std::optional<model::Error> why_not_unattended(const model::scene::Scene& scene, bool is_service) {
+  const bool is_odrive = scene.device.kind == "can-odrive";
+  if (!is_service || !scene.device.is_on_can() || scene.device.can.homing != model::Homing::kJig)
+    return std::nullopt;
+  return model::Error{fmt::format(
+      "device.can.homing = \"jig\": a service would believe that the arms rest on the jig whenever "
+      "it starts, after a crash too; choose \"absolute\"{}, or start tactd by hand with the arms "
+      "on the jig",
+      is_odrive ? " or \"index\"" : "")};
 }
 
 }  // namespace tact::firmware::admission
