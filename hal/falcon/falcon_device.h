@@ -26,9 +26,9 @@
 
 namespace tact::hal::falcon {
 
-/// Which reports answer a command: each command is answered once, in order. A report that no command
-/// waits for is a repetition. A command older than kLost_ns is not waited for any more, so a lost
-/// answer opens the door to a repetition for that long at most.
+/// Matches reports to commands: each command is answered once, in order. A report without an
+/// unanswered command is a repetition. A command older than kLost_ns counts as lost, so a lost
+/// answer lets a repetition pass for that long at most.
 class FalconExchange {
  public:
   static constexpr std::int64_t kLost_ns = 8'000'000;

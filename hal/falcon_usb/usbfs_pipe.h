@@ -21,10 +21,10 @@
 
 namespace tact::hal::falcon_usb {
 
-/// When the loop has gone silent: a Falcon may hold its last motor words for ever, so the thread
-/// that waits for USB sends zeros in its place. The loop only counts its commands; the thread looks
-/// at the count and at its own clock. A loop that comes back still holds its old force for the hand,
-/// which would meet it in one step: the pipe tells that it stood in, and the device latches.
+/// Detects a loop that has stopped: a Falcon may hold its last motor words for ever, so the thread
+/// that waits for USB sends zeros in its place. The loop only counts its commands; the thread reads
+/// the count and its own clock. A loop that continues would write its old force in one step: the
+/// pipe reports that it sent zeros, and the device latches a fault.
 class LoopSilence {
  public:
   /// `commands`: how many the loop has sent. True: silent for so long; again after as long.
