@@ -10,8 +10,8 @@
 //   clutch      counts after 10 ms, as the grip switch; one that flaps counts as pressed: no force,
 //               and no fault, until it has been quiet for a second
 //   heartbeat   toggles after every healthy tick; the external relay opens 10 ms after an edge
-//   enable      set 100 ms after the heartbeat has begun; cleared in the tick of a fault, or when
-//               the heartbeat has paused for more than 10 ms: lines need well over 100 ticks a second
+//   enable      set 100 ms after the heartbeat has begun; cleared in the tick of a fault, or if the
+//               heartbeat pauses for more than 10 ms: lines need well over 100 ticks a second
 //
 // The supervisor latches a fault until the operator resets it; here it lasts as long as its cause.
 // Two channels that monitor each other: ISO 13850, ISO 13849-1 category 3 (GP-1).

@@ -56,7 +56,7 @@ class Sources:
         self.properties = {word for word in words if is_proof(word)}
         plan = (root / "tools/limits/cases/plan.cc").read_text()
         wall = re.search(r'kWallName = "([\w-]+)"', (root / "tools/limits/cases/plan.h").read_text())
-        self.cases = set(re.findall(r'Case\{\.name = "([\w-]+)"', plan)) | ({wall[1]} if wall else set())
+        self.cases = set(re.findall(r'(?:Case\{\.name = |goes_wrong\(\s*)"([\w-]+)"', plan)) | ({wall[1]} if wall else set())
         self.bench = bench_cases(root)  # name: None, "" or the fault that it latches
         self.wanted = {line for path in (root / "tests/mutations").rglob("*.patch") for line in seen_by(path.read_text())}
 

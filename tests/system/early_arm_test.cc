@@ -33,8 +33,9 @@ class Arming : public Tactd {
     std::ofstream(script)
         << "export XDG_RUNTIME_DIR=" << in_folder("") << "\ncd " << in_folder("") << "\n"
         << program_path("tactd") << " " << kLiver << " --no-black-box --seconds 3 --socket "
-        << in_folder("t.sock") << kStubDevice << " --json " << in_folder("report.json") << " 2>"
-        << reported()
+        << in_folder("t.sock") << kStubDevice
+        << " --set device.force_dimension.watchdog_s=0.0318 --json " << in_folder("report.json")
+        << " 2>" << reported()
         << " & tactd=$!\nready() { while kill -0 $tactd && ! grep -qs 'ready, force is off' "
         << reported() << "; do sleep .05; done; }\n"
         << "ctl() { " << program_path("tactctl") << " " << kLiver << " --pid $tactd $1; }\n"
