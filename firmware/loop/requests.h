@@ -23,7 +23,7 @@ struct Requests {
   std::atomic<bool> arm_at_start{false};  // arm once, as soon as the state is Ready
   std::atomic<bool> stop{false};          // zero force, then end the loop
   std::atomic<model::Fault> fault{model::Fault::kNone};  // first fault of the watch
-  std::atomic<std::uint32_t> refused{0};                 // refused requests to arm or reset
+  std::atomic<std::uint32_t> refused{0};  // requests refused: arm by the loop, others before it
 
   /// Replaces a request that is not answered yet. Returns the number; only one thread may ask.
   std::uint32_t ask(Request request) {

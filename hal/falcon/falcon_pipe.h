@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// falcon_pipe.h - packets to and from a Falcon whose firmware runs, any user carries them.
+// falcon_pipe.h - packets to and from a Falcon whose firmware runs, over any transport.
 //
 // One I/O thread waits for the bus and hands the newest report over; the loop never waits. A pipe
 // that has ended stays so: a device that comes back is opened again. It brings no reports any more,

@@ -191,7 +191,7 @@ void UsbfsPipe::stop(const falcon::FalconPacket& last) {
   }
   thread_.join();
   if (receiver_.health().end == falcon::FalconPipeEnd::kStalled && !receiver_.gone())
-    static_cast<void>(port_->clear_halt(falcon::kFalconEndpointIn));  // for any user opens it next
+    static_cast<void>(port_->clear_halt(falcon::kFalconEndpointIn));  // for the next one to open it
   port_.reset();
 }
 

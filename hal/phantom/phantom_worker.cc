@@ -122,7 +122,7 @@ bool PhantomWorker::cycle() {
   cycles_ended();
   // When nobody has waited so long, this thread is the last to know the worker.
   const std::shared_ptr<PhantomWorker> last = std::move(self_);
-  thread_ends();  // any user waits may close the device now
+  thread_ends();  // a thread that waits may close the device now
   return false;
 }
 

@@ -76,7 +76,7 @@ std::optional<Error> distrust_library(const std::string& file, const std::string
   const bool allowed = std::ranges::any_of(
       folders.allowed, [&](const std::string& folder) { return lies_below(file, folder); });
   if (!allowed) return refused("as it lies below no system folder, nor /opt");
-  // Every folder up to the top: any user may write one of them can put another file in its place.
+  // Every folder up to the top: a user who may write one can put another file in its place.
   for (path part = file; part == folders.top || lies_below(part, folders.top);
        part = part.parent_path()) {
     if (const auto why = fault_of(part, part == file, folders)) return refused(*why);

@@ -96,7 +96,7 @@ LibraryTrouble LibraryWorker::first_trouble() const RT_SAFE {
 std::string LibraryWorker::words(std::int64_t now_ns) const {
   std::string said = trouble_text();
   const std::int64_t cycle_ns = last_cycle_ns_;
-  // Always the same message, as any user watches tells each one that is new.
+  // Always the same message, as a reader reports each one that is new.
   if (cycle_ns != 0 && now_ns - cycle_ns > kLibrarySilence_ns)
     said += fmt::format(
         "{}the library has made no call for more than {} ms: the device may still push; switch its "

@@ -24,6 +24,7 @@ const char* text_of(TrackingTrouble trouble) {
                                      "it jumps",
                                      "frozen",
                                      "out of order"};
+  static_assert(kTexts.size() == static_cast<std::size_t>(TrackingTrouble::kOutOfOrder) + 1);
   return kTexts[static_cast<std::size_t>(trouble)];
 }
 

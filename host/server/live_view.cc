@@ -14,6 +14,7 @@ namespace tact::host::server {
 namespace {
 
 constexpr std::array kLinkNames{"waiting", "live", "lost", "replay"};  // by Link
+static_assert(kLinkNames.size() == static_cast<std::size_t>(Link::kReplay) + 1);
 
 }  // namespace
 

@@ -14,6 +14,7 @@ constexpr double kNoise_m = 0.02, kNoise_rad = 0.1;
 constexpr std::array kTroubleOf{TrackingTrouble::kNone, TrackingTrouble::kTooFewPoints,
                                 TrackingTrouble::kDegenerate, TrackingTrouble::kInvalid,
                                 TrackingTrouble::kNoPose};  // by pose::PoseStatus
+static_assert(kTroubleOf.size() == static_cast<std::size_t>(pose::PoseStatus::kNoPose) + 1);
 
 bool is_reachable(const Pose& from, const Pose& to, double since_s) {
   const double period_s = std::min(since_s, kHold_s);  // limits the reach after a long gap

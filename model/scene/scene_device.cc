@@ -102,6 +102,7 @@ void visit_can(Keys& k, DeviceSettings& device) {
   constexpr std::array kHoming{Choice{"absolute", "absolute encoders, zero_turns holds for good"},
                                Choice{"index", "the drives look for the index pulse at start"},
                                Choice{"jig", "the arms rest at home_rad when tactd starts"}};
+  static_assert(kHoming.size() == static_cast<std::size_t>(Homing::kJig) + 1);
   k.text("interface", "of the bus, as ip link shows it", can.interface, kOptional);
   visit_nodes(k, can);
   k.choice("homing", kHoming, "how the arms' angles are known", can.homing);

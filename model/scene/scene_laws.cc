@@ -27,7 +27,7 @@ constexpr std::array<Choice, kLawNames.size()> law_choices() {
   return out;
 }
 constexpr auto kLaws = law_choices();
-static_assert(std::ranges::is_sorted(kLawNames, {}, &LawName::kind) &&
+static_assert(std::ranges::is_sorted(kLawNames, std::ranges::less_equal{}, &LawName::kind) &&
               kLawNames.back().kind == LawKind{kLawNames.size() - 1});
 
 void visit_rhombus(Keys& k, Scene& scene) {
@@ -51,6 +51,7 @@ constexpr std::array kDiscForms{
     Choice{"almen-laszlo", "the disc as it is: stiffness jumps at every layer"},
     Choice{"linear", "its secant: one linear spring"},
 };
+static_assert(kDiscForms.size() == static_cast<std::size_t>(indent::DiscForm::kLinear) + 1);
 
 void visit_disc_stack(Keys& k, indent::DiscStackParameters& p) {
   k.choice("form", kDiscForms, "almen-laszlo: stiffness jumps at each layer; linear: one spring",
@@ -73,6 +74,7 @@ constexpr std::array kHexWeights{
     Choice{"node", "a body spring per node: an elastic foundation"},
     Choice{"ring", "a body spring per ring"},
 };
+static_assert(kHexWeights.size() == static_cast<std::size_t>(indent::HexWeight::kRing) + 1);
 
 void visit_hex_sheet(Keys& k, indent::HexSheetParameters& p) {
   k.choice("weight", kHexWeights, "body springs: one per node, or one per ring", p.weight);
@@ -107,8 +109,10 @@ constexpr std::array kIntegrators{
 };
 static_assert(std::ranges::equal(kIntegrators, springs::kIntegratorNames, {}, &Choice::name,
                                  &springs::IntegratorName::name));
-static_assert(std::ranges::is_sorted(springs::kIntegratorNames, {},
-                                     &springs::IntegratorName::integrator));
+static_assert(std::ranges::is_sorted(springs::kIntegratorNames, std::ranges::less_equal{},
+                                     &springs::IntegratorName::integrator) &&
+              springs::kIntegratorNames.back().integrator ==
+                  springs::Integrator{springs::kIntegratorNames.size() - 1});
 
 void visit_spring_patch(Keys& k, springs::SpringPatchParameters& p) {
   k.number("surface_stiffness_N_per_m", {0.01, 1e5}, "of a spring along an edge of the mesh",

@@ -28,6 +28,7 @@ constexpr std::array kActions{
     reader::Choice{"tear", "pull so far that the tear force is passed and the tissue lets go"},
     reader::Choice{"turn", "turn the tool; a release turns it back"},
 };
+static_assert(kActions.size() == static_cast<std::size_t>(Action::kTurn) + 1);
 
 constexpr std::array kPivots{
     reader::Choice{"tip", "the middle of the probe spheres"},

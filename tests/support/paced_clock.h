@@ -3,8 +3,10 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 
 #include "firmware/loop/clock.h"
+#include "model/rt.h"
 
 namespace tact::tests {
 

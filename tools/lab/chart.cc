@@ -63,7 +63,7 @@ std::string hash_of_files(std::initializer_list<std::string> paths) {
   for (const std::string& path : paths) {
     if (path.empty()) continue;
     const auto text = model::io::read_file(path);
-    // A file that cannot be read is told by any user needs it, with its name.
+    // The code that needs a file reports that it cannot be read, with its name.
     hash.add(text ? *text : std::string());
   }
   return hash.hex();

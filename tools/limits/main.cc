@@ -84,7 +84,7 @@ int test_limits(const program::Program& program, const Options& o) {
   if (!cases) return program.fail(cases.error());
   const auto scene = o.scene.load();
   if (!scene) return program.fail(scene.error());
-  // Before the run: any user changes a file meanwhile must not get its digest into the report.
+  // Before the run: a file that changes meanwhile must not get its digest into the report.
   auto evidence = collect_evidence(o.scene.path, o.scene.overrides, o.people);
   if (!evidence) return program.fail(evidence.error());
   if (const auto error = program::prepare_folder(o.out)) return program.fail(*error);

@@ -192,7 +192,7 @@ Result<Repaired> repair_file(const RepairOrder& order,
     return file.error();
   const auto script = find_script();
   if (!script) return Error{fmt::format("{}: {}", order.source, script.error().message)};
-  // In memory: any user kills this program with all the numbers of a scan in it cleans up nothing.
+  // In memory: a killed program cleans up nothing, and a scan is a patient's data.
   const auto plain = MemoryFile::make(), repaired = MemoryFile::make(), log = MemoryFile::make();
   for (const auto* file : {&plain, &repaired, &log})
     if (!*file) return file->error();

@@ -2,7 +2,7 @@
 // unit.h - in which unit the numbers of a mesh file are taken, and why.
 //
 // No format but glTF says its unit. Where none is named, it is the one that makes an organ of the
-// mesh: any user reads the result must be told, since a guess may be wrong by a factor of ten.
+// mesh: a reader of the result must know it, since a guess may be wrong by a factor of ten.
 #pragma once
 
 #include <map>

@@ -76,7 +76,7 @@ class Program {
 struct SceneArguments {
   std::string path;
   std::vector<std::string> overrides;
-  bool trust_library = false;  // of the vendor, any user's file it is
+  bool trust_library = false;  // the vendor's, whichever user owns the file
 
   void add_to(CLI::App& options, const std::string& needs = "");
   model::Result<model::scene::Scene> load() const;

@@ -20,7 +20,8 @@ struct SweepOptions {
   unsigned threads = 0;  // 0: as many as there are cores
 };
 
-/// Calls work(job) once for every job. False if Ctrl-C ended it early (interrupt.h).
+/// Calls work(job) once for every job, on threads that are made for this call and end with it.
+/// False if Ctrl-C ended it early (interrupt.h).
 bool run_jobs(std::size_t jobs, const SweepOptions& options,
               const std::function<void(std::size_t job)>& work);
 

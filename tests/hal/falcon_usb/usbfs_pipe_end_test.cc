@@ -79,7 +79,7 @@ TEST(UsbfsPipeEnd, AfterAStallCommandsReachTheDeviceAndStopSendsTheLast) {
   EXPECT_EQ(Bus::of_loop(bus.taken), expected);
   if (monotonic_ns() - before_ns < kLoopGone_ns) EXPECT_EQ(bus.taken, expected);
   EXPECT_EQ(bus.cleared,
-            std::vector<unsigned>{falcon::kFalconEndpointIn});  // for any user opens it next
+            std::vector<unsigned>{falcon::kFalconEndpointIn});  // for the next one to open it
 }
 
 TEST(UsbfsPipeEnd, AfterAStallASilentLoopIsReplacedByZerosToo) {

@@ -25,7 +25,7 @@ constexpr int kVersion = 3;
 /// Numbers as Table::to_json writes them: those that are not finite are words.
 report::Cell cell_of(const nlohmann::json& value, bool is_word) {
   if (is_word) return value.get<std::string>();
-  // Infinity becomes NaN, too: both mean "not measured" to any user chooses by it.
+  // Infinity becomes NaN, too: both mean "not measured" to a program that chooses by it.
   return value.is_number() ? value.get<double>() : std::nan("");
 }
 

@@ -37,7 +37,7 @@ report::Row run(std::size_t job, Grid grid) {
   const NamedLaw& named = probed_laws()[which];
   const double range_m = named.range_m;
   const double share = depth_share(depth, grid), depth_m = share * range_m;
-  // A new gate for each cell: cells are independent, any user computes them.
+  // A new gate for each cell: cells are independent and computed on any thread.
   GateMonitor gate(kRate_Hz);
   gate.open(0.0);
   const int ticks = static_cast<int>(std::ceil(std::abs(depth_m) / kSpeed_mps * kRate_Hz));

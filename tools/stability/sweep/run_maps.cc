@@ -16,7 +16,7 @@ using model::Error;
 using model::Result;
 
 Result<report::Table> computed(const Map& map, const StabilityOptions& options) {
-  // In the order of the jobs, any user was first: a second run gives the same bytes.
+  // In the order of the jobs, not of their end: a second run gives the same bytes.
   auto rows =
       program::sweep<report::Row>(map.jobs(options.grid), {.label = map.name},
                                   [&](std::size_t job) { return map.run(job, options.grid); });
