@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/scene/scene_keys.h"
+
 namespace tact::model::scene {
 namespace {
 
