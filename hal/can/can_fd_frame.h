@@ -63,7 +63,7 @@ struct CanFdBits {
 CanFdBits most_can_fd_bits(const CanFdFrame& frame) RT_SAFE;
 
 /// Bit/s of a bus, > 0. Frames are twice as long on a bus at half the rate: the force is later, and
-/// less stiffness is sound (HL-1). A virtual bus tells none; it counts as set up by kLinkType.
+/// less stiffness is sound (HL-1). A virtual bus reports none; it counts as set up by kLinkType.
 struct CanRate {
   double slow_bps = kCanFdSlow_bps;  // classic CAN has this one alone
   double fast_bps = kCanFdFast_bps;  // of CAN FD, behind the bit rate switch

@@ -37,6 +37,9 @@ class LineRequest {
 
   LineRequest() = default;
   explicit LineRequest(std::shared_ptr<Lines> lines) : lines_(std::move(lines)) {}
+  // Not copied: a copy would keep enable and heartbeat requested after its owner released them.
+  LineRequest(LineRequest&&) = default;
+  LineRequest& operator=(LineRequest&&) = default;
 
   bool empty() const RT_SAFE { return lines_ == nullptr; }
   /// One ioctl for all, on a chip that does not sleep. False: the chip does not answer.
@@ -55,6 +58,8 @@ class Chip {
   struct Handle;
 
   Chip() = default;  // empty
+  Chip(Chip&&) = default;
+  Chip& operator=(Chip&&) = default;
   /// Empty if it cannot be opened.
   explicit Chip(const std::string& path);
 

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hal/moteus/moteus_protocol.h"
 
-#include <fmt/core.h>
-
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -18,7 +15,7 @@ namespace {
 constexpr std::uint32_t kReplyWanted = 0x8000;
 constexpr std::uint8_t kWrite = 0x00, kRead = 0x10, kReply = 0x20;
 constexpr std::uint8_t kWriteError = 0x30, kReadError = 0x31, kNothing = 0x50;
-constexpr double kVoltageStep_V = 0.5;  // of int8; a temperature has 1 degC
+constexpr double kVoltageStep_V = 0.5, kTemperatureStep_C = 1.0;  // of int8
 
 enum class Type : std::uint8_t { kInt8, kInt16, kInt32, kFloat };
 
@@ -131,35 +128,43 @@ class Reader {
   bool good_ = true;
 };
 
-/// What a register's value becomes: a whole number, or one in steps.
-struct Field {
-  MoteusRegister number;
-  Type type;  // that was asked for; another one is not taken
-  std::optional<int> MoteusReply::* whole = nullptr;
-  std::optional<double> MoteusReply::* real = nullptr;
-  double step = 1.0;
-};
-constexpr Field kFields[] = {
-    {MoteusRegister::kMode, Type::kInt8, &MoteusReply::mode},
-    {MoteusRegister::kPosition, Type::kFloat, nullptr, &MoteusReply::position_turns},
-    {MoteusRegister::kVelocity, Type::kFloat, nullptr, &MoteusReply::velocity_turns_per_s},
-    {MoteusRegister::kTorque, Type::kFloat, nullptr, &MoteusReply::torque_Nm},
-    {MoteusRegister::kHomeState, Type::kInt8, &MoteusReply::home_state},
-    {MoteusRegister::kVoltage, Type::kInt8, nullptr, &MoteusReply::voltage_V, kVoltageStep_V},
-    {MoteusRegister::kTemperature, Type::kInt8, nullptr, &MoteusReply::temperature_C},
-    {MoteusRegister::kFault, Type::kInt8, &MoteusReply::fault},
-    {MoteusRegister::kRegisterMap, Type::kInt32, &MoteusReply::register_map},
-};
-
+/// One value of a reply, if it is of the type that was asked for.
 void take(MoteusReply& reply, std::uint32_t number, Type type,
           std::optional<double> value) RT_SAFE {
-  if (!value) return;
-  for (const Field& field : kFields) {
-    if (number != static_cast<std::uint32_t>(field.number) || type != field.type) continue;
-    if (field.whole != nullptr)
-      reply.*field.whole = static_cast<int>(*value);
-    else
-      reply.*field.real = field.step * *value;
+  if (!value || number > 0xFFFF) return;
+  const auto whole = static_cast<int>(type == Type::kFloat ? 0.0 : *value);
+  const bool is_int8 = type == Type::kInt8, is_float = type == Type::kFloat;
+  switch (static_cast<MoteusRegister>(number)) {
+    case MoteusRegister::kMode:
+      if (is_int8) reply.mode = whole;
+      break;
+    case MoteusRegister::kPosition:
+      if (is_float) reply.position_turns = value;
+      break;
+    case MoteusRegister::kVelocity:
+      if (is_float) reply.velocity_turns_per_s = value;
+      break;
+    case MoteusRegister::kTorque:
+      if (is_float) reply.torque_Nm = value;
+      break;
+    case MoteusRegister::kHomeState:
+      if (is_int8) reply.home_state = whole;
+      break;
+    case MoteusRegister::kVoltage:
+      if (is_int8) reply.voltage_V = kVoltageStep_V * *value;
+      break;
+    case MoteusRegister::kTemperature:
+      if (is_int8) reply.temperature_C = kTemperatureStep_C * *value;
+      break;
+    case MoteusRegister::kFault:
+      if (is_int8) reply.fault = whole;
+      break;
+    case MoteusRegister::kRegisterMap:
+      if (type == Type::kInt32) reply.register_map = whole;
+      break;
+    case MoteusRegister::kFeedforwardTorque:
+    case MoteusRegister::kWatchdog:
+      break;  // never asked for
   }
 }
 
@@ -171,38 +176,6 @@ void take_values(Reader& reader, std::uint8_t head, MoteusReply& reply) RT_SAFE 
   for (std::uint32_t i = 0; i < count && reader.good(); ++i)  // ends with the frame
     take(reply, first + i, type, reader.value(type));
 }
-
-constexpr MoteusFaultText kWords[] = {
-    {32,
-     "Calibration failed, it senses no magnet: check the magnet's distance, then moteus_tool "
-     "--calibrate."},
-    {33,
-     "The power stage reports a fault, most often a supply that drops under load: take a "
-     "stronger supply, check the motor cables for a short."},
-    {34,
-     "DC bus voltage too high: braking fed energy back; take a supply or a damper that sinks "
-     "it."},
-    {35, "The encoder's readings fit no magnet: check magnet and encoder, then calibrate again."},
-    {36, "The motor is not configured: moteus_tool --calibrate."},
-    {37,
-     "The firmware missed a cycle of its own: restart the drive, update it if that comes back."},
-    {38, "The drive or the motor is too hot: let it cool, then ask for less force."},
-    {39,
-     "The position is outside servopos.position_min and position_max: bring the arm back by "
-     "hand, or set both to nan."},
-    {40, "DC bus voltage too low: is the drive's supply on?"},
-    {41, "A setting was changed while it ran: save, restart the drive."},
-    {42,
-     "It has no commutation encoder that is valid: check motor_position.sources, then "
-     "calibrate."},
-    {43, "It has no position that is valid: check motor_position.output and its encoder."},
-    {44, "The power stage cannot be enabled: check the supply, restart the drive."},
-    {46, "The firmware missed its own time: restart the drive, update it if that comes back."},
-    {47, "servo.bemf_feedforward is set without an acceleration limit: set it to 0."},
-    {48, "servopos.position_min or position_max lie outside what it can tell: set both to nan."},
-    {49, "servo.fault_position_error acts, but tact sends no position: set it to nan."},
-    {50, "servo.fault_velocity_error acts, but tact sends no velocity: set it to nan."},
-};
 
 }  // namespace
 
@@ -261,36 +234,6 @@ std::optional<MoteusReply> decode_moteus(const can::CanFdFrame& frame, int node)
     }
   }
   return reader.good() ? std::optional(reply) : std::nullopt;
-}
-
-std::span<const MoteusFaultText> moteus_fault_texts() RT_SAFE { return kWords; }
-
-std::string moteus_fault_message(int code) {
-  const auto* const found =
-      std::ranges::find_if(kWords, [code](const auto& one) { return one.code == code; });
-  return fmt::format("{} (fault {})",
-                     found != std::end(kWords)
-                         ? found->message
-                         : "The drive reports a fault that is not known here: ask moteus_tool.",
-                     code);
-}
-
-const char* moteus_mode_name(int mode) RT_SAFE {
-  switch (static_cast<MoteusMode>(mode)) {
-    case MoteusMode::kStopped:
-      return "stopped";
-    case MoteusMode::kFault:
-      return "in fault";
-    case MoteusMode::kEnabling:
-    case MoteusMode::kCalibrating:
-    case MoteusMode::kCalibrated:
-      return "preparing";
-    case MoteusMode::kPosition:
-      return "in position mode";
-    case MoteusMode::kTimeout:
-      return "in timeout";
-  }
-  return "in another mode";
 }
 
 }  // namespace tact::hal::moteus

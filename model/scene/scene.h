@@ -86,7 +86,7 @@ struct Scene {
 /// Read a scene and its meshes. `overrides` are "key.path=value" as TOML writes values.
 Result<Scene> load_scene(const std::string& path, const std::vector<std::string>& overrides);
 
-/// The numbers of the law that is felt, with the keys, units and ranges of the scene's reader: what
+/// The numbers of the law in use, with the keys, units and ranges of the scene's reader: what
 /// a person may change, to feel it. What a law or a device can bear is asked where a run is opened.
 /// `scene` was loaded with the same overrides.
 Result<std::vector<reader::SceneNumber>> law_numbers(const Scene& scene,

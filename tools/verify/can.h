@@ -43,7 +43,7 @@ bool refuses_damage(const hal::can::CanFrame& sound, Decode decode) {
          !decode(remote) && !decode(stranger);
 }
 
-/// One reply, as its decoder reads it for a node and `to_json` tells it; and the damaged ones.
+/// One reply, as its decoder reads it for a node and `to_json` prints it; and the damaged ones.
 template <class Decode, class ToJson>
 nlohmann::json decoded(const hal::can::CanFrame& frame, int node, Decode decode, ToJson to_json,
                        Report& report) {
