@@ -58,6 +58,7 @@ changed_tests() {
   mapfile -d '' -t data < <(tracked ls-files -z -co --exclude-standard |
     grep -zvE '\.(cc|h)$|(^|/)(README|CHANGELOG|CONTRIBUTING|decisions)\.md$|^host/web/|^tests/(rig|browser|mutations|house)/' |
     sed -z "s|^|$root/|")
+  data+=("$root/host/web/src/link/records.ts")
   any_newer tests "${data[@]}" && { echo .; return; }
   changed=$(changed_programs tests)
   for program in $(built_programs); do

@@ -2,7 +2,6 @@
 #include "firmware/black_box/black_box.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 namespace tact::firmware::black_box {
 
@@ -12,13 +11,10 @@ BlackBox::BlackBox(BlackBoxRun run, double rate_Hz, double frame_rate_Hz)
       frames_(static_cast<std::size_t>(kKeep_s * frame_rate_Hz)),
       ticks_after_(static_cast<std::uint64_t>(kAfter_s * rate_Hz)) {}
 
-BlackBox::~BlackBox() {
-  finish();
-  if (run_.mesh_fd >= 0) close(run_.mesh_fd);
-}
+BlackBox::~BlackBox() { finish(); }
 
 void BlackBox::add(const loop::TickRecord& record) {
-  ticks_.add(telemetry::LoggedTick::of(record, run_.header.non_rt != 0));
+  ticks_.add(protocol::LoggedTick::of(record, run_.header.non_rt));
   if (to_wait_ > 0) --to_wait_;
   const model::Fault fault = record.output.fault;
   // A fault during the 0.25 s of an earlier one goes into the same file, with its ticks.

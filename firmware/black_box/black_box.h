@@ -21,14 +21,13 @@ class BlackBox final : public telemetry::Recorder {
  public:
   static constexpr double kKeep_s = 10.0, kAfter_s = 0.25;
 
-  /// Takes ownership of run.mesh_fd.
   BlackBox(BlackBoxRun run, double rate_Hz, double frame_rate_Hz);
   ~BlackBox() override;
   BlackBox(const BlackBox&) = delete;
   BlackBox& operator=(const BlackBox&) = delete;
 
   void add(const loop::TickRecord& record) override;
-  void add(const telemetry::Frame& frame) override { frames_.add(frame); }
+  void add(const protocol::Frame& frame) override { frames_.add(frame); }
   void stands(model::Fault fault) override;
   /// Starts to write the pending file, once its 0.25 s have passed.
   void work() override;
@@ -44,8 +43,8 @@ class BlackBox final : public telemetry::Recorder {
   void write(const Kept& kept);
 
   BlackBoxRun run_;
-  NewestOnes<telemetry::LoggedTick> ticks_;
-  NewestOnes<telemetry::Frame> frames_;
+  NewestOnes<protocol::LoggedTick> ticks_;
+  NewestOnes<protocol::Frame> frames_;
   std::uint64_t ticks_after_;  // kept after a fault, before the file is written
   model::Fault before_ = model::Fault::kNone, waiting_ = model::Fault::kNone;
   std::uint64_t to_wait_ = 0;  // ticks

@@ -12,7 +12,7 @@
 #include <ctime>
 #include <filesystem>
 
-#include "firmware/telemetry/telemetry_frame.h"
+#include "firmware/telemetry/frame_builder.h"
 
 namespace tact::firmware::black_box {
 namespace {
@@ -23,19 +23,6 @@ using model::Result;
 
 // Duration before the end with one frame per tick; chosen.
 constexpr std::int64_t kEveryTick_ns = 500'000'000;
-
-/// All bytes of a memory file; fewer after a read error.
-std::vector<std::byte> read_all(int fd) {
-  const off_t size = lseek(fd, 0, SEEK_END);
-  std::vector<std::byte> bytes(size > 0 ? static_cast<std::size_t>(size) : 0);
-  std::size_t read = 0;
-  while (read < bytes.size()) {
-    const ssize_t n = pread(fd, bytes.data() + read, bytes.size() - read, static_cast<off_t>(read));
-    if (n <= 0) break;
-    read += static_cast<std::size_t>(n);
-  }
-  return bytes;
-}
 
 // Replaces all but letters, digits, dots and underscores of a scene's name.
 std::string plain(std::string text) {
@@ -49,10 +36,10 @@ std::string plain(std::string text) {
 std::string free_path(const BlackBoxRun& run, model::Fault fault) {
   const std::time_t now = std::time(nullptr);
   const std::string stem =
-      fmt::format("{}/{}-{:%Y%m%dT%H%M%SZ}-{}-{}", run.folder, plain(run.scene_name),
+      fmt::format("{}/{}-{:%Y%m%dT%H%M%SZ}-{}-{}", run.folder, plain(run.header.scene_name),
                   fmt::gmtime(now), static_cast<int>(fault), plain(model::describe(fault).name));
   std::string path = stem + ".tactlog";
-  // Two faults in one second. If the file appears meanwhile, TickLogWriter::create refuses it.
+  // Two faults in one second. If the file appears meanwhile, RunWriter::create refuses it.
   for (int n = 2; fs::exists(path); ++n) path = fmt::format("{}-{}.tactlog", stem, n);
   return path;
 }
@@ -89,17 +76,17 @@ Result<std::string> black_box_folder(const std::string& asked) {
   return folder.string();
 }
 
-std::vector<telemetry::Frame> with_last_ticks(const Kept& kept) {
-  std::vector<telemetry::Frame> out;
+std::vector<protocol::Frame> with_last_ticks(const Kept& kept) {
+  std::vector<protocol::Frame> out;
   if (kept.frames.empty() || kept.ticks.empty()) return kept.frames;
   const auto tick = [&kept](std::uint64_t number) {
     return std::lower_bound(
         kept.ticks.begin(), kept.ticks.end(), number,
-        [](const telemetry::LoggedTick& t, std::uint64_t n) { return t.tick < n; });
+        [](const protocol::LoggedTick& t, std::uint64_t n) { return t.tick < n; });
   };
   const std::int64_t from_ns = kept.ticks.back().due_ns - kEveryTick_ns;
   for (std::size_t i = 0; i < kept.frames.size(); ++i) {
-    const telemetry::Frame& picture = kept.frames[i];
+    const protocol::Frame& picture = kept.frames[i];
     out.push_back(picture);
     const bool last = i + 1 == kept.frames.size();
     const auto shown = tick(picture.tick);
@@ -108,24 +95,25 @@ std::vector<telemetry::Frame> with_last_ticks(const Kept& kept) {
     const auto end = last ? kept.ticks.end() : tick(kept.frames[i + 1].tick);
     for (auto t = shown + 1; t < end; ++t)
       if (t->due_ns >= from_ns)
-        out.push_back(frame_of_tick(picture, *t, picture.time_ns + t->due_ns - shown->due_ns));
+        out.push_back(
+            telemetry::frame_of_tick(picture, *t, picture.time_ns + t->due_ns - shown->due_ns));
   }
   return out;
 }
 
 Result<std::string> write_black_box(const BlackBoxRun& run, const Kept& kept) {
-  telemetry::LogHeader header = run.header;
-  header.ticks = kept.ticks.size();
-  std::error_code failed;  // TickLogWriter::create then fails and reports it
+  std::error_code failed;  // RunWriter::create then fails and reports it
   fs::create_directories(run.folder, failed);
   const std::string path = free_path(run, kept.fault);
-  auto log = telemetry::TickLogWriter::create(path, header);
-  if (!log) return log.error();
+  auto file = protocol::RunWriter::create(
+      path, protocol::start_of_run(run.header, run.meshes,
+                                   {protocol::type_of_record<protocol::LoggedTick>(),
+                                    protocol::type_of_record<protocol::Frame>()}));
+  if (!file) return file.error();
   // Ticks before frames: a truncated file then still has the ticks.
-  for (const telemetry::LoggedTick& tick : kept.ticks) log->add(tick);
-  log->append(recording_start(run.hello, read_all(run.mesh_fd)));
-  for (const telemetry::Frame& frame : with_last_ticks(kept)) log->append(recording_frame(frame));
-  if (auto error = log->close()) return std::move(*error);
+  for (const protocol::LoggedTick& tick : kept.ticks) file->add(chunk_of(tick));
+  for (const protocol::Frame& frame : with_last_ticks(kept)) file->add(chunk_of(frame));
+  if (auto error = file->close()) return std::move(*error);
   return path;
 }
 

@@ -3,31 +3,31 @@
 //
 //     SCENE-DATE-NUMBER-FAULT.tactlog      liver-20260131T120000Z-105-loop-late.tactlog
 //
-// The frames are a recording as tact-view makes it (recording_format.h), at the frame rate, and one
+// Head, meshes, ticks and frames (firmware/protocol/run_file.h); frames at the frame rate, and one
 // per tick in the last half second. An existing file is never overwritten.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
-#include "firmware/telemetry/tick_log.h"
+#include "firmware/protocol/logged_tick.h"
+#include "firmware/protocol/run_file.h"
 
 namespace tact::firmware::black_box {
 
 /// Ticks and frames, oldest first.
 struct Kept {
   model::Fault fault = model::Fault::kNone;
-  std::vector<telemetry::LoggedTick> ticks;
-  std::vector<telemetry::Frame> frames;
+  std::vector<protocol::LoggedTick> ticks;
+  std::vector<protocol::Frame> frames;
 };
 
 /// The same in every file of a run.
 struct BlackBoxRun {
   std::string folder;
-  std::string scene_name;
-  telemetry::LogHeader header;
-  telemetry::Hello hello;
-  int mesh_fd = -1;  // the memory file of telemetry_frame.h
+  protocol::RunHeader header;
+  std::vector<std::byte> meshes;
 };
 
 /// `asked`, else $XDG_STATE_HOME/tact/black-box, else the same below ~/.local/state. It need not
@@ -39,6 +39,6 @@ model::Result<std::string> write_black_box(const BlackBoxRun& run, const Kept& k
 
 /// The frames, with one more for each tick of the last half second: organ from the frame before it,
 /// tool, force and state from the tick.
-std::vector<telemetry::Frame> with_last_ticks(const Kept& kept);
+std::vector<protocol::Frame> with_last_ticks(const Kept& kept);
 
 }  // namespace tact::firmware::black_box

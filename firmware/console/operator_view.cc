@@ -35,7 +35,7 @@ OperatorView::OperatorView(const hal::Device& device, const hal::SafetyLines& li
       terminal_(isatty(STDOUT_FILENO) != 0),
       arms_itself_(arms_itself) {}
 
-bool OperatorView::show(const telemetry::Frame& newest) {
+bool OperatorView::show(const protocol::Frame& newest) {
   const bool was_reported = reported_ready_;
   if (newest.state == loop::State::kArmed || newest.state == loop::State::kStopped)
     arms_itself_ = false;  // it arms itself only once, at the start
@@ -77,9 +77,9 @@ bool OperatorView::waits(loop::State state) {
 }
 
 // Reported at each entry: otherwise an armed device would give no force without an explanation.
-void OperatorView::report_inside(const telemetry::Frame& newest) {
-  const auto is_inside = [](const telemetry::FrameSite& site) {
-    return site.state == telemetry::SiteState::kInside;
+void OperatorView::report_inside(const protocol::Frame& newest) {
+  const auto is_inside = [](const protocol::FrameSite& site) {
+    return site.state == protocol::SiteState::kInside;
   };
   const bool was_inside = std::exchange(inside_, std::ranges::any_of(newest.site, is_inside));
   if (!inside_ || was_inside) return;
@@ -130,7 +130,7 @@ void OperatorView::end() const {
   if (terminal_) say(stdout, "\n");
 }
 
-std::string status_line(const telemetry::Frame& frame, const telemetry::Frame& before) {
+std::string status_line(const protocol::Frame& frame, const protocol::Frame& before) {
   const double elapsed_s = static_cast<double>(frame.time_ns - before.time_ns) * 1e-9;
   const auto ticks = static_cast<double>(frame.tick - before.tick);
   const double rate_Hz = elapsed_s > 0.0 ? ticks / elapsed_s : 0.0;

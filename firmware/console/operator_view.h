@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "firmware/telemetry/telemetry_record.h"
+#include "firmware/protocol/frame.h"
 #include "hal/device.h"
 #include "hal/safety_lines.h"
 
@@ -19,7 +19,7 @@ class OperatorView {
 
   /// Called a few times a second with the newest frame. Faults go to standard error. True: this
   /// call has reported that the device is ready and may be armed.
-  bool show(const telemetry::Frame& newest);
+  bool show(const protocol::Frame& newest);
   /// After a disarm: only an operator may arm again.
   void wait_for_person() { arms_itself_ = false; }
   /// The reason to refuse the request, by the frame shown last; empty if it may be made.
@@ -36,14 +36,14 @@ class OperatorView {
 
  private:
   bool waits(loop::State state);
-  void report_inside(const telemetry::Frame& newest);
+  void report_inside(const protocol::Frame& newest);
 
   const hal::Device& device_;
   const hal::SafetyLines& lines_;
   std::string name_, scene_path_;
   bool terminal_, arms_itself_, reported_ready_ = false;
   bool inside_ = false;  // the tool is inside the organ and gets no force
-  telemetry::Frame before_;
+  protocol::Frame before_;
   std::string waits_for_, notice_;
 };
 
@@ -54,6 +54,6 @@ std::string trouble_behind(model::Fault fault, const hal::Device& device,
 /// One run in one line, for a terminal: time, rate, late ticks, force, state, the fault or limit
 /// that acts, and how often contact was lost. The rate is ticks over time since `before`; 0 when no
 /// time has passed.
-std::string status_line(const telemetry::Frame& frame, const telemetry::Frame& before);
+std::string status_line(const protocol::Frame& frame, const protocol::Frame& before);
 
 }  // namespace tact::firmware::console

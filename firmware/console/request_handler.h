@@ -24,7 +24,7 @@ class RequestHandler {
  public:
   /// `control`: null without tactctl. `pause`: sleeps while the loop works on a request.
   RequestHandler(const OperatorSignals& signals, loop::Requests& requests, OperatorView& view,
-                 std::function<telemetry::Frame()> newest, ControlSocket* control = nullptr,
+                 std::function<protocol::Frame()> newest, ControlSocket* control = nullptr,
                  std::function<void()> pause = pause_a_moment)
       : signals_(signals),
         requests_(requests),
@@ -52,7 +52,7 @@ class RequestHandler {
   const OperatorSignals& signals_;
   loop::Requests& requests_;
   OperatorView& view_;
-  std::function<telemetry::Frame()> newest_;
+  std::function<protocol::Frame()> newest_;
   ControlSocket* control_;
   std::function<void()> pause_;
 };

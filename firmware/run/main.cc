@@ -106,9 +106,9 @@ int run_replay(const model::scene::Scene& scene, const std::string& path) {
 
 /// The --set values of a recorded run, used for its replay unless the command line has some.
 model::Result<std::vector<std::string>> recorded_overrides(const std::string& path) {
-  const auto log = firmware::telemetry::TickLogReader::open(path);
+  const auto log = firmware::protocol::TickLog::open(path);
   if (!log) return log.error();
-  return log->header().overrides_of_run();
+  return log->header().overrides;
 }
 
 /// The scene to run. law = "auto" is replaced by the choice of tact-lab plan on this machine, as

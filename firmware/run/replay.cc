@@ -8,13 +8,13 @@
 #include "firmware/pc/rt_setup.h"
 #include "firmware/telemetry/force_hash.h"
 #include "model/scene/plan_file.h"
+#include "model/time_ns.h"
 
 namespace tact::firmware::run {
 namespace {
 
 /// Why this scene cannot replay the log, and what can.
-std::optional<model::Error> check_header(const telemetry::LogHeader& header,
-                                         const std::string& path,
+std::optional<model::Error> check_header(const protocol::RunHeader& header, const std::string& path,
                                          const model::scene::Scene& scene) {
   // Another scene would give different forces without any error of the program.
   if (scene.hash != header.scene_hash)
@@ -22,16 +22,9 @@ std::optional<model::Error> check_header(const telemetry::LogHeader& header,
         "{}: was recorded with another scene (hash {}, this one has {}); replay it with the scene "
         "of that run, unchanged, and {}",
         path, header.scene_hash, scene.hash,
-        header.overrides[0] == '\0'
+        header.overrides.empty()
             ? "no --set"
-            : "with" + model::scene::command_text(header.overrides_of_run()) +
-                  " or no --set at all")};
-  // Only a black box has its number of ticks in the header. It starts from an unrecorded state.
-  if (header.ticks != 0)
-    return model::Error{
-        path +
-        ": is a black box, which begins in the middle of a run; tact-view --open "
-        "shows it, --csv writes its ticks, tactd --record keeps a run from its start"};
+            : "with" + model::scene::command_text(header.overrides) + " or no --set at all")};
   return std::nullopt;
 }
 
@@ -39,20 +32,26 @@ std::optional<model::Error> check_header(const telemetry::LogHeader& header,
 
 model::Result<ReplayOutcome> replay(const std::string& path, const model::scene::Scene& scene,
                                     const model::scene::Tissue& tissue) {
-  auto log = telemetry::TickLogReader::open(path);
+  auto log = protocol::TickLog::open(path);
   if (!log) return log.error();
-  const telemetry::LogHeader& header = log->header();
+  const protocol::RunHeader& header = log->header();
   if (auto error = check_header(header, path, scene)) return *error;
   pc::flush_denormals();  // as in the loop's thread
-  const double period_s = static_cast<double>(header.period_ns) * 1e-9;
+  const double period_s = static_cast<double>(model::period_ns(header.rate_Hz)) * 1e-9;
   loop::Controller controller(
       tissue.contact_scene(), gate::Gate(header.limits, period_s, header.force_share),
-      header.non_rt == 0, gate::GripGate::make(header.limits, period_s, header.force_share));
+      !header.non_rt, gate::GripGate::make(header.limits, period_s, header.force_share));
   ReplayOutcome outcome;
   outcome.force_hash = model::kFnvStart;
-  telemetry::LoggedTick tick;
+  protocol::LoggedTick tick;
   for (; log->next(tick); ++outcome.ticks) {
-    // Contact, gate and supervisor have state, so nothing can be computed after a gap.
+    // As a black box: contact, gate and supervisor begin in a state that is not recorded.
+    if (outcome.ticks == 0 && tick.tick != 0 && !log->skipped())
+      return model::Error{fmt::format(
+          "{}: begins at tick {}, in the middle of a run; tact-view --open shows it, --csv writes "
+          "its ticks, tactd --record keeps a run from its start",
+          path, tick.tick)};
+    // They have state, so nothing can be computed after a gap either.
     if (tick.tick != outcome.ticks) {
       outcome.gap_before = tick.tick;
       break;

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "firmware/telemetry/tick_log.h"
+#include "firmware/protocol/tick_log.h"
 #include "model/scene/scene.h"
 #include "model/scene/tissue.h"
 

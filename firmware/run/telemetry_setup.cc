@@ -9,6 +9,7 @@
 
 #include "firmware/admission/notes.h"
 #include "firmware/pc/environment.h"
+#include "firmware/protocol/run_file.h"
 #include "model/io/socket_file.h"
 
 namespace tact::firmware::run {
@@ -25,24 +26,33 @@ Result<std::string> socket_path(const RunSetup& run) {
   return *directory + "/telemetry.sock";
 }
 
-/// The first message to a viewer, with the limits in use on this PC.
-telemetry::Hello hello_of(const RunSetup& run, const std::string& hand_path) {
+/// The head of a run: scene, device, the limits in use on this PC, and date.
+protocol::RunHeader header_of(const RunSetup& run) {
+  protocol::RunHeader header = telemetry::header_of(run.scene, *run.parts.tissue);
   const gate::Gate& gate = run.parts.controller->gate();
-  const telemetry::HelloFacts facts{
-      .device = run.parts.device->info(),
-      .force_limit_N = gate.force_limit_N(),
-      .torque_limit_Nm = gate.torque_limit_Nm(),
-      .continuous_force_N = gate.continuous_force_N(),
-      .energy_budget_J = gate.energy_budget_J(),
-      .limits_checksum = run.parts.limits_checksum,
-      .non_rt = run.non_rt,
-      .cannot_grip = admission::cannot_grip(run.scene, run.parts.device->info()),
-      .hand_socket = hand_path};
-  return make_hello(run.scene, *run.parts.tissue, facts);
+  const hal::DeviceInfo device = run.parts.device->info();
+  header.overrides = run.options.overrides;
+  header.device_name = device.name;
+  header.revision = pc::read_environment(run.scene.hash).git_revision;
+  utsname pc_name{};
+  uname(&pc_name);
+  header.host_name = pc_name.nodename;
+  header.began_utc = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+  header.limits = run.parts.limits;
+  header.force_share = run.force_share;
+  header.force_limit_N = gate.force_limit_N();
+  header.torque_limit_Nm = gate.torque_limit_Nm();
+  header.continuous_force_N = gate.continuous_force_N();
+  header.energy_budget_J = gate.energy_budget_J();
+  header.limits_checksum = run.parts.limits_checksum;
+  header.non_rt = run.non_rt;
+  header.simulated = hal::registry::is_simulated(*run.parts.device);
+  header.cannot_grip = admission::cannot_grip(run.scene, device);
+  return header;
 }
 
-/// Takes ownership of `meshes`.
-std::optional<Error> open_sockets(const RunSetup& run, int meshes, Sinks& out) {
+std::optional<Error> open_sockets(const RunSetup& run, protocol::RunHeader header,
+                                  std::span<const std::byte> meshes, Sinks& out) {
   const auto path = socket_path(run);
   if (!path) return path.error();
   std::optional<gid_t> viewers;
@@ -53,9 +63,12 @@ std::optional<Error> open_sockets(const RunSetup& run, int meshes, Sinks& out) {
     viewers = *group;
   }
   // Only for a simulated device: no program may move the hand of hardware.
-  const std::string hand_path =
-      hal::registry::is_simulated(*run.parts.device) ? *path + ".hand" : "";
-  auto opened = telemetry::TelemetrySocket::open(*path, hello_of(run, hand_path), meshes, viewers);
+  const std::string hand_path = header.simulated ? *path + ".hand" : "";
+  header.hand_socket = hand_path;
+  const auto start = telemetry::make_memory_file(
+      start_of_run(header, meshes, {protocol::type_of_record<protocol::Frame>()}));
+  if (!start) return start.error();
+  auto opened = telemetry::TelemetrySocket::open(*path, *start, viewers);
   if (!opened) return opened.error();
   out.sinks.socket.emplace(std::move(*opened));
   if (hand_path.empty()) return std::nullopt;
@@ -65,62 +78,18 @@ std::optional<Error> open_sockets(const RunSetup& run, int meshes, Sinks& out) {
   return viewers ? model::io::share_socket(hand_path, *viewers) : std::nullopt;
 }
 
-/// False if the --set values are too long for the header.
-bool fill_header(const RunSetup& run, telemetry::LogHeader& header) {
-  header.period_ns = run.period_ns;
-  header.limits = run.parts.limits;
-  header.force_share = run.force_share;
-  header.non_rt = run.non_rt ? 1 : 0;
-  const auto keep = [](const std::string& text, auto& field) {
-    text.copy(field, sizeof field - 1);
-  };
-  const pc::Environment environment = pc::read_environment(run.scene.hash);
-  utsname pc_name{};
-  uname(&pc_name);
-  keep(run.scene.hash, header.scene_hash);
-  keep(run.scene.name, header.scene_name);
-  keep(run.parts.tissue->law().title(), header.law);
-  keep(environment.git_revision, header.revision);
-  keep(pc_name.nodename, header.host);
-  keep(fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))), header.began_utc);
-  // Last, so that the rest of the header is filled if this fails: a black box does without them.
-  return header.keep_overrides(run.options.overrides);
-}
-
-Result<telemetry::TickLogWriter> open_log(const RunSetup& run) {
-  telemetry::LogHeader header;
-  if (!fill_header(run, header))
-    return Error{
-        fmt::format("{}: has no room for --set values of more than {} letters; write them "
-                    "into the scene",
-                    run.options.record_path, sizeof header.overrides - 1)};
-  return telemetry::TickLogWriter::create(run.options.record_path, header);
-}
-
-/// Takes ownership of `meshes`.
-std::unique_ptr<black_box::BlackBox> make_black_box(const RunSetup& run, const std::string& folder,
-                                                    int meshes) {
-  black_box::BlackBoxRun facts{.folder = folder,
-                               .scene_name = run.scene.name,
-                               .header = {},
-                               .hello = hello_of(run, ""),
-                               .mesh_fd = meshes};
-  fill_header(run, facts.header);  // --set values that are too long are left out: no replay here
-  return std::make_unique<black_box::BlackBox>(std::move(facts), run.scene.rate_Hz,
-                                               run.scene.frame_rate_Hz);
-}
-
 }  // namespace
 
 Result<Sinks> open_sinks(const RunSetup& run) {
   Sinks out;
-  if (!run.options.no_telemetry) {
-    const auto meshes = telemetry::make_mesh_file(run.scene);
-    if (!meshes) return meshes.error();
-    if (auto failed = open_sockets(run, *meshes, out)) return std::move(*failed);
-  }
+  const protocol::RunHeader header = header_of(run);
+  std::vector<std::byte> meshes = telemetry::mesh_bytes(run.scene);
+  if (!run.options.no_telemetry)
+    if (auto failed = open_sockets(run, header, meshes, out)) return std::move(*failed);
   if (!run.options.record_path.empty()) {
-    auto log = open_log(run);
+    auto log = protocol::RunWriter::create(
+        run.options.record_path,
+        start_of_run(header, {}, {protocol::type_of_record<protocol::LoggedTick>()}));
     if (!log) return log.error();
     out.sinks.log.emplace(std::move(*log));
   }
@@ -132,10 +101,9 @@ Result<Sinks> open_sinks(const RunSetup& run) {
     out.no_black_box = folder.error().message;
     return out;
   }
-  // A separate memory file, because socket and black box each close their own.
-  const auto meshes = telemetry::make_mesh_file(run.scene);
-  if (!meshes) return meshes.error();
-  out.black_box = make_black_box(run, *folder, *meshes);
+  out.black_box = std::make_unique<black_box::BlackBox>(
+      black_box::BlackBoxRun{.folder = *folder, .header = header, .meshes = std::move(meshes)},
+      run.scene.rate_Hz, run.scene.frame_rate_Hz);
   out.sinks.recorder = out.black_box.get();
   return out;
 }

@@ -58,7 +58,7 @@ void Telemetry::drain() {
     // Every record goes to every sink; which ticks become a frame is decided in publish().
     builder_.add(record_);
     force_hash_ = hash_wrench(force_hash_, record_.output.written);
-    if (sinks_.log) sinks_.log->add(record_);
+    if (sinks_.log) sinks_.log->add(chunk_of(LoggedTick::of(record_, builder_.non_rt())));
     if (sinks_.recorder) sinks_.recorder->add(record_);
   }
   // Reported once: after a full disk every later tick is lost.
@@ -98,7 +98,7 @@ void Telemetry::publish() {
     if (sinks_.recorder) sinks_.recorder->add(*frame);
     if (sinks_.socket) {
       // Never waits: a viewer that does not read loses the frame.
-      sinks_.socket->send(*frame);
+      sinks_.socket->send(chunk_of(*frame));
       dropped_frames_.store(sinks_.socket->dropped_frames(), std::memory_order_relaxed);
     }
     const std::lock_guard lock(newest_mutex_);

@@ -10,9 +10,9 @@
 #include <thread>
 
 #include "firmware/loop/ring.h"
-#include "firmware/telemetry/telemetry_frame.h"
+#include "firmware/protocol/run_file.h"
+#include "firmware/telemetry/frame_builder.h"
 #include "firmware/telemetry/telemetry_socket.h"
-#include "firmware/telemetry/tick_log.h"
 
 namespace tact::firmware::telemetry {
 
@@ -32,7 +32,7 @@ class Recorder {
 /// Sinks of ticks and frames; absent ones are skipped.
 struct Sinks {
   std::optional<TelemetrySocket> socket{};
-  std::optional<TickLogWriter> log{};
+  std::optional<protocol::RunWriter> log{};
   Recorder* recorder = nullptr;  // outlives the telemetry
 };
 

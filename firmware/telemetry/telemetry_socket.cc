@@ -10,6 +10,8 @@
 #include <cstring>
 #include <utility>
 
+#include "firmware/protocol/run_file.h"
+
 namespace tact::firmware::telemetry {
 namespace {
 
@@ -21,8 +23,8 @@ constexpr std::size_t kMaxClients = 16;
 
 }  // namespace
 
-Result<TelemetrySocket> TelemetrySocket::open(const std::string& path, const Hello& hello,
-                                              int mesh_fd, std::optional<gid_t> viewers) {
+Result<TelemetrySocket> TelemetrySocket::open(const std::string& path, int start_fd,
+                                              std::optional<gid_t> viewers) {
   // From the first moment only this user can connect; the group is admitted last.
   const auto bound = model::io::bind_socket(path, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC);
   if (!bound) return bound.error();
@@ -33,7 +35,7 @@ Result<TelemetrySocket> TelemetrySocket::open(const std::string& path, const Hel
     return error;
   }
   // Owns the file from here on: an error below removes it.
-  TelemetrySocket opened(model::io::SocketFile(path), hello, fd, mesh_fd,
+  TelemetrySocket opened(model::io::SocketFile(path), fd, start_fd,
                          {.user = std::nullopt, .group = viewers});
   if (viewers)
     if (auto refused = model::io::share_socket(path, *viewers)) return std::move(*refused);
@@ -42,16 +44,15 @@ Result<TelemetrySocket> TelemetrySocket::open(const std::string& path, const Hel
 
 TelemetrySocket::TelemetrySocket(TelemetrySocket&& other) noexcept
     : file_(std::move(other.file_)),
-      hello_(other.hello_),
       listen_fd_(std::exchange(other.listen_fd_, -1)),
-      mesh_fd_(std::exchange(other.mesh_fd_, -1)),
+      start_fd_(std::exchange(other.start_fd_, -1)),
       trust_(other.trust_),
       clients_(std::move(other.clients_)),
       dropped_frames_(other.dropped_frames_) {}
 
 TelemetrySocket::~TelemetrySocket() {
   for (const int client : clients_) close(client);
-  if (mesh_fd_ >= 0) close(mesh_fd_);
+  if (start_fd_ >= 0) close(start_fd_);
   if (listen_fd_ < 0) return;
   close(listen_fd_);
   file_.remove();
@@ -71,9 +72,8 @@ void TelemetrySocket::accept_clients() {
 }
 
 bool TelemetrySocket::greet(int client_fd) const {
-  // msghdr takes no pointer to const.
-  Hello hello = hello_;
-  iovec bytes{.iov_base = &hello, .iov_len = sizeof hello};
+  std::string magic(protocol::kMagic);  // msghdr takes no pointer to const
+  iovec bytes{.iov_base = magic.data(), .iov_len = magic.size()};
   alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {};
   msghdr message{};
   message.msg_iov = &bytes;
@@ -82,17 +82,19 @@ bool TelemetrySocket::greet(int client_fd) const {
   message.msg_controllen = sizeof control;
   cmsghdr* rights = CMSG_FIRSTHDR(&message);
   rights->cmsg_level = SOL_SOCKET;
-  // The meshes are megabytes, so they are passed as a descriptor.
+  // Head and meshes are megabytes, so they are passed as a descriptor.
   rights->cmsg_type = SCM_RIGHTS;
   rights->cmsg_len = CMSG_LEN(sizeof(int));
-  std::memcpy(CMSG_DATA(rights), &mesh_fd_, sizeof mesh_fd_);
-  return sendmsg(client_fd, &message, MSG_DONTWAIT | MSG_NOSIGNAL) == sizeof hello;
+  std::memcpy(CMSG_DATA(rights), &start_fd_, sizeof start_fd_);
+  return sendmsg(client_fd, &message, MSG_DONTWAIT | MSG_NOSIGNAL) ==
+         static_cast<ssize_t>(magic.size());
 }
 
-void TelemetrySocket::send(const Frame& frame) {
+void TelemetrySocket::send(const std::string& message) {
   accept_clients();
   const auto gone = [&](int client) {
-    if (::send(client, &frame, sizeof frame, MSG_DONTWAIT | MSG_NOSIGNAL) == sizeof frame)
+    if (::send(client, message.data(), message.size(), MSG_DONTWAIT | MSG_NOSIGNAL) ==
+        static_cast<ssize_t>(message.size()))
       return false;
     // A slow viewer loses this frame; a viewer that has gone is removed.
     if (errno == EAGAIN || errno == EWOULDBLOCK || errno == ENOBUFS) {

@@ -2,8 +2,9 @@
 // telemetry_socket.h - sends messages to connected viewers and never waits for one.
 //
 // A SOCK_SEQPACKET unix socket: permissions 0600 for the same user and root, or 0660 for the
-// members of a group, too. A new client gets the Hello and the mesh file, then every frame that
-// fits into its buffer; the others are dropped and counted. Nothing is read from a client.
+// members of a group, too. A new client gets the first letters of a run and the memory file of its
+// start (firmware/protocol/run_file.h), then every frame that fits into its buffer; the others are
+// dropped and counted. Nothing is read from a client.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "firmware/telemetry/telemetry_record.h"
 #include "model/io/socket_file.h"
 #include "model/result.h"
 
@@ -20,31 +20,26 @@ namespace tact::firmware::telemetry {
 class TelemetrySocket {
  public:
   /// Listens at `path`, also for members of the group `viewers`. An error if another tactd already
-  /// does. Takes ownership of `mesh_fd` on success.
-  static model::Result<TelemetrySocket> open(const std::string& path, const Hello& hello,
-                                             int mesh_fd, std::optional<gid_t> viewers = {});
+  /// does. Takes ownership of the memory file `start_fd` on success.
+  static model::Result<TelemetrySocket> open(const std::string& path, int start_fd,
+                                             std::optional<gid_t> viewers = {});
   TelemetrySocket(TelemetrySocket&& other) noexcept;
   TelemetrySocket& operator=(TelemetrySocket&&) = delete;
   ~TelemetrySocket();
 
-  /// Accepts new clients, then sends the frame to all.
-  void send(const Frame& frame);
+  /// Accepts new clients, then sends the frame's chunk to all.
+  void send(const std::string& message);
   std::uint64_t dropped_frames() const { return dropped_frames_; }
 
  private:
-  TelemetrySocket(model::io::SocketFile file, const Hello& hello, int listen_fd, int mesh_fd,
+  TelemetrySocket(model::io::SocketFile file, int listen_fd, int start_fd,
                   const model::io::Trust& trust)
-      : file_(std::move(file)),
-        hello_(hello),
-        listen_fd_(listen_fd),
-        mesh_fd_(mesh_fd),
-        trust_(trust) {}
+      : file_(std::move(file)), listen_fd_(listen_fd), start_fd_(start_fd), trust_(trust) {}
   void accept_clients();
   bool greet(int client_fd) const;
 
   model::io::SocketFile file_;
-  Hello hello_;
-  int listen_fd_, mesh_fd_;
+  int listen_fd_, start_fd_;
   model::io::Trust trust_;
   std::vector<int> clients_;
   std::uint64_t dropped_frames_ = 0;

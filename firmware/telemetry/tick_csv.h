@@ -1,22 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // tick_csv.h - the ticks of a log or a black box as a table, one row per tick.
 //
-// Columns that the viewer's CSV also has carry the same names (recording_csv.h). Values have all
-// digits. force_* is what was written to the device after the gate, wanted_* the law's force.
-// limit and acted are number and name of the last limitation: a stage of the gate, the end of the
-// law's range, a tool inside the organ, or lost contact. Phases are us; publish and total belong to
-// the tick before. Lines that begin with # identify the run.
+// A column is a field of firmware/protocol/logged_tick.cc (record_text.h says how it is named).
+// limit is the last limitation: a stage of the gate, the end of the law's range, a tool inside the
+// organ, or lost contact. Lines that begin with # identify the run.
 #pragma once
 
 #include <string>
 
-#include "firmware/telemetry/tick_log.h"
+#include "firmware/protocol/tick_log.h"
 
 namespace tact::firmware::telemetry {
 
 /// Both end with a line break; the last line of the head names the columns.
-std::string tick_csv_head(const LogHeader& header);
-std::string tick_csv_row(const LoggedTick& tick);
+std::string tick_csv_head(const protocol::RunHeader& header);
+std::string tick_csv_row(const protocol::LoggedTick& tick);
 
 /// Writes all good ticks of a log. Returns a description of the damage, or an empty string. An
 /// error if the log cannot be read or the table cannot be written.

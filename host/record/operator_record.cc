@@ -3,26 +3,60 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/crc.hpp>
 #include <cmath>
 #include <cstddef>
 
 #include "host/figure/figure_text.h"
 
 namespace tact::host::record {
+
+const char* body_state(std::uint64_t number) {
+  static constexpr std::array kNames{"absent", "tracked", "held", "lost"};
+  return number < kNames.size() ? kNames[number] : "unknown";
+}
+
 namespace {
 
-constexpr auto kLastState = static_cast<std::uint8_t>(tracking::BodyState::kLost);
-constexpr auto kLastTrouble = static_cast<std::uint8_t>(tracking::TrackingTrouble::kOutOfOrder);
+using firmware::protocol::kWxyz;
 
-constexpr std::array<std::uint8_t, 2> kLegReached{kLeftLegReached, kRightLegReached};
+constexpr auto kLastState = tracking::BodyState::kLost;
+constexpr auto kLastTrouble = tracking::TrackingTrouble::kOutOfOrder;
 
-std::uint32_t crc_of(const OperatorRecord& record) {
-  boost::crc_32_type crc;
-  // Includes the padding, which is zero in every record.
-  crc.process_bytes(&record, offsetof(OperatorRecord, crc));
-  return crc.checksum();
-}
+#define FIELD(member, meaning) TACT_FIELD(BodyRecord, member, #member, meaning)
+constexpr std::array kBody{
+    FIELD(raw_position_m, "as solved"),
+    FIELD(raw_rotation_wxyz, "unit quaternion from the body's frame to W").with_components(kWxyz),
+    FIELD(shown_position_m, "filtered"),
+    FIELD(shown_rotation_wxyz, "filtered").with_components(kWxyz),
+    FIELD(rms_px, "reprojection error"),
+    FIELD(age_s, "since its last good pose"),
+    FIELD(state, "").labelled(body_state),
+    FIELD(trouble, "number of TrackingTrouble (host/tracking/tracked_operator.h)")};
+#undef FIELD
+
+#define FIELD(member, meaning) TACT_FIELD(FigureRecord, member, #member, meaning)
+constexpr std::array kFigure{FIELD(height_m, "0: no figure was shown"),
+                             FIELD(joint_m, "in the order of figure.h"),
+                             FIELD(head_wxyz, "unit quaternion to W").with_components(kWxyz),
+                             FIELD(grip_m, "of the right hand on the tool"),
+                             FIELD(error_m, "of the hand from the grip"),
+                             FIELD(sweeps, "of the solver"),
+                             FIELD(updates, "of the solver"),
+                             FIELD(reached, "the hand is at the grip"),
+                             FIELD(out_of_reach, ""),
+                             FIELD(full_chain, "the trunk moved, too"),
+                             FIELD(left_leg_reached, ""),
+                             FIELD(right_leg_reached, ""),
+                             FIELD(shoulder_too_far, ""),
+                             FIELD(left_hand_missed, "")};
+#undef FIELD
+
+#define FIELD(member, meaning) TACT_FIELD(OperatorRecord, member, #member, meaning)
+constexpr std::array kOperator{
+    FIELD(time_s, "of the tracker"),
+    FIELD(body, "in the order of BodyRole (host/tracking/tracked_operator.h)"),
+    FIELD(figure, "as it was shown")};
+#undef FIELD
 
 template <typename T>
 void put(const pose::Pose& pose, T (&position_m)[3], T (&rotation_wxyz)[4]) {
@@ -51,8 +85,8 @@ std::optional<tracking::TrackedBody> take(const BodyRecord& record) {
   if (!raw || !shown || record.state > kLastState || record.trouble > kLastTrouble) return {};
   if (!std::isfinite(record.rms_px) || !std::isfinite(record.age_s)) return {};
   return tracking::TrackedBody{
-      .state = static_cast<tracking::BodyState>(record.state),
-      .trouble = static_cast<tracking::TrackingTrouble>(record.trouble),
+      .state = record.state,
+      .trouble = record.trouble,
       .pose = {.rotation = shown->rotation.normalized(), .position_m = shown->position_m},
       .raw = *raw,
       .rms_px = static_cast<double>(record.rms_px),
@@ -70,17 +104,17 @@ FigureRecord record_of(const figure::FigurePose& pose) {
   for (std::size_t i = 0; i < figure::kFigureJoints; ++i)
     Eigen::Vector3f::Map(out.joint_m[i]) = pose.joint_m[i].cast<float>();
   put({.rotation = pose.head, .position_m = pose.grip_m}, out.grip_m, out.head_wxyz);
-  if (pose.shoulder_too_far) out.flags |= kShoulderTooFar;
-  if (!pose.left_hand_reached) out.flags |= kLeftHandMissed;
-  for (std::size_t i = 0; i < pose.leg_reached.size(); ++i)
-    if (pose.leg_reached[i]) out.flags |= kLegReached[i];
+  out.shoulder_too_far = pose.shoulder_too_far;
+  out.left_hand_missed = !pose.left_hand_reached;
+  out.left_leg_reached = pose.leg_reached[0];
+  out.right_leg_reached = pose.leg_reached[1];
   return out;
 }
 
 }  // namespace
 
-std::string operator_record(const tracking::TrackedOperator& tracked,
-                            const figure::FigurePose* figure) {
+std::string operator_chunk(const tracking::TrackedOperator& tracked,
+                           const figure::FigurePose* figure) {
   OperatorRecord record{.time_s = tracked.time_s};
   for (std::size_t i = 0; i < tracking::kBodyRoles; ++i) {
     const tracking::TrackedBody& body = tracked.bodies[i];
@@ -89,17 +123,20 @@ std::string operator_record(const tracking::TrackedOperator& tracked,
     put(body.pose, out.shown_position_m, out.shown_rotation_wxyz);
     out.rms_px = static_cast<float>(body.rms_px);
     out.age_s = static_cast<float>(body.age_s);
-    out.state = static_cast<std::uint8_t>(body.state);
-    out.trouble = static_cast<std::uint8_t>(body.trouble);
+    out.state = body.state;
+    out.trouble = body.trouble;
   }
   if (figure != nullptr) record.figure = record_of(*figure);
-  record.crc = crc_of(record);
-  return {reinterpret_cast<const char*>(&record), sizeof record};
+  return firmware::protocol::chunk_of(record);
 }
 
+firmware::protocol::FieldTable BodyRecord::fields() { return kBody; }
+firmware::protocol::FieldTable FigureRecord::fields() { return kFigure; }
+firmware::protocol::FieldTable OperatorRecord::fields() { return kOperator; }
+
 std::optional<tracking::TrackedOperator> operator_of(const OperatorRecord& record) {
-  // The CRC detects damage; the checks after it detect invalid data of another writer.
-  if (crc_of(record) != record.crc || !std::isfinite(record.time_s)) return std::nullopt;
+  // The chunk's CRC detects damage; these checks detect invalid data of another writer.
+  if (!std::isfinite(record.time_s)) return std::nullopt;
   tracking::TrackedOperator out{.time_s = record.time_s};
   for (std::size_t i = 0; i < tracking::kBodyRoles; ++i) {
     const auto body = take(record.body[i]);
@@ -123,16 +160,15 @@ std::optional<figure::FigurePose> figure_of(const OperatorRecord& record,
   }
   out.head = grip->rotation.normalized();
   out.grip_m = grip->position_m;
-  out.arm = {.reached = figure.reached != 0,
-             .out_of_reach = figure.out_of_reach != 0,
-             .full_chain = figure.full_chain != 0,
+  out.arm = {.reached = figure.reached,
+             .out_of_reach = figure.out_of_reach,
+             .full_chain = figure.full_chain,
              .error_m = static_cast<double>(figure.error_m),
              .sweeps = figure.sweeps,
              .updates = figure.updates};
-  for (std::size_t i = 0; i < out.leg_reached.size(); ++i)
-    out.leg_reached[i] = (figure.flags & kLegReached[i]) != 0;
-  out.shoulder_too_far = (figure.flags & kShoulderTooFar) != 0;
-  out.left_hand_reached = (figure.flags & kLeftHandMissed) == 0;
+  out.leg_reached = {figure.left_leg_reached, figure.right_leg_reached};
+  out.shoulder_too_far = figure.shoulder_too_far;
+  out.left_hand_reached = !figure.left_hand_missed;
   // Trouble and words are not in the file; report() derives them.
   report(bodies, out);
   return out;

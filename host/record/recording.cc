@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 
 #include "host/record/operator_record.h"
@@ -12,171 +11,97 @@
 namespace tact::host::record {
 namespace {
 
-using firmware::telemetry::crc_of;
+using firmware::protocol::Chunk;
+using firmware::protocol::ChunkKind;
+using firmware::protocol::RunReader;
+using firmware::protocol::Unpacker;
 using model::Error;
 using model::Result;
 
-/// The data before the first frame.
-struct Setup {
-  Hello hello;
-  MeshBytes mesh;
-  std::size_t operator_bytes = 0;  // after each frame
-};
-
-using model::io::SealedFile;
-
-template <typename T>
-bool read(SealedFile& in, T& value) {
-  return in.read(&value, sizeof value) == sizeof value;
-}
-
-/// The first bytes of a recording or a tick log.
-using Magic = std::array<char, sizeof kRecordingMagic>;
-
-/// A black box contains a recording after its ticks: seeks to it and reads its magic. Returns its
-/// byte offset; the error says why there is none.
-Result<std::uint64_t> skip_ticks(SealedFile& in, Magic& magic) {
-  const std::uint64_t file_bytes = in.size_bytes();
-  firmware::telemetry::LogStart log;
-  constexpr std::size_t kVersionAt = sizeof log.magic - 1;
-  const bool is_log =
-      read(in, magic) && std::memcmp(magic.data(), firmware::telemetry::kLogMagic, kVersionAt) == 0;
-  if (!is_log) return std::uint64_t{0};
-  std::memcpy(log.magic, magic.data(), sizeof log.magic);
-  if (log.magic[kVersionAt] != firmware::telemetry::kLogMagic[kVersionAt])
-    return Error{fmt::format(
-        "a tick log of version {} cannot be read by this tact-view (version {}); make it "
-        "again, or open it with the build that made it",
-        log.magic[kVersionAt], firmware::telemetry::kLogMagic[kVersionAt])};
-  if (in.read(&log.header_bytes, sizeof log - sizeof log.magic) < sizeof log - sizeof log.magic)
-    return Error{"this tick log ends within its header"};
-  if (log.ticks == 0)
-    return Error{
-        "this tick log holds no pictures, only what a replay needs; tactd --replay computes it "
-        "again and writes its ticks with --csv; a black box or a recording of tact-view can be "
-        "shown"};
-  const Error no_pictures{
-      "this black box is cut off before its pictures, or its header is damaged; tactd --replay "
-      "FILE --csv FILE writes its ticks"};
-  // Divided, not multiplied: the product of a damaged header could overflow to a valid offset.
-  if (log.tick_bytes == 0 || log.ticks > file_bytes / log.tick_bytes ||
-      log.header_bytes + log.ticks * log.tick_bytes >= file_bytes)
-    return no_pictures;
-  const std::uint64_t start = log.header_bytes + log.ticks * log.tick_bytes;
-  if (start < sizeof log || !in.skip(start - sizeof log) || !read(in, magic)) return no_pictures;
-  return start;
-}
-
-Error damaged(const Error& error) {
-  return Error{error.message + "; nothing of it can be shown, record again"};
-}
-
-/// Bytes of the operator record after each frame; nothing: an unsupported version.
-std::optional<std::size_t> operator_bytes_of(std::uint32_t version) {
-  switch (version) {
-    case kRecordingVersion:
-      return 0;
-    case kTrackedRecordingVersion:
-      return sizeof(OperatorRecord);
-    default:
-      return std::nullopt;
+/// Takes chunks of a file into a recording.
+class RecordingReader {
+ public:
+  static Result<RecordingReader> make(const RunReader& file, Recording& recording) {
+    auto frames = file.unpacker<Frame>();
+    if (!frames) return frames.error();
+    if (frames->missing().size() == Frame::fields().size())
+      return Error{
+          "this tick log holds no frames, only what a replay needs; tactd --replay computes it "
+          "again and writes its ticks with --csv; a black box or a recording of tact-view can be "
+          "shown"};
+    auto operators = file.unpacker<OperatorRecord>();
+    if (!operators) return operators.error();
+    return RecordingReader(std::move(*frames), std::move(*operators), recording);
   }
-}
 
-/// The error says why the file cannot be used.
-Result<Setup> read_setup(SealedFile& in, const Magic& magic) {
-  Setup setup;
-  FileHeader header;
-  constexpr std::size_t kRest = sizeof header - sizeof header.magic;
-  std::memcpy(header.magic, magic.data(), sizeof header.magic);
-  if (std::memcmp(header.magic, kRecordingMagic, sizeof header.magic) != 0 ||
-      in.read(&header.version, kRest) < kRest) {
-    return Error{
-        "this is not a tact recording; give a file made with --record or the page's record "
-        "button"};
-  }
-  const auto operator_bytes = operator_bytes_of(header.version);
-  if (!operator_bytes) {
-    return Error{
-        fmt::format("recording version {} cannot be read by this tact-view (version {}, or {} with "
-                    "an operator); record it again, or open it with the tact-view that made it",
-                    header.version, kRecordingVersion, kTrackedRecordingVersion)};
-  }
-  setup.operator_bytes = *operator_bytes;
-  if (header.hello_bytes != sizeof(Hello) || header.frame_bytes != sizeof(Frame)) {
-    return Error{fmt::format(
-        "its frames have {} bytes, those of this tact-view {}, though both say version {}; open it "
-        "with the build that made it",
-        header.frame_bytes, sizeof(Frame), header.version)};
-  }
-  constexpr const char* kCutOff =
-      "the file ends before its first frame; nothing of it can be shown, record again";
-  // Checked before allocating, because a length in a file may be wrong.
-  if (!read(in, setup.hello) || header.mesh_bytes > in.size_bytes()) return Error{kCutOff};
-  setup.mesh.resize(header.mesh_bytes);
-  if (in.read(setup.mesh.data(), setup.mesh.size()) < setup.mesh.size()) return Error{kCutOff};
-  if (crc_of(setup.hello, setup.mesh) != header.setup_crc)
-    return Error{
-        "its scene part is damaged (checksum differs); nothing of it can be shown, record again"};
-  if (const std::optional<Error> error = check_hello(setup.hello)) return damaged(*error);
-  if (const std::optional<Error> error = check_mesh(setup.hello, setup.mesh))
-    return damaged(*error);
-  return setup;
-}
-
-/// Adds the operator of a frame; false if its record is damaged.
-bool add_operator(const OperatorRecord& tracked, Recording& recording) {
-  const std::optional<tracking::TrackedOperator> seen = operator_of(tracked);
-  recording.operators.push_back(seen.value_or(tracking::TrackedOperator{}));
-  std::optional<figure::FigurePose> figure;
-  // A damaged operator record repeats the last figure, so that it does not flicker.
-  if (seen)
-    figure = figure_of(tracked, *seen);
-  else if (!recording.figures.empty())
-    figure = recording.figures.back();
-  recording.figures.push_back(std::move(figure));
-  return seen.has_value();
-}
-
-/// Reads all good frames from byte `start` on. Empty, or the damage, with "; " at its end.
-std::string read_frames(SealedFile& in, std::uint64_t start, std::size_t operator_bytes,
-                        Recording& recording) {
-  const std::uint64_t file_bytes = in.size_bytes();
-  const std::uint64_t stride = sizeof(FrameRecord) + operator_bytes;
-  const std::uint64_t records = (file_bytes - start) / stride;
-  const std::uint64_t left_bytes = (file_bytes - start) % stride;
-  recording.frames.reserve(records);
-  std::uint64_t damaged = 0, first_damaged = 0, damaged_operators = 0;
-  FrameRecord record;
-  OperatorRecord tracked;
-  for (std::uint64_t i = 0; i < records && read(in, record); ++i) {
-    if (operator_bytes > 0 && !read(in, tracked)) break;
-    // Frames have one size, so the next one is found even if this one is damaged.
-    if (crc_of(record.frame) != record.crc || check_frame(record.frame, recording.hello)) {
-      if (damaged++ == 0) first_damaged = start + i * stride;
-      continue;
+  /// `skipped`: what stands before it in the file is damaged. An error if nothing can be shown.
+  std::optional<Error> add(const Chunk& chunk, bool skipped) {
+    if (chunk.kind == ChunkKind::kMeshes) {
+      recording_.mesh.resize(chunk.content.size());
+      std::memcpy(recording_.mesh.data(), chunk.content.data(), chunk.content.size());
+      return check_mesh(recording_.header, recording_.mesh);
     }
-    recording.frames.push_back(record.frame);
-    if (operator_bytes > 0 && !add_operator(tracked, recording)) ++damaged_operators;
+    if (skipped) hold_figure();
+    if (chunk.kind == ChunkKind::kFrame) add_frame(chunk.content);
+    // Behind a damaged frame an operator would appear at the frame before it.
+    if (chunk.kind == ChunkKind::kOperator && has_frame_) add_operator(chunk.content);
+    if (chunk.kind != ChunkKind::kTick) has_frame_ = chunk.kind == ChunkKind::kFrame && is_good_;
+    return std::nullopt;
   }
-  std::string damage;
-  if (damaged > 0) {
-    damage = fmt::format("{} of {} frames are damaged, the first at byte {}; ", damaged, records,
-                         first_damaged);
+  /// The last frame's operator is damaged: its figure is that of the frame before, so that it does
+  /// not flicker.
+  void hold_figure() {
+    const std::size_t count = recording_.figures.size();
+    if (has_frame_ && count > 1) recording_.figures[count - 1] = recording_.figures[count - 2];
+    has_frame_ = false;
   }
-  if (damaged_operators > 0)
-    damage += fmt::format("{} of {} frames have lost their operator; ", damaged_operators, records);
-  if (left_bytes > 0) {
-    damage +=
-        fmt::format("the file is cut off inside a frame at byte {}; ", file_bytes - left_bytes);
+  /// Frames and operators whose values are invalid, though their bytes are as written.
+  std::string damage() const {
+    std::string out;
+    if (bad_frames_ > 0) out += fmt::format("{} frames have invalid values; ", bad_frames_);
+    if (bad_operators_ > 0)
+      out += fmt::format("{} frames have lost their operator; ", bad_operators_);
+    return out;
   }
-  if (const std::string trouble = in.trouble(); !trouble.empty()) damage += trouble + "; ";
-  return damage;
-}
 
-ReadResult unusable(const Error& error) {
-  return {.recording = {}, .usable = false, .damage = error.message};
-}
+ private:
+  RecordingReader(Unpacker frames, Unpacker operators, Recording& recording)
+      : frames_(std::move(frames)), operators_(std::move(operators)), recording_(recording) {}
+
+  void add_frame(const std::string& content) {
+    Frame frame;
+    is_good_ = frames_.unpack(content, &frame) && !check_frame(frame, recording_.header);
+    if (!is_good_) {
+      ++bad_frames_;
+      return;
+    }
+    recording_.frames.push_back(frame);
+    if (recording_.operators.empty()) return;
+    recording_.operators.emplace_back();  // nobody, unless an operator follows
+    recording_.figures.emplace_back();
+  }
+
+  void add_operator(const std::string& content) {
+    if (recording_.operators.empty()) {
+      recording_.operators.resize(recording_.frames.size());
+      recording_.figures.resize(recording_.frames.size());
+    }
+    OperatorRecord record;
+    const bool is_whole = operators_.unpack(content, &record);
+    const auto tracked = is_whole ? operator_of(record) : std::nullopt;
+    if (!tracked) {
+      ++bad_operators_;
+      return hold_figure();
+    }
+    recording_.operators.back() = *tracked;
+    recording_.figures.back() = figure_of(record, *tracked);
+  }
+
+  Unpacker frames_, operators_;
+  Recording& recording_;
+  bool has_frame_ = false, is_good_ = false;  // the last chunk was a good frame
+  std::uint64_t bad_frames_ = 0, bad_operators_ = 0;
+};
 
 }  // namespace
 
@@ -191,19 +116,25 @@ std::optional<double> Recording::body_height_m() const {
 }
 
 ReadResult read_recording(const std::string& path) {
-  auto in = SealedFile::open(path, "check the name");
-  if (!in) return unusable(in.error());
-  Magic magic{};
-  const Result<std::uint64_t> skipped = skip_ticks(*in, magic);
-  if (!skipped) return unusable(skipped.error());
-  Result<Setup> setup = read_setup(*in, magic);
-  if (!setup) return unusable(setup.error());
+  const auto unusable = [&path](const Error& error) {
+    return ReadResult{.recording = {}, .usable = false, .damage = error.message};
+  };
+  auto file = RunReader::open(path, "check the name");
+  if (!file) return unusable(file.error());
   ReadResult result;
   Recording& recording = result.recording;
-  recording.hello = setup->hello;
-  recording.mesh = std::move(setup->mesh);
-  const std::uint64_t start = *skipped + sizeof(FileHeader) + sizeof(Hello) + recording.mesh.size();
-  result.damage = read_frames(*in, start, setup->operator_bytes, recording);
+  recording.header = file->header();
+  if (const auto error = check_header(recording.header)) return unusable(*error);
+  auto reader = RecordingReader::make(*file, recording);
+  if (!reader) return unusable(reader.error());
+  for (Chunk chunk; file->next(chunk);)
+    if (const auto error = reader->add(chunk, file->skipped())) return unusable(*error);
+  if (file->skipped()) reader->hold_figure();
+  if (recording.mesh.empty())
+    return unusable(
+        Error{"its meshes are damaged or missing; nothing of it can be shown, record "
+              "again"});
+  result.damage = file->damage() + reader->damage();
   result.usable = !recording.frames.empty();
   if (!result.damage.empty() || !result.usable) {
     result.damage += fmt::format("{} good frames ({:.1f} s) are kept", recording.frames.size(),

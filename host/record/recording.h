@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // recording.h - a run of tactd in one file, and the last minutes of it in memory.
 //
-// The file's layout is in firmware/telemetry/recording_format.h; a black box of tactd contains a
-// recording, too. Of a damaged or truncated file the good part is read, with one message about the
-// rest. With a tracker it also has the operator and the figure shown, frame by frame
-// (operator_record.h).
+// The format is firmware/protocol/run_file.h; a black box of tactd is a recording, too. Of a
+// damaged or truncated file the good part is read, with one message about the rest. With a tracker it also
+// has the operator and the figure shown, frame by frame (operator_record.h).
 #pragma once
 
 #include <deque>
@@ -13,24 +12,15 @@
 #include <string>
 #include <vector>
 
-#include "firmware/telemetry/recording_format.h"
+#include "firmware/protocol/run_file.h"
 #include "host/figure/figure.h"
 #include "host/record/telemetry_check.h"
-#include "model/io/seal.h"
 #include "model/result.h"
 
 namespace tact::host::record {
 
-using firmware::telemetry::FileHeader;
-using firmware::telemetry::FrameRecord;
-using firmware::telemetry::kRecordingMagic;
-using firmware::telemetry::kRecordingVersion;
-using firmware::telemetry::kTrackedRecordingVersion;
-using firmware::telemetry::recording_frame;
-using firmware::telemetry::recording_start;
-
 struct Recording {
-  Hello hello;
+  RunHeader header;
   MeshBytes mesh;
   std::vector<Frame> frames;
   std::vector<tracking::TrackedOperator> operators;        // one per frame; empty without a tracker
@@ -57,26 +47,26 @@ struct ReadResult {
 };
 ReadResult read_recording(const std::string& path);
 
+/// The bytes before the first frame.
+std::string start_of_recording(const RunHeader& header, const MeshBytes& mesh);
+
 /// Writes one file, with a delay of at most a second. Never overwrites a file.
 class RecordingWriter {
  public:
   /// The error states the cause and the remedy. After an error nothing more is written.
-  std::optional<model::Error> open(const std::string& path, const Hello& hello,
-                                   const MeshBytes& mesh, bool is_tracked = false);
-  /// `tracked` and the shown figure are used only if is_tracked.
+  std::optional<model::Error> open(const std::string& path, const RunHeader& header,
+                                   const MeshBytes& mesh);
+  /// The shown figure is kept if there is a tracker: `tracked` is not null.
   std::optional<model::Error> write(const Frame& frame,
                                     const tracking::TrackedOperator* tracked = nullptr,
                                     const figure::FigurePose* figure = nullptr);
   std::optional<model::Error> close();
 
  private:
-  std::optional<model::Error> put(const std::string& bytes);
-  std::optional<model::Error> flush();
-  std::optional<model::Error> stop(const model::Error& error);
+  std::optional<model::Error> check();
 
-  std::optional<model::io::SealedWriter> file_;
+  std::optional<firmware::protocol::RunWriter> file_;
   std::int64_t flushed_ns_ = 0;
-  bool is_tracked_ = false;
 };
 
 /// The operator at one frame.
@@ -92,10 +82,9 @@ struct KeptFrame {
 
 /// A part of a run. Frames and meshes are shared between its holders.
 struct Snapshot {
-  Hello hello;
+  RunHeader header;
   std::shared_ptr<const MeshBytes> mesh;
   std::vector<std::shared_ptr<const KeptFrame>> frames;
-  bool is_tracked = false;
 };
 
 /// The newest frames, oldest first, of a limited time span, with the operator if tracked.
@@ -105,14 +94,11 @@ class RecentFrames {
   void add(const Frame& frame, const tracking::TrackedOperator* tracked = nullptr,
            const figure::FigurePose* figure = nullptr);
   const std::deque<std::shared_ptr<const KeptFrame>>& frames() const { return frames_; }
-  /// True if any of them has a tracked operator.
-  bool is_tracked() const { return is_tracked_; }
 
   static constexpr double kKeep_s = 300.0;
 
  private:
   std::deque<std::shared_ptr<const KeptFrame>> frames_;
-  bool is_tracked_ = false;
   std::size_t capacity_ = 0;
 };
 

@@ -15,60 +15,54 @@ using model::Error;
 
 }  // namespace
 
-std::optional<Error> RecordingWriter::open(const std::string& path, const Hello& hello,
-                                           const MeshBytes& mesh, bool is_tracked) {
-  is_tracked_ = is_tracked;
+std::string start_of_recording(const RunHeader& header, const MeshBytes& mesh) {
+  return start_of_run(header, mesh,
+                      {firmware::protocol::type_of_record<Frame>(),
+                       firmware::protocol::type_of_record<OperatorRecord>()});
+}
+
+std::optional<Error> RecordingWriter::open(const std::string& path, const RunHeader& header,
+                                           const MeshBytes& mesh) {
   file_.reset();
-  auto file = model::io::SealedWriter::create(path);
+  auto file = firmware::protocol::RunWriter::create(path, start_of_recording(header, mesh));
   if (!file) return file.error();
   file_.emplace(std::move(*file));
   flushed_ns_ = 0;
-  if (std::optional<Error> error = put(recording_start(
-          hello, mesh, is_tracked ? kTrackedRecordingVersion : kRecordingVersion))) {
-    return error;
-  }
-  return flush();
+  file_->flush();
+  return check();
 }
 
-std::optional<Error> RecordingWriter::stop(const Error& error) {
+/// The error is returned once; from then on there is no file.
+std::optional<Error> RecordingWriter::check() {
+  const std::optional<Error> error = file_->trouble();
+  if (!error) return std::nullopt;
   file_.reset();
-  return Error{error.message + "; recording stopped, what was written before is kept"};
-}
-
-std::optional<Error> RecordingWriter::put(const std::string& bytes) {
-  const auto error = file_->put(bytes);
-  return error ? stop(*error) : std::nullopt;
-}
-
-std::optional<Error> RecordingWriter::flush() {
-  const auto error = file_->flush();
-  return error ? stop(*error) : std::nullopt;
+  return Error{error->message + "; recording stopped, what was written before is kept"};
 }
 
 std::optional<Error> RecordingWriter::write(const Frame& frame,
                                             const tracking::TrackedOperator* tracked,
                                             const figure::FigurePose* figure) {
   if (!file_) return std::nullopt;
-  std::string bytes = recording_frame(frame);
-  if (is_tracked_)
-    bytes += operator_record(tracked != nullptr ? *tracked : tracking::TrackedOperator{}, figure);
-  if (std::optional<Error> error = put(bytes)) return error;
-  if (frame.time_ns - flushed_ns_ < kFlush_ns) return std::nullopt;
-  flushed_ns_ = frame.time_ns;
-  return flush();
+  file_->add(chunk_of(frame));
+  if (tracked != nullptr) file_->add(operator_chunk(*tracked, figure));
+  if (frame.time_ns - flushed_ns_ >= kFlush_ns) {
+    flushed_ns_ = frame.time_ns;
+    file_->flush();
+  }
+  return check();
 }
 
 std::optional<Error> RecordingWriter::close() {
   if (!file_) return std::nullopt;
-  auto error = file_->finish();
+  auto error = file_->close();
   file_.reset();
   return error;
 }
 
 void RecentFrames::restart(double frame_rate_Hz) {
   frames_.clear();
-  is_tracked_ = false;
-  // The rate comes from a Hello; its bounds limit the memory.
+  // The rate comes from a RunHeader; its bounds limit the memory.
   capacity_ = static_cast<std::size_t>(std::clamp(frame_rate_Hz, 1.0, 1000.0) * kKeep_s);
 }
 
@@ -76,13 +70,9 @@ void RecentFrames::add(const Frame& frame, const tracking::TrackedOperator* trac
                        const figure::FigurePose* figure) {
   if (frames_.size() >= capacity_ && !frames_.empty()) frames_.pop_front();
   auto kept = std::make_shared<KeptFrame>(frame);
-  // After the first tracked frame every later frame has an operator: records have one size.
-  is_tracked_ = is_tracked_ || tracked != nullptr;
-  if (is_tracked_) {
+  if (tracked != nullptr)
     kept->person = std::make_unique<const KeptOperator>(
-        tracked != nullptr ? *tracked : tracking::TrackedOperator{},
-        figure != nullptr ? std::optional(*figure) : std::nullopt);
-  }
+        *tracked, figure != nullptr ? std::optional(*figure) : std::nullopt);
   frames_.push_back(std::move(kept));
 }
 

@@ -7,39 +7,30 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string_view>
 #include <vector>
 
-#include "firmware/telemetry/telemetry_record.h"
+#include "firmware/protocol/frame.h"
+#include "firmware/protocol/run_header.h"
 #include "model/result.h"
 
 namespace tact::host::record {
 
-using firmware::telemetry::Frame;
-using firmware::telemetry::Hello;
+using firmware::protocol::Frame;
+using firmware::protocol::RunHeader;
 
-/// Content of the memory file that comes with a Hello.
+/// Organ vertices (3 float each, W, m), organ triangles (3 uint32 each), the same for the tool mesh
+/// (tool frame, m), then, if the scene has them, the colours of the organ's vertices (3 uint8 each,
+/// sRGB).
 using MeshBytes = std::vector<std::byte>;
 
-/// True if the meshes announced by this Hello have this size, with or without colours of the
-/// organ's vertices.
-bool is_mesh_size(const Hello& hello, std::uint64_t bytes);
-
-/// Header, counts, and finite lengths of a Hello.
-std::optional<model::Error> check_hello(const Hello& hello);
+/// Counts, and finite lengths.
+std::optional<model::Error> check_header(const RunHeader& header);
 
 /// Size, finite vertices, and triangles that name existing vertices.
-std::optional<model::Error> check_mesh(const Hello& hello, std::span<const std::byte> mesh);
+std::optional<model::Error> check_mesh(const RunHeader& header, std::span<const std::byte> mesh);
 
-/// Header of a Frame, its states, and a patch that names existing vertices and triangles. Lengths
-/// and forces may be NaN, because such a fault must be shown.
-std::optional<model::Error> check_frame(const Frame& frame, const Hello& hello);
-
-/// A text of a wire struct: ends at the first NUL or with the array.
-template <std::size_t n>
-std::string_view text_of(const char (&field)[n]) {
-  const std::string_view all(field, n);
-  return all.substr(0, all.find('\0'));
-}
+/// The states of a frame, and a patch that names existing vertices and triangles. Lengths and
+/// forces may be NaN, because such a fault must be shown.
+std::optional<model::Error> check_frame(const Frame& frame, const RunHeader& header);
 
 }  // namespace tact::host::record

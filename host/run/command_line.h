@@ -14,7 +14,7 @@ struct Options {
   server::ViewerOptions viewer;
   std::string socket;         // of tactd's telemetry
   std::string tactd_user;     // user whose tactd is trusted, too
-  std::string record;         // new file for hello and frames
+  std::string record;         // new file for header and frames
   std::string open;           // recording to replay instead of tactd
   std::string export_csv;     // with open: write this table and exit
   std::string scenes;         // folder of the scenes offered to pages; empty: none

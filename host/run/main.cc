@@ -81,15 +81,14 @@ class Answers {
 /// Writes every frame of every run to its own file: FILE, then FILE.2, FILE.3.
 class Recorder {
  public:
-  Recorder(std::string path, bool is_tracked) : path_(std::move(path)), is_tracked_(is_tracked) {}
+  explicit Recorder(std::string path) : path_(std::move(path)) {}
 
-  void begin(const record::Hello& hello, const record::MeshBytes& mesh) {
+  void begin(const record::RunHeader& header, const record::MeshBytes& mesh) {
     if (path_.empty()) return;
     note(writer_.close());
     ++runs_;
     // A new run of tactd has another scene, so it needs another file.
-    note(writer_.open(runs_ == 1 ? path_ : fmt::format("{}.{}", path_, runs_), hello, mesh,
-                      is_tracked_));
+    note(writer_.open(runs_ == 1 ? path_ : fmt::format("{}.{}", path_, runs_), header, mesh));
   }
   void add(const record::Frame& frame, const tracking::TrackedOperator* tracked,
            const figure::FigurePose& figure) {
@@ -107,7 +106,6 @@ class Recorder {
 
   record::RecordingWriter writer_;
   std::string path_;
-  bool is_tracked_;
   int runs_ = 0;
   bool failed_ = false;
 };
@@ -116,11 +114,11 @@ int export_csv(const Options& options, const record::ReadResult& read) {
   const record::Recording& recording = read.recording;
   const std::vector<tracking::BodyRole> bodies = bodies_in(recording);
   std::string text =
-      record::csv_facts(recording.hello) + record::csv_header(recording.hello, bodies);
+      record::csv_facts(recording.header) + record::csv_header(recording.header, bodies);
   auto out = model::io::FileWriter::replace(options.export_csv, text);
   if (!out) return fail(out.error().message);
   for (std::size_t i = 0; i < recording.frames.size(); ++i) {
-    record::append_csv_row(text, recording.frames[i], recording.hello, recording.operator_at(i),
+    record::append_csv_row(text, recording.frames[i], recording.header, recording.operator_at(i),
                            bodies);
     if (const auto error = out->put(text)) return fail(error->message);
     text.clear();
@@ -186,10 +184,10 @@ model::Result<model::io::Trust> trust_of(const Options& options) {
 /// Passes tactd's frames to page and recording, with the operator at that moment.
 TelemetryEvents show_and_record(server::LiveView& view, Recorder& recorder, OperatorInputs& inputs,
                                 const server::OperatorFigure& figure, server::ScenePicker& picker) {
-  return {.hello =
-              [&](const record::Hello& hello, record::MeshBytes mesh) {
-                recorder.begin(hello, mesh);
-                view.begin(hello, std::move(mesh), server::Link::kLive);
+  return {.start =
+              [&](const record::RunHeader& header, record::MeshBytes mesh) {
+                recorder.begin(header, mesh);
+                view.begin(header, std::move(mesh), server::Link::kLive);
                 picker.begin();
               },
           .frame =
@@ -227,7 +225,7 @@ int show_live(const Options& options) {
   if (const std::optional<model::Error> error = inputs.open(options)) return fail(error->message);
   if (const auto shoulder_m = inputs.shoulder_m()) figure.put_shoulder_at(*shoulder_m);
   if (options.figure || inputs.is_there()) view.accompany(&figure);
-  Recorder recorder(options.record, inputs.is_there());
+  Recorder recorder(options.record);
   server::ScenePicker picker(view, say_line);
   Answers answers(io, picker);
   if (!options.scenes.empty())

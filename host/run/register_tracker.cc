@@ -160,7 +160,7 @@ int register_tracker(const Options& options) {
   Collecting collecting(tracking, options.poses);
   TelemetryClient client(
       io, options.socket,
-      {.hello = [](const record::Hello&, const record::MeshBytes&) { say("tactd is there"); },
+      {.start = [](const record::RunHeader&, const record::MeshBytes&) { say("tactd is there"); },
        .frame =
            [&](const record::Frame& frame) {
              if (collecting.add(frame)) io.stop();

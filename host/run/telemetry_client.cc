@@ -30,6 +30,8 @@ using model::Error;
 constexpr std::chrono::milliseconds kRetry{50};  // short, as a person waits for the first frame
 constexpr double kTimeout_s = 0.3;               // as on the page (host/README.md)
 constexpr int kMessagesPerTurn = 64;             // then other work gets a turn
+constexpr std::int64_t kMaxStartBytes = 200'000'000;  // four meshes as telemetry_check.cc allows
+constexpr std::size_t kMaxMessageBytes = 1 << 16;     // many times a frame
 
 /// The descriptor in a control message, or -1. Any further ones are closed.
 int take_descriptor(msghdr& message) {
@@ -50,25 +52,19 @@ int take_descriptor(msghdr& message) {
   return found;
 }
 
-/// Copies instead of mapping, so that a file that shrinks later does no harm.
-record::MeshBytes read_memory_file(int fd, const record::Hello& hello) {
-  record::MeshBytes mesh;
+/// Copies instead of mapping, so that a file that shrinks later does no harm. Empty if it cannot be
+/// read, or is too large.
+std::string read_memory_file(int fd) {
   struct stat status{};
-  // Checked before allocating: the size must be the one that the Hello announces.
-  if (fstat(fd, &status) != 0 || status.st_size < 0 ||
-      !record::is_mesh_size(hello, static_cast<std::uint64_t>(status.st_size)))
-    return mesh;
-  mesh.resize(static_cast<std::size_t>(status.st_size));
+  if (fstat(fd, &status) != 0 || status.st_size < 0 || status.st_size > kMaxStartBytes) return {};
+  std::string bytes(static_cast<std::size_t>(status.st_size), '\0');
   std::size_t done = 0;
-  while (done < mesh.size()) {
-    const ssize_t got = pread(fd, &mesh[done], mesh.size() - done, static_cast<off_t>(done));
-    if (got <= 0) {
-      mesh.clear();
-      break;
-    }
+  while (done < bytes.size()) {
+    const ssize_t got = pread(fd, &bytes[done], bytes.size() - done, static_cast<off_t>(done));
+    if (got <= 0) return {};
     done += static_cast<std::size_t>(got);
   }
-  return mesh;
+  return bytes;
 }
 
 }  // namespace
@@ -140,9 +136,9 @@ void TelemetryClient::lose(const std::string& reason) {
   socket_.close(ignored);
   silence_.cancel(ignored);
   // Reported once: a loss or a new reason, but not the same reason at each retry.
-  const bool had_hello = has_hello_;
-  has_hello_ = is_silent_ = false;
-  if (had_hello || reason != last_reason_) events_.lost(reason);
+  const bool had_start = has_start_;
+  has_start_ = is_silent_ = false;
+  if (had_start || reason != last_reason_) events_.lost(reason);
   last_reason_ = reason;
   retry_later();
 }
@@ -174,7 +170,7 @@ void TelemetryClient::listen() {
   if (std::exchange(is_silent_, false) && events_.silent) events_.silent(0.0);
   const double timeout_s =
       // Below 8.3 frames a second 0.3 s would be less than 2.5 intervals.
-      std::max(kTimeout_s, 2.5 / std::max(1.0, static_cast<double>(hello_.frame_rate_Hz)));
+      std::max(kTimeout_s, 2.5 / std::max(1.0, header_.frame_rate_Hz));
   silence_.expires_after(std::chrono::duration_cast<std::chrono::nanoseconds>(
       std::chrono::duration<double>(timeout_s)));
   silence_.async_wait([this, timeout_s](error_code wrong) {
@@ -187,9 +183,7 @@ void TelemetryClient::listen() {
 
 /// Reads one message. False if none is left or the connection ended.
 bool TelemetryClient::read_message() {
-  alignas(record::Frame)
-      // One byte more than the largest message, to detect a longer one.
-      std::byte bytes[std::max(sizeof(record::Hello), sizeof(record::Frame)) + 1];
+  char bytes[kMaxMessageBytes];
   alignas(cmsghdr) char control[CMSG_SPACE(4 * sizeof(int))];
   iovec part{.iov_base = bytes, .iov_len = sizeof bytes};
   msghdr message{};
@@ -204,37 +198,44 @@ bool TelemetryClient::read_message() {
 
   const int memory_file = take_descriptor(message);
   const std::optional<Error> error =
-      has_hello_ ? take_frame({bytes, static_cast<std::size_t>(got)})
-                 : take_hello({bytes, static_cast<std::size_t>(got)}, memory_file);
+      has_start_ ? take_frame({bytes, static_cast<std::size_t>(got)})
+                 : take_start({bytes, static_cast<std::size_t>(got)}, memory_file);
   if (memory_file >= 0) ::close(memory_file);
   if (error) lose(error->message);
   return !error && socket_.is_open();
 }
 
-std::optional<Error> TelemetryClient::take_hello(std::span<const std::byte> message,
-                                                 int memory_file) {
-  if (message.size() != sizeof hello_) {
+std::optional<Error> TelemetryClient::take_start(std::string_view message, int memory_file) {
+  if (message != firmware::protocol::kMagic)
     return Error{
-        "tactd's first message has an unexpected size; use tactd and "
-        "tact-view of one build"};
-  }
-  std::memcpy(&hello_, message.data(), sizeof hello_);
-  if (std::optional<Error> error = record::check_hello(hello_)) return error;
-  if (memory_file < 0) return Error{"tactd sent no meshes with its first message"};
-  record::MeshBytes mesh = read_memory_file(memory_file, hello_);
-  if (std::optional<Error> error = record::check_mesh(hello_, mesh)) return error;
-  has_hello_ = true;
+        "the first message is not that of this tactd; use tactd and tact-view of one build"};
+  if (memory_file < 0) return Error{"tactd sent no memory file with its first message"};
+  auto start = firmware::protocol::RunReader::of_bytes(read_memory_file(memory_file));
+  if (!start) return Error{"tactd's memory file " + start.error().message};
+  header_ = start->header();
+  if (std::optional<Error> error = record::check_header(header_)) return error;
+  auto frames = start->unpacker<record::Frame>();
+  if (!frames) return Error{"tactd's memory file: " + frames.error().message};
+  frames_.emplace(std::move(*frames));
+  firmware::protocol::Chunk chunk;
+  if (!start->next(chunk) || chunk.kind != firmware::protocol::ChunkKind::kMeshes)
+    return Error{"tactd's memory file has no meshes"};
+  record::MeshBytes mesh(chunk.content.size());
+  std::memcpy(mesh.data(), chunk.content.data(), mesh.size());
+  if (std::optional<Error> error = record::check_mesh(header_, mesh)) return error;
+  has_start_ = true;
   listen();
-  events_.hello(hello_, std::move(mesh));
+  events_.start(header_, std::move(mesh));
   return std::nullopt;
 }
 
-std::optional<Error> TelemetryClient::take_frame(std::span<const std::byte> message) {
+std::optional<Error> TelemetryClient::take_frame(std::string_view message) {
   record::Frame frame;
-  if (message.size() != sizeof frame)
-    return Error{"a telemetry frame has an unexpected size; use tactd and tact-view of one build"};
-  std::memcpy(&frame, message.data(), sizeof frame);
-  if (std::optional<Error> error = record::check_frame(frame, hello_)) return error;
+  const auto chunk = firmware::protocol::chunk_in(message);
+  if (!chunk || chunk->kind != firmware::protocol::ChunkKind::kFrame ||
+      !frames_->unpack(chunk->content, &frame))
+    return Error{"a message is no telemetry frame; use tactd and tact-view of one build"};
+  if (std::optional<Error> error = record::check_frame(frame, header_)) return error;
   listen();
   events_.frame(frame);
   return std::nullopt;
@@ -243,8 +244,8 @@ std::optional<Error> TelemetryClient::take_frame(std::span<const std::byte> mess
 void TelemetryClient::move_hand(const double (&position_m)[3], const double (&rotation_rad)[3],
                                 double grip_ratio) {
   // Never for hardware, whose hand is real.
-  if (!has_hello_ || hello_.simulated == 0) return;
-  const auto address = model::io::socket_address(std::string(record::text_of(hello_.hand_socket)));
+  if (!has_start_ || !header_.simulated) return;
+  const auto address = model::io::socket_address(header_.hand_socket);
   if (!address) return;
   hal::sim::HandTarget target;
   std::copy(std::begin(position_m), std::end(position_m), target.position_m);

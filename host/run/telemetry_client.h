@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// telemetry_client.h - receives tactd's messages: one Hello with the meshes, then frames.
+// telemetry_client.h - receives tactd's messages: the start of a run with its meshes, then frames.
 //
 // Connects to tactd's socket and retries twenty times a second, before tactd starts and after the
 // connection ended. Every message is checked before it is passed on. In the other direction it
@@ -12,9 +12,10 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
-#include <span>
 #include <string>
+#include <string_view>
 
+#include "firmware/protocol/run_file.h"
 #include "host/record/telemetry_check.h"
 #include "model/io/socket_file.h"
 #include "model/result.h"
@@ -25,7 +26,7 @@ namespace tact::host::run {
 std::string default_telemetry_path();
 
 struct TelemetryEvents {
-  std::function<void(const record::Hello&, record::MeshBytes)> hello;
+  std::function<void(const record::RunHeader&, record::MeshBytes)> start;
   std::function<void(const record::Frame&)> frame;
   std::function<void(const std::string& reason)> lost;  // once per loss; reason may be empty
   /// Connected, but no frame for 0.3 s (2.5 periods, if longer). 0: frames arrive again.
@@ -55,8 +56,8 @@ class TelemetryClient {
   void listen();
   bool has_data();
   bool read_message();
-  std::optional<model::Error> take_hello(std::span<const std::byte> message, int memory_file);
-  std::optional<model::Error> take_frame(std::span<const std::byte> message);
+  std::optional<model::Error> take_start(std::string_view message, int memory_file);
+  std::optional<model::Error> take_frame(std::string_view message);
 
   boost::asio::posix::stream_descriptor socket_;
   boost::asio::steady_timer retry_, silence_;
@@ -64,8 +65,9 @@ class TelemetryClient {
   model::io::Trust trust_;
   TelemetryEvents events_;
   int hand_socket_ = -1;
-  record::Hello hello_;
-  bool has_hello_ = false, is_silent_ = false;
+  record::RunHeader header_;
+  std::optional<firmware::protocol::Unpacker> frames_;  // by the table in the head
+  bool has_start_ = false, is_silent_ = false;
   std::string last_reason_ = "never";  // a reason is reported once, not at every retry
 };
 

@@ -49,10 +49,8 @@ void Download::start(Header header) {
 
 std::string Download::first_part() const {
   if (kind_ == DownloadKind::kCsv)
-    return record::csv_facts(snapshot_.hello) + record::csv_header(snapshot_.hello, bodies_);
-  return recording_start(
-      snapshot_.hello, *snapshot_.mesh,
-      snapshot_.is_tracked ? record::kTrackedRecordingVersion : record::kRecordingVersion);
+    return record::csv_facts(snapshot_.header) + record::csv_header(snapshot_.header, bodies_);
+  return record::start_of_recording(snapshot_.header, *snapshot_.mesh);
 }
 
 void Download::write_chunk(std::string part) {
@@ -66,7 +64,6 @@ void Download::write_chunk(std::string part) {
 }
 
 void Download::write_next() {
-  static const record::KeptOperator kNobody;
   const auto& frames = snapshot_.frames;
   if (next_ == frames.size()) {
     // The seal goes last: it distinguishes a complete recording from a truncated one.
@@ -77,15 +74,15 @@ void Download::write_next() {
   const std::size_t end = std::min(next_ + kFramesPerPart, frames.size());
   for (; next_ < end; ++next_) {
     const record::KeptFrame& kept = *frames[next_];
-    const record::KeptOperator& person = kept.person ? *kept.person : kNobody;
+    const record::KeptOperator* const person = kept.person.get();
     if (kind_ == DownloadKind::kCsv) {
-      record::append_csv_row(part, kept.frame, snapshot_.hello,
-                             snapshot_.is_tracked ? &person.tracked : nullptr, bodies_);
-    } else {
-      part += recording_frame(kept.frame);
-      if (snapshot_.is_tracked)
-        part += record::operator_record(person.tracked, person.figure ? &*person.figure : nullptr);
+      record::append_csv_row(part, kept.frame, snapshot_.header,
+                             person != nullptr ? &person->tracked : nullptr, bodies_);
+      continue;
     }
+    part += chunk_of(kept.frame);
+    if (person != nullptr)
+      part += record::operator_chunk(person->tracked, person->figure ? &*person->figure : nullptr);
   }
   write_chunk(std::move(part));
 }

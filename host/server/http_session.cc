@@ -170,7 +170,7 @@ HttpSession::Response HttpSession::answer(const Request& request, std::string_vi
   if (from_tactd && !site_.view.has_scene())
     return sorry(http::status::service_unavailable, "503: waiting for tactd");
   if (path == "/scene.json")
-    return make(http::status::ok, "application/json", scene_json(site_.view.hello()));
+    return make(http::status::ok, "application/json", scene_json(site_.view.header()));
   if (path == "/mesh.bin")
     return make(http::status::ok, "application/octet-stream", bytes_of(*site_.view.mesh()));
   if (path == "/scenes.json" && !site_.scenes.empty())

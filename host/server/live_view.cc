@@ -20,16 +20,16 @@ static_assert(kLinkNames.size() == static_cast<std::size_t>(Link::kReplay) + 1);
 
 LiveView::LiveView() { report(); }
 
-void LiveView::begin(const record::Hello& hello, record::MeshBytes mesh, Link link,
+void LiveView::begin(const record::RunHeader& header, record::MeshBytes mesh, Link link,
                      const std::string& detail) {
-  hello_ = hello;
+  header_ = header;
   mesh_ = std::make_shared<const record::MeshBytes>(std::move(mesh));
   ++scene_number_;
   if (overlay_source_)
     // Before the status is published: that of a new scene contains the figure.
     figure_ = std::make_shared<const std::string>(
-        model::io::text_of(overlay_source_->begin(hello, *mesh_)));
-  recent_.restart(static_cast<double>(hello.frame_rate_Hz));
+        model::io::text_of(overlay_source_->begin(header, *mesh_)));
+  recent_.restart(header.frame_rate_Hz);
   link_ = link;
   detail_ = detail;
   report();
@@ -46,11 +46,11 @@ void LiveView::add(const record::Frame& frame, const tracking::TrackedOperator* 
   newest_beside_ = beside;
   // The frame is kept above; without listeners no JSON is made.
   if (listeners_.empty()) return;
-  const Text text = std::make_shared<const std::string>(frame_json(frame, hello_));
+  const Text text = std::make_shared<const std::string>(frame_json(frame, header_));
   for (LiveListener* listener : listeners_) listener->on_frame(text, beside);
 }
 
-void LiveView::rewind() { recent_.restart(static_cast<double>(hello_.frame_rate_Hz)); }
+void LiveView::rewind() { recent_.restart(header_.frame_rate_Hz); }
 
 void LiveView::lose(const std::string& reason) {
   link_ = has_scene() ? Link::kLost : Link::kWaiting;
@@ -64,7 +64,7 @@ void LiveView::subscribe(LiveListener& listener) {
   // A replay may be paused: without this a new page would stay empty.
   if (link_ == Link::kReplay && !recent_.frames().empty())
     listener.on_frame(
-        std::make_shared<const std::string>(frame_json(recent_.frames().back()->frame, hello_)),
+        std::make_shared<const std::string>(frame_json(recent_.frames().back()->frame, header_)),
         newest_beside_);
   // Once: a replay starts with its first page.
   if (const auto then = std::exchange(watched_, nullptr)) then();
@@ -100,8 +100,7 @@ void LiveView::report() {
 }
 
 record::Snapshot LiveView::recent(std::uint64_t first_tick, std::uint64_t last_tick) const {
-  record::Snapshot out{
-      .hello = hello_, .mesh = mesh_, .frames = {}, .is_tracked = recent_.is_tracked()};
+  record::Snapshot out{.header = header_, .mesh = mesh_, .frames = {}};
   std::ranges::copy_if(recent_.frames(), std::back_inserter(out.frames), [&](const auto& kept) {
     return kept->frame.tick >= first_tick && kept->frame.tick <= last_tick;
   });

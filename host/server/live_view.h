@@ -33,7 +33,7 @@ class OverlaySource {
  public:
   virtual ~OverlaySource() = default;
   /// Called for every scene; the result is the status's "figure".
-  virtual nlohmann::json begin(const record::Hello& hello, const record::MeshBytes& mesh) = 0;
+  virtual nlohmann::json begin(const record::RunHeader& header, const record::MeshBytes& mesh) = 0;
   /// One JSON text per frame. `shown` is the figure of a recording, which is passed on unchanged.
   virtual std::string with(const record::Frame& frame, const tracking::TrackedOperator* tracked,
                            const figure::FigurePose* shown = nullptr) = 0;
@@ -49,7 +49,7 @@ class LiveView {
   void accompany(OverlaySource* overlay_source) { overlay_source_ = overlay_source; }
 
   // From telemetry or a replay:
-  void begin(const record::Hello& hello, record::MeshBytes mesh, Link link,
+  void begin(const record::RunHeader& header, record::MeshBytes mesh, Link link,
              const std::string& detail = {});
   /// `tracked`: the operator at this frame, null without a tracker; `shown`: as in OverlaySource.
   void add(const record::Frame& frame, const tracking::TrackedOperator* tracked = nullptr,
@@ -69,7 +69,7 @@ class LiveView {
   void unsubscribe(LiveListener& listener) { listeners_.erase(&listener); }
   const Text& status() const { return status_; }
   bool has_scene() const { return scene_number_ > 0; }
-  const record::Hello& hello() const { return hello_; }
+  const record::RunHeader& header() const { return header_; }
   const std::shared_ptr<const record::MeshBytes>& mesh() const { return mesh_; }
   std::size_t listeners() const { return listeners_.size(); }
 
@@ -79,9 +79,9 @@ class LiveView {
  private:
   void report();
 
-  record::Hello hello_;
+  record::RunHeader header_;
   std::shared_ptr<const record::MeshBytes> mesh_;
-  std::uint64_t scene_number_ = 0;  // grows with every Hello: the page loads the scene again
+  std::uint64_t scene_number_ = 0;  // grows with every RunHeader: the page loads the scene again
   Link link_ = Link::kWaiting;
   std::string detail_;  // of the link
   Text replay_;         // playback state; null for a live view

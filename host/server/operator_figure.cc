@@ -23,10 +23,10 @@ pose::Pose pose_of(const record::Frame& frame) {
 
 }  // namespace
 
-Eigen::Vector3d grip_of(const record::Hello& hello, const record::MeshBytes& mesh) {
+Eigen::Vector3d grip_of(const record::RunHeader& header, const record::MeshBytes& mesh) {
   // After the organ's vertices and triangles, 12 bytes each (telemetry_check.h).
-  const std::size_t at = 12 * (std::size_t{hello.organ_vertices} + hello.organ_triangles);
-  const std::size_t bytes = 12 * std::size_t{hello.tool_vertices};
+  const std::size_t at = 12 * (std::size_t{header.organ_vertices} + header.organ_triangles);
+  const std::size_t bytes = 12 * std::size_t{header.tool_vertices};
   if (bytes == 0 || mesh.size() < at + bytes) return figure::FigureSettings{}.grip_m;
   double top_m = 0.0;
   for (std::size_t i = 0; i < bytes; i += 12) {
@@ -46,8 +46,9 @@ void OperatorFigure::put_shoulder_at(const Eigen::Vector3d& shoulder_m) {
   figure_ = figure::Figure(settings_);
 }
 
-nlohmann::json OperatorFigure::begin(const record::Hello& hello, const record::MeshBytes& mesh) {
-  settings_.grip_m = grip_of(hello, mesh);
+nlohmann::json OperatorFigure::begin(const record::RunHeader& header,
+                                     const record::MeshBytes& mesh) {
+  settings_.grip_m = grip_of(header, mesh);
   figure_.go_on_with(settings_.grip_m);
   return skeleton_json(figure_.plan());
 }

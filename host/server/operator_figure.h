@@ -12,7 +12,7 @@
 namespace tact::host::server {
 
 /// grip_m() of the tool's mesh; the default without a mesh.
-Eigen::Vector3d grip_of(const record::Hello& hello, const record::MeshBytes& mesh);
+Eigen::Vector3d grip_of(const record::RunHeader& header, const record::MeshBytes& mesh);
 
 class OperatorFigure final : public OverlaySource {
  public:
@@ -21,7 +21,7 @@ class OperatorFigure final : public OverlaySource {
   /// Position of the right shoulder while none is tracked, W, m. Resets the figure.
   void put_shoulder_at(const Eigen::Vector3d& shoulder_m);
 
-  nlohmann::json begin(const record::Hello& hello, const record::MeshBytes& mesh) override;
+  nlohmann::json begin(const record::RunHeader& header, const record::MeshBytes& mesh) override;
   /// Without `tracked` only the tool moves the figure.
   std::string with(const record::Frame& frame, const tracking::TrackedOperator* tracked,
                    const figure::FigurePose* shown = nullptr) override;

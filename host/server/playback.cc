@@ -37,7 +37,7 @@ Playback::Playback(boost::asio::io_context& io, LiveView& view, record::Recordin
 }
 
 void Playback::start() {
-  view_.begin(recording_.hello, recording_.mesh, Link::kReplay, name_);
+  view_.begin(recording_.header, recording_.mesh, Link::kReplay, name_);
   report();
   show(0);
   view_.when_watched([this] {

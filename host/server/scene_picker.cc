@@ -87,10 +87,10 @@ void ScenePicker::ask(const json& request) {
   publish();
 }
 
-bool ScenePicker::is_simulated() const { return view_.has_scene() && view_.hello().simulated == 1; }
+bool ScenePicker::is_simulated() const { return view_.has_scene() && view_.header().simulated; }
 
 void ScenePicker::begin() {
-  const std::string name(record::text_of(view_.hello().scene_name));
+  const std::string& name = view_.header().scene_name;
   const auto asked = std::exchange(asked_, std::nullopt);
   if (asked) answer_.clear();
   if (asked && asked->scene == name)

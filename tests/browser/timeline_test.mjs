@@ -32,7 +32,7 @@ function read_frames() {
     .split("\n")
     .filter((line) => !line.startsWith("#"))
     .map((line) => line.split(","));
-  const time_s = rows.map((row) => Number(row[head.indexOf("time_s")]));
+  const time_s = rows.map((row) => 1e-9 * Number(row[head.indexOf("time_ns")]));
   frame_at_s = time_s.map((one_s) => one_s - time_s[0]);
 }
 

@@ -37,7 +37,7 @@ CHANGES = {
     ("model/README.md",): "",
     ("host/web/src/main.ts",): "",
 }
-UNREAD = re.compile(r"\b(?:README|CHANGELOG|CONTRIBUTING|decisions)\.md\"|host/web/")
+UNREAD = re.compile(r"\b(?:README|CHANGELOG|CONTRIBUTING|decisions)\.md\"|host/web/(?!src/link/records)")
 
 
 def is_program(name):

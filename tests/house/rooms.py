@@ -49,23 +49,25 @@ ROOMS = {
     "firmware/loop": LOOP,
     "firmware/watch": ["model", "hal", "firmware/loop", "firmware/pc"],
     "firmware/guardian": ["model", "hal"],
-    "firmware/telemetry": [*LOOP, "firmware/loop", "model/io", "model/scene"],
-    "firmware/black_box": ["model", "firmware/loop", "firmware/telemetry"],
+    "firmware/protocol": ["model", "model/io", "firmware/loop"],
+    "firmware/telemetry": [*LOOP, "firmware/loop", "firmware/protocol", "model/io", "model/scene"],
+    "firmware/black_box": ["model", "firmware/loop", "firmware/protocol", "firmware/telemetry"],
     "firmware/console": ["model", "model/io", "hal", "firmware/loop", "firmware/watch",
-                         "firmware/telemetry"],
+                         "firmware/protocol", "firmware/telemetry"],
     "firmware/admission": ["model", "model/contact", "model/indent", "model/law", "model/mesh", "model/scene", "hal",
                            "firmware/loop", "firmware/pc"],
     "firmware/run": [*LOOP, *SCENE, "hal/gpio", "hal/list", "hal/registry", "firmware/loop",
-                     "firmware/watch", "firmware/telemetry", "firmware/black_box", "firmware/pc",
+                     "firmware/watch", "firmware/protocol", "firmware/telemetry", "firmware/black_box", "firmware/pc",
                      "firmware/console", "firmware/guardian", "firmware/admission"],
     "host/pose": [],
     "host/tracking": ["model", "model/io", "model/reader", "host/pose"],
     "host/figure": ["host/pose", "host/tracking"],
-    "host/record": ["model", "model/io", *OPERATOR, "firmware/telemetry"],
+    "host/record": ["model", "model/io", *OPERATOR, "firmware/protocol"],
     "host/net": [],
-    "host/server": ["model", "model/io", *OPERATOR, "host/record", "host/net"],
+    "host/server": ["model", "model/io", *OPERATOR, "host/record", "host/net", "firmware/protocol"],
     "host/igtl": ["model", "host/pose", "host/tracking", "host/record", "host/net"],
-    "host/run": ["model", "model/io", *OPERATOR, "host/record", "host/igtl", "host/server", "hal/sim"],
+    "host/run": ["model", "model/io", *OPERATOR, "host/record", "host/igtl", "host/server", "hal/sim",
+                 "firmware/protocol"],
 }
 # A tool measures every room above; of the other tools it may include these.
 TOOLS = {
@@ -138,7 +140,6 @@ PAGE_FOLDERS = {
 # Where another room is known by these headers alone.
 SINGLE_HEADERS = {
     **{(f"host/{room}", "model"): {"result.h"} for room in ("tracking", "record", "igtl", "server", "run")},
-    ("host/record", "firmware/telemetry"): {"telemetry_record.h", "recording_format.h"},
     ("host/run", "hal/sim"): {"hand_target.h"},
 }
 # Read and write files, allocate, take their time; no room of the loop reaches them by any way.

@@ -15,37 +15,32 @@
 #include <string>
 #include <vector>
 
-#include "firmware/telemetry/telemetry_record.h"
+#include "firmware/protocol/run_file.h"
 
 namespace tact::test {
 
-using firmware::telemetry::Frame;
-using firmware::telemetry::Hello;
+using firmware::protocol::Frame;
+using firmware::protocol::RunHeader;
 
 /// A scene around any meshes: two probe spheres, eleven rings 4 mm apart.
-inline Hello make_hello(std::uint32_t organ_vertices, std::uint32_t organ_triangles,
-                        std::uint32_t tool_vertices, std::uint32_t tool_triangles) {
-  Hello hello;
-  hello.organ_vertices = organ_vertices;
-  hello.organ_triangles = organ_triangles;
-  hello.tool_vertices = tool_vertices;
-  hello.tool_triangles = tool_triangles;
-  hello.site_count = 2;
-  hello.ring_count = 11;
-  hello.ring_pitch_m = 0.004f;
-  hello.rate_Hz = 4000.0f;
-  hello.frame_rate_Hz = 60.0f;
-  hello.force_limit_N = 5.0f;
-  for (std::size_t i = 0; i < 2; ++i) {
-    hello.sphere_radius_m[i] = 0.003f;
-    hello.sphere_offset_m[i][0] = -0.071f;
-    hello.sphere_offset_m[i][1] = i == 0 ? 0.010f : -0.010f;
-  }
-  hello.simulated = 1;
-  std::strcpy(hello.scene_name, "liver (synthetic)");
-  std::strcpy(hello.device_name, "simulated delta");
-  std::strcpy(hello.law_name, "rhombus chain, N = 10");
-  return hello;
+inline RunHeader make_header(std::uint32_t organ_vertices, std::uint32_t organ_triangles,
+                             std::uint32_t tool_vertices, std::uint32_t tool_triangles) {
+  RunHeader header;
+  header.organ_vertices = organ_vertices;
+  header.organ_triangles = organ_triangles;
+  header.tool_vertices = tool_vertices;
+  header.tool_triangles = tool_triangles;
+  header.ring_count = 11;
+  header.ring_pitch_m = 0.004;
+  header.rate_Hz = 4000.0;
+  header.frame_rate_Hz = 60.0;
+  header.force_limit_N = 5.0;
+  header.spheres = {{0.003, {-0.071, 0.010, 0.0}}, {0.003, {-0.071, -0.010, 0.0}}};
+  header.simulated = true;
+  header.scene_name = "liver (synthetic)";
+  header.device_name = "simulated delta";
+  header.law_name = "rhombus chain, N = 10";
+  return header;
 }
 
 /// One triangle each, for tests that only count bytes.
@@ -63,7 +58,7 @@ struct TinyMeshes {
 };
 
 /// Every number of a frame that has one, the same everywhere.
-inline Frame make_frame(float value, firmware::telemetry::SiteState state) {
+inline Frame make_frame(float value, firmware::protocol::SiteState state) {
   Frame frame;
   for (float* array : {frame.tool_position_m, frame.tool_velocity_mps, frame.force_N,
                        frame.torque_Nm, frame.wanted_force_N}) {
@@ -71,7 +66,7 @@ inline Frame make_frame(float value, firmware::telemetry::SiteState state) {
   }
   for (float& part : frame.tool_orientation) part = value;
   frame.grip_ratio = frame.worst_margin_us = frame.median_tick_us = frame.peak_force_N = value;
-  for (firmware::telemetry::FrameSite& site : frame.site) {
+  for (firmware::protocol::FrameSite& site : frame.site) {
     for (float* array : {site.surface_point_m, site.normal, site.shift_m, site.tilt})
       for (int i = 0; i < 3; ++i) array[i] = value;
     for (float& ring_m : site.profile_m) ring_m = value;
@@ -102,12 +97,13 @@ class TelemetrySource {
   TelemetrySource& operator=(const TelemetrySource&) = delete;
 
   bool ok() const { return ok_; }
+  std::string first_message{firmware::protocol::kMagic};  // another one is of another program
 
-  /// True when a viewer is connected now; a new one gets the Hello and the meshes.
-  bool accept(const Hello& hello, const std::vector<std::byte>& meshes) {
+  /// True when a viewer is connected now; a new one gets head and meshes.
+  bool accept(const RunHeader& header, const std::vector<std::byte>& meshes) {
     if (viewer_ >= 0) return true;
     viewer_ = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
-    if (viewer_ >= 0) ok_ = ok_ && send_hello(hello, meshes);
+    if (viewer_ >= 0) ok_ = ok_ && send_start(header, meshes);
     return viewer_ >= 0;
   }
 
@@ -117,7 +113,10 @@ class TelemetrySource {
     const ssize_t sent = ::send(viewer_, bytes, size, MSG_DONTWAIT | MSG_NOSIGNAL);
     if (sent < 0 && errno == EPIPE) hang_up();
   }
-  void send(const Frame& frame) { send(&frame, sizeof frame); }
+  void send(const Frame& frame) {
+    const std::string message = chunk_of(frame);
+    send(message.data(), message.size());
+  }
 
   void hang_up() {
     if (viewer_ >= 0) ::close(viewer_);
@@ -125,11 +124,14 @@ class TelemetrySource {
   }
 
  private:
-  bool send_hello(const Hello& hello, const std::vector<std::byte>& meshes) {
-    const int memory = memfd_create("tact-meshes", MFD_CLOEXEC);
+  bool send_start(const RunHeader& header, const std::vector<std::byte>& meshes) {
+    const std::string start =
+        start_of_run(header, meshes, {firmware::protocol::type_of_record<Frame>()});
+    const int memory = memfd_create("tact-run", MFD_CLOEXEC);
     const bool stored =
-        ::write(memory, meshes.data(), meshes.size()) == static_cast<ssize_t>(meshes.size());
-    iovec part{.iov_base = const_cast<Hello*>(&hello), .iov_len = sizeof hello};
+        ::write(memory, start.data(), start.size()) == static_cast<ssize_t>(start.size());
+    std::string magic = first_message;
+    iovec part{.iov_base = magic.data(), .iov_len = magic.size()};
     alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {};
     msghdr message{};
     message.msg_iov = &part;
@@ -141,7 +143,8 @@ class TelemetrySource {
     c->cmsg_type = SCM_RIGHTS;
     c->cmsg_len = CMSG_LEN(sizeof(int));
     std::memcpy(CMSG_DATA(c), &memory, sizeof memory);
-    const bool sent = ::sendmsg(viewer_, &message, MSG_NOSIGNAL) == sizeof hello;
+    const bool sent =
+        ::sendmsg(viewer_, &message, MSG_NOSIGNAL) == static_cast<ssize_t>(magic.size());
     ::close(memory);
     return stored && sent;
   }

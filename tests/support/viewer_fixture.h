@@ -39,9 +39,9 @@ class Viewer : public ::testing::Test {
   Viewer()
       : folder_(fs::temp_directory_path() / ("tact-viewer-" + std::to_string(getpid()))),
         client_(io_, (folder_ / "t.sock").string(),
-                {.hello =
-                     [this](const Hello& hello, host::record::MeshBytes mesh) {
-                       view_.begin(hello, std::move(mesh), host::server::Link::kLive);
+                {.start =
+                     [this](const RunHeader& header, host::record::MeshBytes mesh) {
+                       view_.begin(header, std::move(mesh), host::server::Link::kLive);
                      },
                  .frame = [this](const Frame& frame) { view_.add(frame), ++frames_; },
                  .lost = [this](const std::string& reason) { view_.lose(reason); },
@@ -77,7 +77,7 @@ class Viewer : public ::testing::Test {
   template <typename Condition>
   bool wait_until(const Condition& condition) {
     for (int i = 0; i < 500; ++i) {
-      if (source_) source_->accept(hello_, meshes_);
+      if (source_) source_->accept(header_, meshes_);
       bool holds = false;
       std::atomic<bool> asked = false;
       boost::asio::post(io_, [&] { holds = condition(), asked = true; });
@@ -157,7 +157,7 @@ class Viewer : public ::testing::Test {
   host::run::TelemetryClient client_;
   host::server::ViewerServer server_;
   std::unique_ptr<TelemetrySource> source_;
-  Hello hello_ = make_hello(3, 1, 3, 1);
+  RunHeader header_ = make_header(3, 1, 3, 1);
   std::vector<std::byte> meshes_ = TinyMeshes{}.bytes();
   std::atomic<std::uint64_t> frames_ = 0;
   std::vector<double> silences_s_;     // as they were told; of the viewer's thread

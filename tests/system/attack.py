@@ -25,9 +25,11 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests/tools/client"))
+from run_bytes import chunk_of, tact  # noqa: E402
 BUILD = Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build").resolve()
 LIMIT_S, MIB, STRANGER = 58, 1 << 20, 65534
-FIVE_MINUTES, TICK_AT = 18_000, 8  # frames at 60 Hz; where Frame has its tick (telemetry_record.h)
+FIVE_MINUTES = 18_000  # frames at 60 Hz
 SECRET = ("scene.json", "mesh.bin", "recording.csv", "recording.tact", "session", "live", "none")
 rng = random.Random(15)
 passed = failed = 0
@@ -132,17 +134,15 @@ def long_run(tactd_path, path):
     """A tact-view that has seen five minutes, which one frame of a true tactd makes up."""
     true = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     true.connect(str(tactd_path))
-    hello, (meshes,), _, _ = socket.recv_fds(true, 65536, 1)
-    frame = bytearray(true.recv(65536))
+    (magic, (start,), _, _), frame = socket.recv_fds(true, 65536, 1), true.recv(65536)
     listener = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     listener.bind(str(path))
     listener.listen(1)
     view = View("--socket", path)
     wire, _ = listener.accept()
-    socket.send_fds(wire, [hello], [meshes])
+    socket.send_fds(wire, [magic], [start])
     for i in range(1, FIVE_MINUTES + 1):
-        struct.pack_into("<Qq", frame, TICK_AT, i, i * 16_666_667)
-        wire.send(frame)
+        wire.send(chunk_of(tact.FRAME, struct.pack("<Qq", i, i * 16_666_667) + frame[32:]))  # tick, time, the rest
     return view, wire
 
 

@@ -99,7 +99,7 @@ TEST_F(OperatorProgram, ShowsTheShoulderOfTheSceneLiveAndFromItsRecording) {
   view("--socket " + in("t.sock") + " --tracking " + in("desk.tracking.toml") + " --record " +
            in("a.tact") + " 2> " + in("said"),
        [&] {
-         source.accept(test::make_hello(3, 1, 3, 1), test::TinyMeshes{}.bytes());
+         source.accept(test::make_header(3, 1, 3, 1), test::TinyMeshes{}.bytes());
          frame.time_ns = static_cast<std::int64_t>(++frame.tick) * 10'000'000;
          source.send(frame);
          // half a second after it has begun to record

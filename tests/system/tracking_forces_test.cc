@@ -160,10 +160,10 @@ class Forces : public ::testing::Test {
   /// Of every tick, what the law wanted and what the device got.
   std::vector<std::uint64_t> forces(const std::string& log) const {
     std::vector<std::uint64_t> out;
-    auto reader = firmware::telemetry::TickLogReader::open(in(log));
+    auto reader = firmware::protocol::TickLog::open(in(log));
     EXPECT_TRUE(reader);
     if (!reader) return out;
-    for (firmware::telemetry::LoggedTick tick; reader->next(tick);) {
+    for (firmware::protocol::LoggedTick tick; reader->next(tick);) {
       const std::uint64_t wanted =
           firmware::telemetry::hash_wrench(model::kFnvStart, tick.output.wanted);
       out.push_back(firmware::telemetry::hash_wrench(wanted, tick.output.written));

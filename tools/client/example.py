@@ -46,7 +46,7 @@ def keep(picture, name):
 
 # %% Force in time: what the law asked for, and what the gate let through
 wanted_N = np.linalg.norm(log.ticks["wanted_force_N"], axis=1)
-written_N = np.linalg.norm(log.ticks["written_force_N"], axis=1)
+written_N = np.linalg.norm(log.ticks["force_N"], axis=1)
 figure, (above, below) = pyplot.subplots(2, 1, sharex=True, figsize=(8, 6))
 above.plot(log.time_s, wanted_N, label="by the law", linewidth=1)
 above.plot(log.time_s, written_N, "--", label="after the gate", linewidth=1)
@@ -55,7 +55,7 @@ above.legend()
 below.plot(log.time_s, 1e3 * log.ticks["tool_position_m"][:, 2], linewidth=1)
 below.set_ylabel("height of the tool, mm")
 below.set_xlabel("time, s")
-above.set_title(f"{tact.text(log.header['scene_name'])}: {tact.text(log.header['law'])}")
+above.set_title(f"{log.header['scene_name']}: {log.header['law_name']}")
 keep(figure, "force.png")
 print(f"{len(log.ticks)} ticks, {log.time_s[-1]:.1f} s, force at most {written_N.max():.3f} N")
 
@@ -65,7 +65,7 @@ if not log.ticks["phase_ns"].any():
     sys.exit()
 figure, axes = pyplot.subplots(figsize=(8, 4))
 share = np.arange(1, len(log.ticks) + 1) / len(log.ticks)
-for i, phase in enumerate(tact.PHASES):
+for i, phase in enumerate(log.fields["phase_ns"]["components"]):
     axes.step(np.sort(log.ticks["phase_ns"][:, i]) / 1e3, share, label=phase, linewidth=1)
 axes.set_xscale("log")
 axes.set_xlabel("time, us")

@@ -5,14 +5,16 @@
     for frame in tact.live():                      # of the tactd that runs as this user
         print(frame["time_ns"], frame["force_N"])
     run = tact.read_recording("run.tactrec")       # run.frames["force_N"] is (n, 3), N
-    log = tact.read_ticks("run.tactlog")           # log.ticks["written_force_N"], every tick
+    log = tact.read_ticks("run.tactlog")           # log.ticks["force_N"], every tick
+    print(log.fields["force_N"]["meaning"])        # unit and meaning stand in the file, too
 
-Fields and units are those of host/PROTOCOL.md, which also has the shorter names that a tick has here. Errors are
-tact.Error with a sentence. Reads alone: nothing here can move a device. Needs numpy.
+Fields and units are those of host/PROTOCOL.md. Errors are tact.Error with a sentence. Reads alone: nothing here can move a
+device. Needs numpy.
 """
 import array
 import dataclasses
 import hashlib
+import json
 import os
 import pathlib
 import select
@@ -26,67 +28,20 @@ try:
 except ImportError:
     raise ImportError("tact.py needs numpy: apt install python3-numpy for Debian's python3, else pip install numpy") from None
 
-MAGIC, TELEMETRY_VERSION = 0x74636174, 5
-RECORDING_VERSIONS = {7: 0, 9: 1496}  # bytes of the operator behind each frame
-LOG_MAGIC, RECORDING_MAGIC = b"tactlogA", b"tactrec\n"
-SEAL = b"tactseal"
-PHASES = ("wake", "read", "detect", "render", "limit", "write", "publish", "total")
-STATES = ("off", "ready", "armed", "stopped")
+MAGIC, VERSION, SEAL = b"tactrun\n", 1, b"tactseal"
+HEAD, MESHES, TICK, FRAME, OPERATOR = range(1, 6)  # kinds of chunks
+KIND_NAMES = {HEAD: "heads", MESHES: "meshes", TICK: "ticks", FRAME: "frames", OPERATOR: "operators"}
+CHUNK = struct.Struct("<IIII")  # kind, bytes of the content, its CRC-32, that of the twelve bytes before
+TYPES = {"bool": "?", "u8": "u1", "u16": "<u2", "u32": "<u4", "u64": "<u8", "i16": "<i2", "i32": "<i4", "i64": "<i8",
+         "f32": "<f4", "f64": "<f8"}
 
 
 class Error(Exception):
     """A sentence: what, where, the remedy."""
 
 
-def _placed(size, fields):
-    return np.dtype({"names": [f[0] for f in fields], "formats": [(f[1], f[2]) if f[2] else f[1] for f in fields],
-                     "offsets": [f[3] for f in fields], "itemsize": size})
-
-
-MESSAGE_HEADER = np.dtype([("magic", "<u4"), ("version", "<u2"), ("kind", "<u2")])
-HELLO = np.dtype([
-    ("header", MESSAGE_HEADER), ("organ_vertices", "<u4"), ("organ_triangles", "<u4"), ("tool_vertices", "<u4"),
-    ("tool_triangles", "<u4"), ("site_count", "<u4"), ("ring_count", "<u4"), ("ring_pitch_m", "<f4"), ("rate_Hz", "<f4"),
-    ("frame_rate_Hz", "<f4"), ("force_limit_N", "<f4"), ("continuous_force_N", "<f4"), ("energy_budget_J", "<f4"),
-    ("sphere_radius_m", "<f4", 4), ("sphere_offset_m", "<f4", (4, 3)), ("non_rt", "u1"), ("simulated", "u1"),
-    ("scene_name", "S50"), ("torque_limit_mNm", "<u2"), ("cannot_grip", "u1"), ("limits_checksum", "S9"),
-    ("device_name", "S64"), ("law_name", "S64"), ("hand_socket", "S108"), ("organ_material", "S12"),
-    ("tool_material", "S12"), ("piece_count", "<u4"), ("piece_color_ratio", "<f4", (4, 3))])
-FRAME_SITE = np.dtype([
-    ("surface_point_m", "<f4", 3), ("normal", "<f4", 3), ("shift_m", "<f4", 3), ("depth_m", "<f4"),
-    ("profile_m", "<f4", 32), ("tilt", "<f4", 3), ("state", "u1"), ("pad", "u1", 3)])
-FRAME_PATCH = np.dtype([
-    ("vertex_count", "<u4"), ("cut_total", "<u4"), ("cut_first", "<u4"), ("cut_count", "<u4"), ("vertex", "<u4", 180),
-    ("cut_triangle", "<u4", 32), ("displacement_um", "<i2", (180, 3))])
-FRAME = np.dtype([
-    ("header", MESSAGE_HEADER), ("tick", "<u8"), ("time_ns", "<i8"), ("late_ticks", "<u8"), ("skipped_ticks", "<u8"),
-    ("dropped_records", "<u8"), ("tool_position_m", "<f4", 3), ("tool_orientation", "<f4", 4), ("tool_velocity_mps", "<f4", 3),
-    ("grip_ratio", "<f4"), ("force_N", "<f4", 3), ("torque_Nm", "<f4", 3), ("wanted_force_N", "<f4", 3),
-    ("worst_margin_us", "<f4"), ("median_tick_us", "<f4"), ("peak_force_N", "<f4"), ("rms_force_N", "<f4"),
-    ("given_energy_J", "<f4"), ("fault", "<u2"), ("limit", "<u2"), ("state", "u1"), ("non_rt", "u1"), ("grip_force_mN", "<i2"),
-    ("contact_losses", "<u4"), ("site", FRAME_SITE, 4), ("patch", FRAME_PATCH)])
-FILE_HEADER = np.dtype([("magic", "S8"), ("version", "<u4"), ("hello_bytes", "<u4"), ("frame_bytes", "<u4"),
-                        ("setup_crc", "<u4"), ("mesh_bytes", "<u8")])
-FRAME_RECORD = np.dtype([("frame", FRAME), ("crc", "<u4"), ("pad", "<u4")])
-LOG_HEADER = np.dtype([
-    ("magic", "S8"), ("header_bytes", "<u4"), ("tick_bytes", "<u4"), ("ticks", "<u8"), ("period_ns", "<i8"),
-    ("limits", "<f8", 14), ("force_share", "<f8"), ("non_rt", "u1"), ("scene_hash", "S23"), ("overrides", "S1024"),
-    ("scene_name", "S64"), ("law", "S64"), ("revision", "S64"), ("host", "S64"), ("began_utc", "S24"), ("header_crc", "<u4"),
-    ("pad", "<u4")])
-LOGGED_TICK = _placed(400, [
-    ("tick", "<u8", None, 0), ("non_rt", "u1", None, 8), ("due_ns", "<i8", None, 16), ("margin_ns", "<i8", None, 24),
-    ("phase_ns", "<i4", 8, 32), ("tool_position_m", "<f8", 3, 64), ("tool_orientation", "<f8", 4, 88),
-    ("tool_velocity_mps", "<f8", 3, 120), ("tool_angular_velocity_radps", "<f8", 3, 144), ("tool_grip_ratio", "<f8", None, 168),
-    ("grip_gap_m", "<f8", None, 176), ("grip_speed_mps", "<f8", None, 184), ("sample_stamp_ns", "<i8", None, 192),
-    ("sample_sequence", "<u8", None, 200), ("sample_fresh", "u1", None, 208), ("device_fault", "<u2", None, 216),
-    ("command_arm", "u1", None, 218), ("command_stop", "u1", None, 219), ("command_reset", "u1", None, 220),
-    ("command_disarm", "u1", None, 221), ("ready", "u1", None, 222), ("clutch", "u1", None, 223),
-    ("skipped_periods", "<u4", None, 224), ("clutches", "<u4", None, 228), ("clutch_shift_m", "<f8", 3, 232),
-    ("wanted_force_N", "<f8", 3, 256), ("wanted_torque_Nm", "<f8", 3, 280), ("written_force_N", "<f8", 3, 304),
-    ("written_torque_Nm", "<f8", 3, 328), ("state", "u1", None, 352), ("limit", "<u2", None, 354), ("fault", "<u2", None, 356),
-    ("given_energy_J", "<f8", None, 360), ("rms_force_N", "<f8", None, 368), ("contact_losses", "<u8", None, 376),
-    ("wanted_grip_N", "<f8", None, 384), ("written_grip_N", "<f8", None, 392)])
-LOG_RECORD = np.dtype([("tick", LOGGED_TICK), ("crc", "<u4"), ("pad", "<u4")])
+class NoRecord(Error):
+    """The file is whole, but has no records of that kind."""
 
 
 @dataclasses.dataclass
@@ -99,20 +54,24 @@ class Mesh:
 
 @dataclasses.dataclass
 class Recording:
-    """hello is one HELLO, frames are (n,) of FRAME; damage is empty, or what is wrong with the file."""
-    hello: np.void
+    """header is the dictionary of run_header.h; frames are (n,); operators are (m,), tracked, of a later frame each;
+    fields says unit and meaning by name; damage is empty, or what is wrong with the file."""
+    header: dict
     organ: Mesh
     tool: Mesh
     frames: np.ndarray
+    operators: np.ndarray
+    fields: dict
     damage: str
 
 
 @dataclasses.dataclass
 class TickLog:
-    """header is one LOG_HEADER, ticks are (n,) of LOGGED_TICK; recording: of a black box, else None."""
-    header: np.void
+    """header and fields as of a Recording; ticks are (n,); recording: of a black box, else None."""
+    header: dict
     ticks: np.ndarray
     recording: Recording
+    fields: dict
     damage: str
 
     @property
@@ -121,19 +80,14 @@ class TickLog:
         return (self.ticks["due_ns"] - self.ticks["due_ns"][0]) * 1e-9 if len(self.ticks) else np.empty(0)
 
 
-def text(field):
-    """A fixed-size text of a hello or a header."""
-    return bytes(field).decode("utf-8", "replace")
-
-
 def default_socket():
     """Where tactd listens without --socket."""
     run = os.environ.get("XDG_RUNTIME_DIR")
     return pathlib.Path(f"{run}/tact" if run else f"/tmp/tact-{os.getuid()}", "telemetry.sock")
 
 
-class live:  # noqa: N801  # an iterator with a hello
-    """Frames as they come, each one FRAME; ends when tactd is gone, however it went. hello, organ and tool are there at once.
+class live:  # noqa: N801  # an iterator with a header
+    """Frames as they come, each one FRAME; ends when tactd is gone, however it went. header, fields, organ and tool are there at once.
     For a slow reader the kernel keeps about 50 frames and drops newer ones; newest=True gives the last of those that wait."""
 
     def __init__(self, path=None, timeout_s=5.0, newest=False):
@@ -152,12 +106,13 @@ class live:  # noqa: N801  # an iterator with a hello
         except OSError as error:
             raise Error(f"{self._path}: {error.strerror or error}; does tactd run, and may this user look?") from None
         data, descriptors = self._receive(socket.CMSG_SPACE(struct.calcsize("i")))
-        if not descriptors:
-            raise Error(f"{self._path}: the first message has no meshes; is this the telemetry of tactd?")
+        if data != MAGIC or not descriptors:
+            raise Error(f"{self._path}: is no telemetry of this version of tactd; take the tact.py of that tactd")
         with os.fdopen(descriptors[0], "rb") as file:
-            meshes = os.pread(file.fileno(), os.fstat(file.fileno()).st_size, 0)
-        self.hello = self._message(data, HELLO, 1)
-        self.organ, self.tool = _meshes(self.hello, meshes, str(self._path))
+            start = _File(os.pread(file.fileno(), os.fstat(file.fileno()).st_size, 0), str(self._path), "")
+        self.header, self.fields = start.header, start.fields("frame")
+        self.organ, self.tool = start.meshes()
+        self._layout = start.layout("frame")
 
     def _receive(self, control_bytes=0):
         try:
@@ -168,14 +123,12 @@ class live:  # noqa: N801  # an iterator with a hello
                        if (level, kind) == (socket.SOL_SOCKET, socket.SCM_RIGHTS)]
         return data, descriptors
 
-    def _message(self, data, layout, kind):
-        header = _one(data, MESSAGE_HEADER, str(self._path))
-        if (header["magic"], header["kind"]) != (MAGIC, kind):
-            raise Error(f"{self._path}: is no telemetry of tactd")
-        if header["version"] != TELEMETRY_VERSION:
-            raise Error(f"{self._path}: telemetry of version {header['version']}, this reads {TELEMETRY_VERSION}; take the "
-                        "tact.py of that tactd")
-        return _one(data, layout, str(self._path))
+    def _frame(self, data):
+        kind, size, crc, _ = CHUNK.unpack_from(data) if len(data) >= CHUNK.size else (0, 0, 0, 0)
+        content = data[CHUNK.size:]
+        if (kind, size, zlib.crc32(content)) != (FRAME, self._layout.itemsize, crc):
+            raise Error(f"{self._path}: a message is no frame")
+        return np.frombuffer(content, self._layout, 1)[0]
 
     def close(self):
         self._socket.close()
@@ -195,79 +148,119 @@ class live:  # noqa: N801  # an iterator with a hello
         if not data:
             self.close()
             raise StopIteration
-        return self._message(data, FRAME, 2)
+        return self._frame(data)
 
 
 def read_recording(path):
-    """A recording of tact-view. Frames with a wrong checksum are left out, and damage says how many."""
-    data, damage = _unsealed(path)
-    return _recording(data, str(path), damage)
+    """A recording of tact-view, or the frames of a black box. Damaged frames are left out, and damage says how many."""
+    file = _File(*_unsealed(path))
+    recording = file.recording()
+    if recording is None:
+        raise NoRecord(f"{path}: has no frames; read_ticks reads a tick log")
+    return recording
 
 
 def read_ticks(path):
-    """A log of tactd --record, or a black box. Ticks with a wrong checksum are left out, and damage says how many."""
-    data, damage = _unsealed(path)
-    if not data.startswith(LOG_MAGIC):
-        raise Error(f"{path}: {_kind_of(data)}, no tick log or black box of this version")
-    header = _one(data, LOG_HEADER, str(path))
-    if zlib.crc32(data[:LOG_HEADER.itemsize - 8]) != header["header_crc"]:
-        raise Error(f"{path}: its header is damaged; nothing of it can be trusted")
-    if (header["header_bytes"], header["tick_bytes"]) != (LOG_HEADER.itemsize, LOG_RECORD.itemsize):
-        raise Error(f"{path}: was written by another version; record it again, or read it with its own tact.py")
-    body, told = data[LOG_HEADER.itemsize:], int(header["ticks"])
-    count = len(body) // LOG_RECORD.itemsize
-    torn = count < told or not told and len(body) % LOG_RECORD.itemsize
-    ticks, bad = _good(body, LOG_RECORD, min(count, told or count), "tick", LOGGED_TICK.itemsize)
-    recording, words = None, f"cut off in tick number {count + 1}" if torn else ""
-    if told and not torn:
-        try:
-            recording = _recording(body[told * LOG_RECORD.itemsize:], str(path), "")
-        except Error as error:
-            words = f"its pictures: {str(error).removeprefix(f'{path}: ')}"
-    return TickLog(header, ticks, recording, "; ".join(filter(None, (damage, bad, words))))
+    """A log of tactd --record, or a black box. Damaged ticks are left out, and damage says how many."""
+    file = _File(*_unsealed(path))
+    if "tick" not in file.records:
+        raise NoRecord(f"{path}: has no ticks; read_recording reads a recording")
+    recording, damage = None, file.damage
+    try:
+        recording = file.recording()
+    except Error as error:  # of a black box that lost its meshes
+        damage = "; ".join(filter(None, (damage, str(error).removeprefix(f"{path}: "))))
+    return TickLog(file.header, file.rows("tick"), recording, file.fields("tick"), damage)
 
 
-def _recording(data, where, damage):
-    if not data.startswith(RECORDING_MAGIC):
-        raise Error(f"{where}: {_kind_of(data)}, no recording")
-    header = _one(data, FILE_HEADER, where)
-    behind = RECORDING_VERSIONS.get(int(header["version"]))
-    if behind is None or (header["hello_bytes"], header["frame_bytes"]) != (HELLO.itemsize, FRAME.itemsize):
-        raise Error(f"{where}: a recording of version {header['version']}; record it again, or read it with its own tact.py")
-    end = FILE_HEADER.itemsize + HELLO.itemsize + int(header["mesh_bytes"])
-    if end > len(data):
-        raise Error(f"{where}: ends before its first frame")
-    setup = data[FILE_HEADER.itemsize:end]
-    if zlib.crc32(setup) != header["setup_crc"]:
-        raise Error(f"{where}: its hello or its meshes are damaged; nothing of it can be shown")
-    hello = _one(setup, HELLO, where)
-    organ, tool = _meshes(hello, setup[HELLO.itemsize:], where)
-    record = np.dtype([("frame", FRAME), ("crc", "<u4"), ("pad", "<u4"), ("operator", "V", behind)] if behind else FRAME_RECORD)
-    body = data[end:]
-    frames, bad = _good(body, record, len(body) // record.itemsize, "frame", FRAME.itemsize)
-    return Recording(hello, organ, tool, frames, "; ".join(filter(None, (damage, bad))))
+def _dtype(fields):
+    def one(field):
+        kind = _dtype(field["fields"]) if "fields" in field else TYPES[field["type"]]
+        return (field["name"], kind, tuple(field["shape"])) if "shape" in field else (field["name"], kind)
+    return np.dtype([one(field) for field in fields])
 
 
-def _good(data, layout, count, name, size):
-    """The first part of each record that has the right checksum, and the words for the others."""
-    records, step = np.frombuffer(data, layout, count), layout.itemsize
-    wrong = [i for i in range(count) if zlib.crc32(data[i * step:i * step + size]) != records["crc"][i]]
-    if not wrong:
-        return records[name], ""
-    return np.delete(records[name], wrong), f"{len(wrong)} of {count} {name}s are damaged, the first is number {wrong[0] + 1}"
+class _File:
+    """The chunks of a file or memory file, by kind."""
 
+    def __init__(self, data, where, damage):
+        self._where, self._contents = where, {}
+        if not data.startswith(MAGIC):
+            old = data.startswith((b"tactlog", b"tactrec"))
+            raise Error(f"{where}: " + ("was written before files of tact had version 1; record it again, or read it with its "
+                                        "own tact.py" if old else "is no file of tact; name a recording, tick log or black box"))
+        found = self._read(memoryview(data), len(MAGIC))
+        self.damage = "; ".join(filter(None, (damage, *found)))
+        head = self._contents.get(HEAD)
+        if not head:
+            raise Error(f"{where}: its head is damaged, so nothing of it can be used; record it again")
+        head = json.loads(bytes(head[0]))
+        if head["version"] != VERSION:
+            raise Error(f"{where}: has version {head['version']}, this reads version {VERSION}; take the tact.py of its tactd")
+        self.header, self.records = head["run"], head["records"]
 
-def _kind_of(data):
-    for magic, words in ((RECORDING_MAGIC, "a recording of tact-view (read_recording)"),
-                         (LOG_MAGIC, "a tick log or black box (read_ticks)"),
-                         (LOG_MAGIC[:-1], f"a tick log of version {chr(data[7]) if len(data) > 7 else '?'}")):
-        if data.startswith(magic):
-            return words
-    return "no file of tact"
+    def _read(self, data, at):
+        good, bad, lost, first_lost = {}, {}, 0, 0
+        while at + CHUNK.size <= len(data):
+            kind, size, crc, own = CHUNK.unpack_from(data, at)
+            if own != zlib.crc32(data[at:at + 12]):
+                lost, first_lost, at = lost + 1, first_lost or at, at + 1
+                continue
+            content = data[at + CHUNK.size:at + CHUNK.size + size]
+            if len(content) < size:
+                break
+            if zlib.crc32(content) == crc:
+                self._contents.setdefault(kind, []).append(content)
+                good[kind] = good.get(kind, 0) + 1
+            else:
+                bad.setdefault(kind, []).append(at)
+            at += CHUNK.size + size
+        for kind, places in bad.items():
+            yield (f"{len(places)} of {len(places) + good.get(kind, 0)} {KIND_NAMES.get(kind, 'parts')} are damaged, the first at "
+                   f"byte {places[0]}")
+        if lost:
+            yield f"{lost} bytes belong to no whole part, the first at byte {first_lost}"
+        elif at < len(data):
+            yield f"cut off at byte {len(data)}"
+
+    def fields(self, record):
+        return {field["name"]: field for field in self.records[record]["fields"]}
+
+    def layout(self, record):
+        return _dtype(self.records[record]["fields"])
+
+    def rows(self, record):
+        """(n,), of all good chunks of that record."""
+        if record not in self.records:
+            return np.empty(0)
+        layout, contents = self.layout(record), self._contents.get(self.records[record]["kind"], [])
+        return np.frombuffer(b"".join(content for content in contents if len(content) == layout.itemsize), layout)
+
+    def recording(self):
+        if "frame" not in self.records:
+            return None
+        organ, tool = self.meshes()
+        return Recording(self.header, organ, tool, self.rows("frame"), self.rows("operator"), self.fields("frame"), self.damage)
+
+    def meshes(self):
+        """Organ and tool."""
+        if MESHES not in self._contents:
+            raise Error(f"{self._where}: its meshes are damaged or missing")
+        data, out, at = self._contents[MESHES][0], [], 0
+        sizes = [(self.header[part + "_vertices"], self.header[part + "_triangles"]) for part in ("organ", "tool")]
+        colors = 3 * sizes[0][0]
+        if len(data) - 12 * sum(map(sum, sizes)) not in (0, colors):
+            raise Error(f"{self._where}: its meshes are not as long as the head says")
+        for vertices, triangles in sizes:
+            out.append(Mesh(np.frombuffer(data, "<f4", 3 * vertices, at).reshape(-1, 3),
+                            np.frombuffer(data, "<u4", 3 * triangles, at + 12 * vertices).reshape(-1, 3)))
+            at += 12 * (vertices + triangles)
+        out[0].color = np.frombuffer(data, "u1", colors, at).reshape(-1, 3) if len(data) > at else None
+        return out
 
 
 def _unsealed(path):
-    """All before the seal, and what is wrong with the whole."""
+    """All before the seal, the path, and what is wrong with the whole."""
     try:
         if not stat.S_ISREG(os.stat(path).st_mode):
             raise Error(f"{path}: is no regular file; name one")
@@ -276,25 +269,6 @@ def _unsealed(path):
         raise Error(f"{path}: {getattr(error, 'strerror', None) or error}; check the name, and who may read it") from None
     end = data[-48:]
     if len(end) < 48 or end[:8] != SEAL:
-        return data, "it has no end: it was cut off, its program was killed, or it is still being written"
+        return data, str(path), "it has no end: it was cut off, its program was killed, or it is still being written"
     whole = struct.unpack("<Q", end[8:16])[0] == len(data) - 48 and hashlib.sha256(memoryview(data)[:-48]).digest() == end[16:]
-    return data[:-48], "" if whole else "its bytes are not those that were written"
-
-
-def _one(data, layout, where):
-    if len(data) < layout.itemsize:
-        raise Error(f"{where}: {len(data)} bytes where {layout.itemsize} are due; is it whole, and of this version?")
-    return np.frombuffer(data, layout, 1)[0]
-
-
-def _meshes(hello, data, where):
-    sizes = {part: (int(hello[part + "_vertices"]), int(hello[part + "_triangles"])) for part in ("organ", "tool")}
-    out, at, colors = [], 0, 3 * sizes["organ"][0]
-    if len(data) - 12 * sum(map(sum, sizes.values())) not in (0, colors):
-        raise Error(f"{where}: its meshes are not as long as the hello says")
-    for vertices, triangles in sizes.values():
-        out.append(Mesh(np.frombuffer(data, "<f4", 3 * vertices, at).reshape(-1, 3),
-                        np.frombuffer(data, "<u4", 3 * triangles, at + 12 * vertices).reshape(-1, 3)))
-        at += 12 * (vertices + triangles)
-    out[0].color = np.frombuffer(data, "u1", colors, at).reshape(-1, 3) if len(data) > at else None
-    return out
+    return data[:-48], str(path), "" if whole else "its bytes are not those that were written"

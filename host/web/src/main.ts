@@ -17,7 +17,8 @@ import { count_boundary_edges } from "./organ/boundary";
 import { OrganView } from "./organ/organ_view";
 import { Outside } from "./scene/outside";
 import { Plots } from "./panels/plots";
-import { length_of, type FigureFrame, type Frame, type Mesh, type Scene, type Status, type Vec } from "./link/protocol";
+import { length_of, time_s_of } from "./link/protocol";
+import type { FigureFrame, Frame, Mesh, Scene, Status, Vec } from "./link/protocol";
 import { close_panel, toggle_panel } from "./controls/open_panel";
 import { Recorder } from "./controls/recorder";
 import { ScenePicker } from "./controls/scene_picker";
@@ -123,14 +124,14 @@ function take_scene(next: Scene, organ_mesh: Mesh, tool_mesh: Mesh): void {
   stage.set_home(organ.bounds, floor_m - 0.004);
   hud.scene(next, count_boundary_edges(organ_mesh.triangle));
   plots.spheres = next.spheres.length;
-  recorder.scene = next.scene;
+  recorder.scene = next.scene_name;
   tell_hand();
 }
 
 function take_frame(frame: Frame): void {
   recorder.frame(frame);
   news.frame(performance.now());
-  timeline.frame(frame.time_s);
+  timeline.frame(time_s_of(frame));
   if (paused) return;
   if (!waiting) pictures_waited = 0;
   const waits = operator.there && ++frames_alone <= kLongestWait;
@@ -192,12 +193,12 @@ async function save_picture(): Promise<void> {
   const { name, words } = (status?.link === "replay" ? describe_past_state : describe_state)(shown.state, shown.fault);
   const from = status?.link === "replay" ? `, ${status.detail}` : "";
   const blob = await stage.picture([
-    `${scene.scene}${from} · ${scene.law} · ${scene.device}`,
-    `${(shown.time_s - plots.zero_s).toFixed(2)} s · force ${length_of(shown.force_N).toFixed(2)} N · ${name}: ${words}`,
+    `${scene.scene_name}${from} · ${scene.law_name} · ${scene.device_name}`,
+    `${(time_s_of(shown) - plots.zero_s).toFixed(2)} s · force ${length_of(shown.force_N).toFixed(2)} N · ${name}: ${words}`,
   ]);
   if (!blob) return;
   const url = URL.createObjectURL(blob);
-  save(url, dated_name(scene.scene, "png"));
+  save(url, dated_name(scene.scene_name, "png"));
   setTimeout(() => URL.revokeObjectURL(url), 60_000);
 }
 
@@ -256,7 +257,7 @@ stage.controls.addEventListener("start", () => (operator.view_chosen = true));
 const numbers = {
   get fps() { return stage.fps; },
   get link() { return status?.link ?? "gone"; },
-  get scene_name() { return scene?.scene ?? ""; },
+  get scene_name() { return scene?.scene_name ?? ""; },
   get vertex_count() { return organ?.vertex_count ?? 0; },
   get frames() { return connection.frames; },
   get bytes() { return connection.bytes; },
@@ -265,15 +266,15 @@ const numbers = {
   get cut_triangles() { return organ?.cut_triangles ?? 0; },
   get most_m() { return organ?.deformed.most_m ?? 0; },
   get most_ever_m() { return most_ever_m; },
-  get tool_m() { return shown ? [...shown.tool_m] : null; },
-  get turn() { return shown ? [...shown.turn] : null; },
+  get tool_m() { return shown ? [...shown.tool_position_m] : null; },
+  get turn() { return shown ? [...shown.tool_orientation] : null; },
   get arc_share() { return tool?.arc_share ?? 0; },
   get force_N() { return shown ? [...shown.force_N] : null; },
   get tick() { return shown?.tick ?? 0; },
   get state() { return shown?.state ?? 0; },
   get paused() { return paused; },
   get first_drawn_ms() { return first_drawn_ms; },
-  get time_s() { return shown?.time_s ?? 0; },
+  get time_s() { return shown ? time_s_of(shown) : 0; },
   get silence_s() { return silence_s; },
   get wireframe() { return wireframe; },
   get figure_on() { return operator.there && operator.on; },

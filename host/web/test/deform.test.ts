@@ -36,11 +36,11 @@ function site(changes: Partial<Site> = {}): Site {
   return {
     site: 0,
     state: 1,
-    point_m: [0, 0, 0],
+    surface_point_m: [0, 0, 0],
     normal: [0, 0, 1],
     shift_m: [0, 0, 0],
     depth_m: 0.01,
-    u_m: kRings,
+    profile_m: kRings,
     tilt: [0, 0, 0],
     ...changes,
   };
@@ -88,7 +88,7 @@ test("A press moves the site by its depth against the normal", () => {
 });
 
 test("A pull moves the tissue outwards", () => {
-  const { out_m, rest_m } = pressed([site({ depth_m: -0.01, u_m: kRings.map((u) => -u) })]);
+  const { out_m, rest_m } = pressed([site({ depth_m: -0.01, profile_m: kRings.map((u) => -u) })]);
   for (let i = 2; i < out_m.length; i += 3) assert.ok(out_m[i] >= rest_m[i]);
 });
 
@@ -98,7 +98,7 @@ test("The far side of the organ does not move", () => {
 });
 
 test("The dents of two sites add up", () => {
-  const other = site({ site: 1, point_m: [0.004, 0, 0], u_m: kRings.map((u) => u / 2) });
+  const other = site({ site: 1, surface_point_m: [0.004, 0, 0], profile_m: kRings.map((u) => u / 2) });
   const one = pressed([site()]);
   const two = pressed([other]).out_m;
   const both = pressed([site(), other]).out_m;
@@ -109,10 +109,10 @@ test("The dents of two sites add up", () => {
 });
 
 test("Of two sideways shifts the larger is shown", () => {
-  const shifted = pressed([site({ shift_m: [0.002, 0, 0], u_m: kRings.map((u) => u / 2) })]);
+  const shifted = pressed([site({ shift_m: [0.002, 0, 0], profile_m: kRings.map((u) => u / 2) })]);
   const both = pressed([
-    site({ shift_m: [0.002, 0, 0], u_m: kRings.map((u) => u / 2) }),
-    site({ site: 1, shift_m: [0.001, 0, 0], u_m: kRings.map((u) => u / 2) }),
+    site({ shift_m: [0.002, 0, 0], profile_m: kRings.map((u) => u / 2) }),
+    site({ site: 1, shift_m: [0.001, 0, 0], profile_m: kRings.map((u) => u / 2) }),
   ]);
   for (let i = 0; i < both.out_m.length; i += 3) assert.ok(Math.abs(both.out_m[i] - shifted.out_m[i]) < 1e-8);
 });
@@ -158,6 +158,6 @@ test("Release brings every vertex back", () => {
 
 test("Numbers that are missing leave the mesh whole", () => {
   const nothing = [null, null, null] as unknown as number[];
-  const { out_m, rest_m } = pressed([site({ u_m: nothing, normal: [Number.NaN, 0, 0] })]);
+  const { out_m, rest_m } = pressed([site({ profile_m: nothing, normal: [Number.NaN, 0, 0] })]);
   assert.deepEqual(out_m, rest_m);
 });

@@ -81,11 +81,11 @@ function site(skin: Skin, vertex: number, depth_m: number): Site {
   return {
     site: 0,
     state: 1,
-    point_m: vector(skin.vertex_m, vertex),
+    surface_point_m: vector(skin.vertex_m, vertex),
     normal: vector(skin.normal, vertex),
     shift_m: [0, 0, 0],
     depth_m,
-    u_m: rings(depth_m),
+    profile_m: rings(depth_m),
     tilt: [0, 0, 0],
   };
 }

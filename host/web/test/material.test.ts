@@ -17,7 +17,8 @@ test("pieces are numbered in the order of the mesh", () => {
   assert.deepEqual([...pieces_of(mesh(3, []))], [0, 1, 2]);
 });
 
-const scene = (organ: string, tool: string, pieces: Vec[] = []) => ({ look: { organ, tool, pieces } }) as unknown as Scene;
+const scene = (organ: string, tool: string, pieces: Vec[] = []) =>
+  ({ organ_material: organ, tool_material: tool, piece_color_ratio: pieces }) as unknown as Scene;
 
 test("organ and tool look as the scene says, else like tissue and steel", () => {
   assert.equal(organ_material(scene("skin", "glove"), mesh(0, [])), kMaterials.get("skin"));
@@ -42,7 +43,7 @@ test("each piece has its colour, and those that have none that of the last", () 
 test("vertices have the colours of their mesh, over no colour of the material", () => {
   const bytes = new Uint8Array(72 + 24 + 9);
   bytes.set([255, 0, 128, 0, 255, 0, 255, 255, 255], 96);
-  const parts = { organ: { vertices: 3, triangles: 1 }, tool: { vertices: 3, triangles: 1 } };
+  const parts = { organ_vertices: 3, organ_triangles: 1, tool_vertices: 3, tool_triangles: 1 };
   const whole = { ...scene("tissue", "steel"), ...parts } as unknown as Scene;
   const { organ } = split_meshes(whole, bytes.buffer);
   const tints = vertex_tints(organ.color!);

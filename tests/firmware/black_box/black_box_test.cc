@@ -11,7 +11,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "firmware/telemetry/telemetry_frame.h"
+#include "firmware/protocol/tick_log.h"
+#include "firmware/telemetry/frame_builder.h"
 #include "host/record/recording.h"
 #include "tests/support/damage.h"
 #include "tests/support/message.h"
@@ -33,16 +34,10 @@ class BlackBoxTest : public testing::Test {
 
   std::unique_ptr<BlackBox> make() const {
     const auto tissue = std::move(*model::scene::make_tissue(scene));
-    BlackBoxRun run{
-        .folder = folder + "/kept",
-        .scene_name = "plate / 2",
-        .header = {},
-        .hello = telemetry::make_hello(scene, *tissue,
-                                       {.device = {.name = {}, .grip = hal::GripKind::kNone},
-                                        .limits_checksum = "",
-                                        .hand_socket = ""}),
-        .mesh_fd = *telemetry::make_mesh_file(scene)};
-    run.header.period_ns = 1'000'000;
+    BlackBoxRun run{.folder = folder + "/kept",
+                    .header = telemetry::header_of(scene, *tissue),
+                    .meshes = telemetry::mesh_bytes(scene)};
+    run.header.scene_name = "plate / 2";
     return std::make_unique<BlackBox>(std::move(run), 1000.0, 50.0);
   }
   // Ticks as the telemetry thread gives them, a frame every 20.
@@ -58,7 +53,7 @@ class BlackBoxTest : public testing::Test {
           fault == model::Fault::kNone ? 0.001 * static_cast<double>(tick) : 0;
       box.add(record);
       if (tick % 20 != 0) continue;
-      telemetry::Frame frame;
+      protocol::Frame frame;
       frame.tick = tick;
       frame.time_ns = record.due_ns;
       frame.state = record.output.state;
@@ -67,11 +62,11 @@ class BlackBoxTest : public testing::Test {
       box.work();
     }
   }
-  static std::vector<telemetry::LoggedTick> logged(const std::string& path) {
-    std::vector<telemetry::LoggedTick> out;
-    auto log = telemetry::TickLogReader::open(path);
+  static std::vector<protocol::LoggedTick> logged(const std::string& path) {
+    std::vector<protocol::LoggedTick> out;
+    auto log = protocol::TickLog::open(path);
     EXPECT_TRUE(log);
-    for (telemetry::LoggedTick one; log && log->next(one);) out.push_back(one);
+    for (protocol::LoggedTick one; log && log->next(one);) out.push_back(one);
     return out;
   }
 
@@ -139,7 +134,7 @@ TEST_F(BlackBoxTest, TheViewerShowsItWithEveryTickOfTheLastHalfSecond) {
   ASSERT_TRUE(read.usable) << read.damage;
   EXPECT_EQ(read.damage, "");
   const auto& frames = read.recording.frames;
-  EXPECT_EQ(read.recording.hello.organ_vertices, scene.organ_mesh.vertex_m.size());
+  EXPECT_EQ(read.recording.header.organ_vertices, scene.organ_mesh.vertex_m.size());
   std::size_t single = 0;
   for (std::size_t i = 1; i < frames.size(); ++i) {
     ASSERT_GT(frames[i].time_ns, frames[i - 1].time_ns);
@@ -149,7 +144,7 @@ TEST_F(BlackBoxTest, TheViewerShowsItWithEveryTickOfTheLastHalfSecond) {
   EXPECT_LE(single, 520u);
   EXPECT_EQ(frames.back().fault, 103);
   const auto at = std::find_if(frames.begin(), frames.end(),
-                               [](const telemetry::Frame& frame) { return frame.tick == 2999; });
+                               [](const protocol::Frame& frame) { return frame.tick == 2999; });
   ASSERT_NE(at, frames.end());
   EXPECT_FLOAT_EQ(at->force_N[2], 2.999f) << "the tick's own force";
   EXPECT_EQ(at->fault, 0);
@@ -157,12 +152,13 @@ TEST_F(BlackBoxTest, TheViewerShowsItWithEveryTickOfTheLastHalfSecond) {
 
 TEST_F(BlackBoxTest, AnOrdinaryTickLogIsRefusedByTheViewerWithAReason) {
   const std::string path = folder + "/run.tactlog";
-  auto log = std::move(*telemetry::TickLogWriter::create(path, {}));
-  log.add(loop::TickRecord{});
+  auto log = std::move(*protocol::RunWriter::create(
+      path, protocol::start_of_run({}, {}, {protocol::type_of_record<protocol::LoggedTick>()})));
+  log.add(chunk_of(protocol::LoggedTick{}));
   ASSERT_EQ(tests::message_of(log.close()), "");
   const host::record::ReadResult read = host::record::read_recording(path);
   EXPECT_FALSE(read.usable);
-  EXPECT_NE(read.damage.find("holds no pictures"), std::string::npos) << read.damage;
+  EXPECT_NE(read.damage.find("holds no frames"), std::string::npos) << read.damage;
 }
 
 TEST_F(BlackBoxTest, ACutOffFileKeepsItsTicksAndSaysThatThePicturesAreMissing) {
@@ -171,7 +167,11 @@ TEST_F(BlackBoxTest, ACutOffFileKeepsItsTicksAndSaysThatThePicturesAreMissing) {
   ticks(*box, 300, model::Fault::kDeviceLost);
   box->finish();
   const std::string path = box->files().at(0);
-  fs::resize_file(path, sizeof(telemetry::LogHeader) + 300 * sizeof(telemetry::LogRecord) + 7);
+  const std::string start =
+      start_of_run(protocol::TickLog::open(path)->header(), telemetry::mesh_bytes(scene),
+                   {protocol::type_of_record<protocol::LoggedTick>(),
+                    protocol::type_of_record<protocol::Frame>()});
+  fs::resize_file(path, start.size() + 300 * chunk_of(protocol::LoggedTick{}).size() + 7);
   EXPECT_EQ(logged(path).size(), 300u);
   EXPECT_NE(host::record::read_recording(path).damage.find("cut off"), std::string::npos);
 }
@@ -182,8 +182,8 @@ TEST_F(BlackBoxTest, EveryDamageIsToldByItsTicksAndByItsPictures) {
   ticks(*box, 300, model::Fault::kDeviceLost);
   box->finish();
   tests::expect_all_damage_is_reported(box->files().at(0), [](const std::string& path) {
-    auto log = telemetry::TickLogReader::open(path);
-    for (telemetry::LoggedTick one; log && log->next(one);) continue;
+    auto log = protocol::TickLog::open(path);
+    for (protocol::LoggedTick one; log && log->next(one);) continue;
     const bool reported = !log || log->damage().find("good ticks were read") != std::string::npos;
     const host::record::ReadResult read = host::record::read_recording(path);
     return reported && !read.damage.empty();
@@ -204,7 +204,7 @@ TEST_F(BlackBoxTest, AFullDiskIsToldAndCostsNothingElse) {
   EXPECT_TRUE(box->files().empty());
   auto news = box->news();
   ASSERT_EQ(news.size(), 1u);
-  EXPECT_NE(news[0].find("what came before tick"), std::string::npos) << news[0];
+  EXPECT_NE(news[0].find("File too large"), std::string::npos) << news[0];
   EXPECT_TRUE(box->news().empty()) << "told once";
   ticks(*box, 100);
   ticks(*box, 300, model::Fault::kEmergencyStop);

@@ -28,13 +28,13 @@ class WordyLines final : public hal::SafetyLines {
 
 class View : public testing::Test {
  protected:
-  std::string reported(const telemetry::Frame& frame) {
+  std::string reported(const protocol::Frame& frame) {
     testing::internal::CaptureStderr();
     view.show(frame);
     return testing::internal::GetCapturedStderr();
   }
-  static telemetry::Frame frame(loop::State state, model::Fault fault) {
-    telemetry::Frame frame;
+  static protocol::Frame frame(loop::State state, model::Fault fault) {
+    protocol::Frame frame;
     frame.state = state;
     frame.fault = static_cast<std::uint16_t>(fault);
     return frame;
@@ -54,7 +54,7 @@ TEST_F(View, AFaultIsToldOnceWithWhatLiesBehindIt) {
 }
 
 TEST_F(View, ALineThatTakesTheForceWithoutAFaultIsToldOnceEachTime) {
-  const telemetry::Frame armed = frame(loop::State::kArmed, model::Fault::kNone);
+  const protocol::Frame armed = frame(loop::State::kArmed, model::Fault::kNone);
   EXPECT_EQ(reported(armed), "");
   lines.words = "the clutch line flaps";
   EXPECT_EQ(reported(armed), "tactd: the clutch line flaps\n");
@@ -80,7 +80,7 @@ TEST_F(View, FaultsOfTheLinesAreWordedByTheLines) {
 
 TEST_F(View, ADeviceWithoutPowerIsNotReadyAndSaysWhatItWaitsFor) {
   device.words = "waiting for power of arm 2";
-  const telemetry::Frame ready = frame(loop::State::kReady, model::Fault::kNone);
+  const protocol::Frame ready = frame(loop::State::kReady, model::Fault::kNone);
   EXPECT_NE(reported(ready).find("tactd: waiting for power of arm 2"), std::string::npos);
   EXPECT_EQ(reported(ready), "") << "once";
   EXPECT_EQ(view.why_not_arm(), "waiting for power of arm 2");
@@ -96,8 +96,8 @@ TEST_F(View, ADeviceWithoutPowerIsNotReadyAndSaysWhatItWaitsFor) {
 }
 
 TEST_F(View, AToolInsideTheOrganIsToldOnceEachTime) {
-  telemetry::Frame inside = frame(loop::State::kArmed, model::Fault::kNone);
-  inside.site[1].state = telemetry::SiteState::kInside;
+  protocol::Frame inside = frame(loop::State::kArmed, model::Fault::kNone);
+  inside.site[1].state = protocol::SiteState::kInside;
   EXPECT_NE(reported(inside).find("inside the organ"), std::string::npos);
   EXPECT_EQ(reported(inside), "");
   EXPECT_NE(view.status().find("inside the organ: take the tool out"), std::string::npos);
@@ -107,7 +107,7 @@ TEST_F(View, AToolInsideTheOrganIsToldOnceEachTime) {
 }
 
 TEST_F(View, TheStatusCountsLossesOfContact) {
-  telemetry::Frame lost = frame(loop::State::kArmed, model::Fault::kNone);
+  protocol::Frame lost = frame(loop::State::kArmed, model::Fault::kNone);
   EXPECT_EQ(reported(lost), "");
   EXPECT_EQ(view.status().find("contact lost"), std::string::npos);
   lost.contact_losses = 3;

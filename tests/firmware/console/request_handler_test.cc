@@ -93,7 +93,7 @@ class Requests : public testing::Test {
     requests.echo(asked, !refuses);
   };
   OperatorView view{device, lines, false};
-  telemetry::Frame frame;
+  protocol::Frame frame;
   std::string path = control_path(testing::TempDir(), "liver.toml", getpid());
   std::unique_ptr<ControlSocket> control;
   std::unique_ptr<RequestHandler> request_handler;

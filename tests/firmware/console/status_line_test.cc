@@ -6,7 +6,7 @@
 namespace tact::firmware::console::status_line_test {
 
 TEST(StatusLine, ShowsRateLateTicksForceAndState) {
-  telemetry::Frame before, now;
+  protocol::Frame before, now;
   before.tick = 1000, before.time_ns = 1'000'000'000;
   now.tick = 1190, now.time_ns = 1'200'000'000;  // ten ticks were skipped
   now.late_ticks = 3, now.skipped_ticks = 10;
@@ -20,26 +20,26 @@ TEST(StatusLine, ShowsRateLateTicksForceAndState) {
 }
 
 TEST(StatusLine, SaysBeyondTheLaw) {
-  telemetry::Frame frame;
+  protocol::Frame frame;
   frame.limit = static_cast<std::uint16_t>(model::Fault::kLawSaturated);
   EXPECT_NE(status_line(frame, frame).find("beyond the law"), std::string::npos);
 }
 
 TEST(StatusLine, SaysInsideTheOrgan) {
-  telemetry::Frame frame;
+  protocol::Frame frame;
   frame.limit = static_cast<std::uint16_t>(model::Fault::kToolInside);
   EXPECT_NE(status_line(frame, frame).find("inside the organ"), std::string::npos);
 }
 
 TEST(StatusLine, CountsLossesOfContactOnceThereIsOne) {
-  telemetry::Frame frame;
+  protocol::Frame frame;
   EXPECT_EQ(status_line(frame, frame).find("contact lost"), std::string::npos);
   frame.contact_losses = 2;
   EXPECT_NE(status_line(frame, frame).find("contact lost 2"), std::string::npos);
 }
 
 TEST(StatusLine, NamesTheFaultBeforeTheLimit) {
-  telemetry::Frame frame;
+  protocol::Frame frame;
   frame.limit = 7;
   EXPECT_NE(status_line(frame, frame).find("slew limited"), std::string::npos);
   frame.fault = 103;

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "firmware/loop/rt_loop.h"
@@ -30,8 +32,18 @@ struct ClutchLine final : hal::SafetyLines {
   bool pressed = false;
 };
 
+std::string start_of_log(const protocol::RunHeader& header) {
+  return start_of_run(header, {}, {protocol::type_of_record<protocol::LoggedTick>()});
+}
+
 class ReplayTest : public testing::Test {
  protected:
+  /// Where the chunk of a tick begins, of a log whose ticks are all good.
+  std::uint64_t byte_of_tick(std::uint64_t tick) const {
+    return start_of_log(protocol::TickLog::open(path)->header()).size() +
+           tick * chunk_of(protocol::LoggedTick{}).size();
+  }
+
   void SetUp() override {
     pc::flush_denormals();
     record(3000);
@@ -49,20 +61,20 @@ class ReplayTest : public testing::Test {
     ClutchLine lines;
     requests.arm_at_start.store(true);
     loop::RtLoop loop({.period_ns = 1'000'000}, *device, lines, controller, clock, requests, *ring);
-    telemetry::LogHeader header;
-    header.period_ns = 1'000'000;
+    protocol::RunHeader header;
+    header.rate_Hz = 1000.0;
     header.limits = scene.limits;
     header.force_share = 0.25;
-    header.non_rt = 1;
-    scene.hash.copy(header.scene_hash, sizeof header.scene_hash - 1);
-    auto log = std::move(*telemetry::TickLogWriter::create(path, header));
+    header.non_rt = true;
+    header.scene_hash = scene.hash;
+    auto log = std::move(*protocol::RunWriter::create(path, start_of_log(header)));
     loop::TickRecord record;
     for (int i = 0; i < ticks; ++i) {
       if (i == 1300) tests::pass_ns(clock, 30'300'000);  // a fault, were this hard real time
       if (i == 1500) tests::pass_ns(clock, 5'300'000);
       lines.pressed = i >= 2000 && i < 2200;
       loop.step();
-      while (ring->pop(record)) log.add(record);
+      while (ring->pop(record)) log.add(chunk_of(protocol::LoggedTick::of(record, true)));
     }
     EXPECT_EQ(tests::message_of(log.close()), "");
   }
@@ -78,21 +90,21 @@ TEST_F(ReplayTest, TheSameSamplesGiveTheSameForcesBitForBit) {
   EXPECT_EQ(outcome->ticks, 3000u);
   EXPECT_EQ(outcome->different, 0u);
   EXPECT_EQ(outcome->damage, "");
-  auto log = std::move(*telemetry::TickLogReader::open(path));
+  auto log = std::move(*protocol::TickLog::open(path));
   int open_ticks = 0;
-  for (telemetry::LoggedTick tick; log.next(tick);)
+  for (protocol::LoggedTick tick; log.next(tick);)
     open_ticks += tick.input.clutch == loop::ClutchState::kOpen ? 1 : 0;
   EXPECT_GT(open_ticks, 50);
 }
 
 TEST_F(ReplayTest, AnotherSampleGivesAnotherForceAndIsNamed) {
-  auto log = std::move(*telemetry::TickLogReader::open(path));
+  auto log = std::move(*protocol::TickLog::open(path));
   const std::string other = path + ".other";
   {
-    auto writer = std::move(*telemetry::TickLogWriter::create(other, log.header()));
-    for (telemetry::LoggedTick tick; log.next(tick);) {
+    auto writer = std::move(*protocol::RunWriter::create(other, start_of_log(log.header())));
+    for (protocol::LoggedTick tick; log.next(tick);) {
       if (tick.tick == 1800) tick.input.sample.tool.position_m.z += 2e-4;  // in contact
-      writer.add(tick);
+      writer.add(chunk_of(tick));
     }
     EXPECT_EQ(tests::message_of(writer.close()), "");
   }
@@ -116,8 +128,7 @@ TEST_F(ReplayTest, EveryDamageIsToldWithHowMuchIsGood) {
 }
 
 TEST_F(ReplayTest, ADamagedTickCostsItselfAndIsNeverCompared) {
-  const auto at = static_cast<std::streamoff>(sizeof(telemetry::LogHeader) +
-                                              1800 * sizeof(telemetry::LogRecord) + 100);
+  const auto at = static_cast<std::streamoff>(byte_of_tick(1800) + 100);
   std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
   file.seekg(at);
   const int byte = file.get();
@@ -129,7 +140,7 @@ TEST_F(ReplayTest, ADamagedTickCostsItselfAndIsNeverCompared) {
   EXPECT_EQ(outcome->ticks, 1800u);
   EXPECT_EQ(outcome->different, 0u);
   EXPECT_EQ(outcome->gap_before, 1801u);
-  EXPECT_EQ(outcome->damage.find("1 of 3000 ticks are damaged, the first is number 1801"), 0u)
+  EXPECT_EQ(outcome->damage.find("1 of 3000 ticks are damaged, the first at byte "), 0u)
       << outcome->damage;
   EXPECT_NE(outcome->damage.find("; 2999 good ticks were read"), std::string::npos);
 }
@@ -153,8 +164,8 @@ TEST_F(ReplayTest, TheTableHasEveryTickAndSaysWhichRunItWas) {
   EXPECT_EQ(comments, 8);
   EXPECT_EQ(rows, 3000);
   for (const char* name :
-       {"tick,time_s,", ",tool_x_m,", ",tool_z_m,", ",wanted_x_N,", ",force_x_N,", ",acted,",
-        ",given_energy_J,contact_losses,", ",limit_us,"})
+       {"tick,non_rt,due_ns,", ",tool_position_x_m,", ",wanted_force_x_N,", ",force_x_N,",
+        ",limit,limit_name,", ",rms_force_N,contact_losses,", ",phase_limit_ns,"})
     EXPECT_NE(names.find(name), std::string::npos) << name;
   EXPECT_EQ(std::count(names.begin(), names.end(), ','), std::count(row.begin(), row.end(), ','));
   EXPECT_EQ(row.find("1800,"), 0u) << row;
@@ -168,13 +179,11 @@ TEST_F(ReplayTest, AnotherSceneIsRefused) {
 }
 
 TEST_F(ReplayTest, ATornLogIsReplayedUpToItsTear) {
-  ASSERT_EQ(truncate(path.c_str(), static_cast<long>(sizeof(telemetry::LogHeader) +
-                                                     100 * sizeof(telemetry::LogRecord) + 17)),
-            0);
+  ASSERT_EQ(truncate(path.c_str(), static_cast<long>(byte_of_tick(100) + 17)), 0);
   const auto outcome = replay(path, scene, *tissue);
   ASSERT_TRUE(outcome);
   EXPECT_EQ(outcome->ticks, 100u);
-  EXPECT_EQ(outcome->damage.find("the file is cut off in tick number 101; "), 0u);
+  EXPECT_EQ(outcome->damage.find("the file is cut off at byte "), 0u);
 }
 
 TEST_F(ReplayTest, WhatIsNoLogIsRefused) {
@@ -183,28 +192,56 @@ TEST_F(ReplayTest, WhatIsNoLogIsRefused) {
   EXPECT_FALSE(replay("/nowhere/at/all", scene, *tissue));
 }
 
-TEST_F(ReplayTest, ALogOfAnotherVersionIsRefusedByItsNumber) {
+TEST_F(ReplayTest, ALogOfAnEarlierFormatIsRefusedWithTheRemedy) {
   std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
-  file.seekp(7);
-  file.put('2');
+  file << "tactlogA";
   file.close();
   const auto outcome = replay(path, scene, *tissue);
   ASSERT_FALSE(outcome);
-  EXPECT_NE(outcome.error().message.find("version 2, this tactd reads version A"),
+  EXPECT_NE(outcome.error().message.find("record it again"), std::string::npos)
+      << outcome.error().message;
+}
+
+TEST_F(ReplayTest, ATickWithoutAFieldOfThisProgramIsNotReplayed) {
+  std::ifstream in(path, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  const std::string start = start_of_log(protocol::TickLog::open(path)->header());
+  const std::string head = start.substr(protocol::kMagic.size() + sizeof(protocol::ChunkHeader));
+  auto json = nlohmann::json::parse(head);
+  for (auto& field : json["records"]["tick"]["fields"])
+    if (field["name"] == "sample_fresh") field["name"] = "renamed";
+  bytes.replace(0, start.size(),
+                std::string(protocol::kMagic) + chunk_of(protocol::ChunkKind::kHead, json.dump()));
+  std::ofstream(path, std::ios::binary) << bytes;
+  const auto outcome = replay(path, scene, *tissue);
+  ASSERT_FALSE(outcome);
+  EXPECT_NE(outcome.error().message.find("its ticks have no sample_fresh"), std::string::npos)
+      << outcome.error().message;
+}
+
+TEST_F(ReplayTest, ALogThatBeginsInTheMiddleIsNotReplayed) {
+  auto log = std::move(*protocol::TickLog::open(path));
+  const std::string other = path + ".other";
+  auto writer = std::move(*protocol::RunWriter::create(other, start_of_log(log.header())));
+  for (protocol::LoggedTick tick; log.next(tick);)
+    if (tick.tick >= 7) writer.add(chunk_of(tick));
+  EXPECT_EQ(tests::message_of(writer.close()), "");
+  const auto outcome = replay(other, scene, *tissue);
+  std::remove(other.c_str());
+  ASSERT_FALSE(outcome);
+  EXPECT_NE(outcome.error().message.find("begins at tick 7, in the middle of a run"),
             std::string::npos)
       << outcome.error().message;
 }
 
 TEST_F(ReplayTest, EveryRecordOfAPCWithoutHardRealTimeIsStamped) {
-  auto log = std::move(*telemetry::TickLogReader::open(path));
-  telemetry::LoggedTick tick;
+  auto log = std::move(*protocol::TickLog::open(path));
+  protocol::LoggedTick tick;
   int stamped = 0;
-  while (log.next(tick)) stamped += tick.non_rt;
+  while (log.next(tick)) stamped += tick.non_rt ? 1 : 0;
   EXPECT_EQ(stamped, 3000);
 }
 
-TEST_F(ReplayTest, ALogIsNeverOverwritten) {
-  EXPECT_FALSE(telemetry::TickLogWriter::create(path, {}));
-}
+TEST_F(ReplayTest, ALogIsNeverOverwritten) { EXPECT_FALSE(protocol::RunWriter::create(path, "")); }
 
 }  // namespace tact::firmware::run::replay_test

@@ -24,10 +24,10 @@ class OwnFolder : public ::testing::Test {
 };
 
 TEST_F(OwnFolder, ATactdThatLeavesKeepsTheSocketOfTheNextOne) {
-  auto first = std::make_optional(TelemetrySocket::open(path_, Hello{}, -1));
+  auto first = std::make_optional(TelemetrySocket::open(path_, -1));
   ASSERT_TRUE(*first);
   unlink(path_.c_str());
-  auto second = std::make_optional(TelemetrySocket::open(path_, Hello{}, -1));
+  auto second = std::make_optional(TelemetrySocket::open(path_, -1));
   ASSERT_TRUE(*second);
   first.reset();
   EXPECT_TRUE(std::filesystem::exists(path_));
@@ -37,7 +37,7 @@ TEST_F(OwnFolder, ATactdThatLeavesKeepsTheSocketOfTheNextOne) {
 
 TEST_F(OwnFolder, AFolderInWhichOthersCouldPutASocketIsRefused) {
   ASSERT_EQ(chmod(folder_.c_str(), 0777), 0);
-  const auto refused = TelemetrySocket::open(path_, Hello{}, -1);
+  const auto refused = TelemetrySocket::open(path_, -1);
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().message.find("another user may put a socket there"), std::string::npos);
 }
@@ -60,7 +60,7 @@ bool is_heard_by(uid_t user, TelemetrySocket& socket_of_tactd, const std::string
   }
   char word = 0;
   EXPECT_EQ(read(go[0], &word, 1), 1);
-  socket_of_tactd.send(Frame{});
+  socket_of_tactd.send("a frame");
   int status = 0;
   waitpid(child, &status, 0);
   close(go[0]);
@@ -71,7 +71,7 @@ bool is_heard_by(uid_t user, TelemetrySocket& socket_of_tactd, const std::string
 TEST_F(OwnFolder, AnotherUserHearsNothingEvenIfTheFileLetsHimIn) {
   if (geteuid() != 0) GTEST_SKIP() << "only root becomes another user";
   const int meshes = dup(0);  // any file: nobody looks into it
-  auto socket_of_tactd = TelemetrySocket::open(path_, Hello{}, meshes);
+  auto socket_of_tactd = TelemetrySocket::open(path_, meshes);
   ASSERT_TRUE(socket_of_tactd);
   ASSERT_EQ(chmod(folder_.c_str(), 0755), 0);
   ASSERT_EQ(chmod(path_.c_str(), 0777), 0);

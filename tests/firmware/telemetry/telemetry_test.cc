@@ -8,22 +8,18 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "firmware/loop/rt_loop.h"
+#include "firmware/protocol/run_file.h"
 #include "hal/registry/open_device.h"
-#include "host/server/frame_json.h"
 #include "tests/support/message.h"
 #include "tests/support/test_scene.h"
 
 namespace tact::firmware::telemetry::telemetry_test {
-
-using tests::message_of;
 
 std::string fresh_socket_path() {
   static int count = 0;
@@ -48,23 +44,31 @@ class Viewer {
     const char garbage[1000] = {'x'};
     (void)::send(fd_, garbage, sizeof garbage, MSG_DONTWAIT | MSG_NOSIGNAL);
   }
-  template <typename T>
-  bool receive(T& message) const {
-    return recv(fd_, &message, sizeof message, MSG_DONTWAIT) == sizeof message;
+  /// The next message that is a whole frame.
+  bool receive(Frame& frame) const {
+    char bytes[65536];
+    const ssize_t size = recv(fd_, bytes, sizeof bytes, MSG_DONTWAIT);
+    if (size <= 0) return false;
+    const auto chunk = protocol::chunk_in({bytes, static_cast<std::size_t>(size)});
+    return chunk && chunk->kind == protocol::ChunkKind::kFrame &&
+           protocol::Unpacker::make(json_of(Frame::fields()), Frame::fields())
+               ->unpack(chunk->content, &frame);
   }
-  /// The hello with the mesh file's descriptor.
-  bool receive_hello(Hello& hello, int& mesh_fd) const {
-    iovec bytes{&hello, sizeof hello};
+  /// The first message, with the descriptor of the memory file.
+  bool receive_start(std::string& magic, int& memory_file) const {
+    magic.resize(100);
+    iovec bytes{magic.data(), magic.size()};
     alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))];
     msghdr message{};
     message.msg_iov = &bytes;
     message.msg_iovlen = 1;
     message.msg_control = control;
     message.msg_controllen = sizeof control;
-    if (recvmsg(fd_, &message, MSG_DONTWAIT) != sizeof hello) return false;
-    const cmsghdr* rights = CMSG_FIRSTHDR(&message);
+    const ssize_t size = recvmsg(fd_, &message, MSG_DONTWAIT);
+    const cmsghdr* rights = size > 0 ? CMSG_FIRSTHDR(&message) : nullptr;
     if (rights == nullptr) return false;
-    std::memcpy(&mesh_fd, CMSG_DATA(rights), sizeof mesh_fd);
+    magic.resize(static_cast<std::size_t>(size));
+    std::memcpy(&memory_file, CMSG_DATA(rights), sizeof memory_file);
     return true;
   }
 
@@ -100,9 +104,9 @@ class WholeController {
 
  private:
   std::optional<TelemetrySocket> open(const std::string& path) {
-    const Hello hello =
-        make_hello(scene_, *tissue_, {.device = device_->info(), .torque_limit_Nm = 0.0495});
-    return std::move(*TelemetrySocket::open(path, hello, *make_mesh_file(scene_)));
+    const std::string start = start_of_run(header_of(scene_, *tissue_), mesh_bytes(scene_),
+                                           {protocol::type_of_record<Frame>()});
+    return std::move(*TelemetrySocket::open(path, *make_memory_file(start)));
   }
 
   model::scene::Scene scene_ = tests::make_plate_scene();
@@ -123,33 +127,39 @@ TEST(Telemetry, GreetsAViewerWithTheMeshesAndFramesFollow) {
   const Viewer viewer(path);
   ASSERT_TRUE(viewer.connected());
   run.ticks(1600);
-  Hello hello;
-  int mesh_fd = -1;
-  ASSERT_TRUE(viewer.receive_hello(hello, mesh_fd));
-  EXPECT_EQ(hello.header.magic, kTelemetryMagic);
-  EXPECT_EQ(hello.header.kind, MessageKind::kHello);
-  EXPECT_EQ(hello.organ_vertices, run.scene().organ_mesh.vertex_m.size());
-  EXPECT_EQ(hello.ring_count, 24u);
-  EXPECT_STREQ(hello.scene_name, "plate");
-  EXPECT_EQ(hello.torque_limit_mNm, 50);
-  EXPECT_STREQ(hello.organ_material, "skin");
-  EXPECT_STREQ(hello.tool_material, "steel");
-  ASSERT_EQ(hello.piece_count, 1u);
-  EXPECT_EQ(hello.piece_color_ratio[0][2], 0.5f);
+  std::string magic;
+  int memory_file = -1;
+  ASSERT_TRUE(viewer.receive_start(magic, memory_file));
+  EXPECT_EQ(magic, protocol::kMagic);
   struct stat info{};
-  ASSERT_EQ(fstat(mesh_fd, &info), 0);
-  const std::size_t expected = 12u * (hello.organ_vertices + hello.organ_triangles +
-                                      hello.tool_vertices + hello.tool_triangles);
-  EXPECT_EQ(static_cast<std::size_t>(info.st_size), expected);
-  EXPECT_EQ(mmap(nullptr, expected, PROT_READ | PROT_WRITE, MAP_SHARED, mesh_fd, 0), MAP_FAILED)
+  ASSERT_EQ(fstat(memory_file, &info), 0);
+  const auto size = static_cast<std::size_t>(info.st_size);
+  EXPECT_EQ(mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, memory_file, 0), MAP_FAILED)
       << "sealed: nobody can change what others see";
-  close(mesh_fd);
+  std::string bytes(size, '\0');
+  ASSERT_EQ(pread(memory_file, bytes.data(), size, 0), info.st_size);
+  close(memory_file);
+  auto start = protocol::RunReader::of_bytes(bytes);
+  ASSERT_TRUE(start) << start.error().message;
+  const RunHeader& header = start->header();
+  EXPECT_EQ(header.organ_vertices, run.scene().organ_mesh.vertex_m.size());
+  EXPECT_EQ(header.ring_count, 24u);
+  EXPECT_EQ(header.scene_name, "plate");
+  EXPECT_EQ(header.organ_material, "skin");
+  EXPECT_EQ(header.tool_material, "steel");
+  ASSERT_EQ(header.piece_color_ratio.size(), 1u);
+  EXPECT_EQ(header.piece_color_ratio[0][2], 0.5f);
+  protocol::Chunk meshes;
+  ASSERT_TRUE(start->next(meshes));
+  EXPECT_EQ(meshes.kind, protocol::ChunkKind::kMeshes);
+  EXPECT_EQ(meshes.content.size(), 12u * (header.organ_vertices + header.organ_triangles +
+                                          header.tool_vertices + header.tool_triangles));
   Frame frame;
   int frames = 0;
   bool touched = false;
   while (viewer.receive(frame)) {
     ++frames;
-    touched = touched || frame.site[0].state == SiteState::kTouching;
+    touched = touched || frame.site[0].state == protocol::SiteState::kTouching;
   }
   EXPECT_GT(frames, 20);
   EXPECT_TRUE(touched);
@@ -160,13 +170,13 @@ TEST(Telemetry, FramesCarryTheProfileOfTheTouchedSite) {
   WholeController run(path);
   run.ticks(1500);
   const Frame frame = run.telemetry().newest_frame();
-  ASSERT_EQ(frame.site[0].state, SiteState::kTouching);
+  ASSERT_EQ(frame.site[0].state, protocol::SiteState::kTouching);
   EXPECT_GT(frame.site[0].depth_m, 0.001f);
   EXPECT_NEAR(frame.site[0].profile_m[0], frame.site[0].depth_m, 1e-7f);
   EXPECT_LT(frame.site[0].profile_m[5], frame.site[0].profile_m[0]);
   EXPECT_EQ(frame.site[0].profile_m[23], 0.0f);
   EXPECT_GT(frame.peak_force_N, 0.05f);
-  EXPECT_EQ(frame.non_rt, 1);
+  EXPECT_TRUE(frame.non_rt);
 }
 
 TEST(Telemetry, IsForItsOwnerOnly) {
@@ -231,50 +241,10 @@ TEST(Telemetry, ThreadAndLoopShareOnlyTheRing) {  // for the thread sanitizer
   EXPECT_GT(telemetry.newest_frame().tick, 0u);
 }
 
-// The whole way of a patch: springs, shape, slot, frame, text for the page. One thread steps, the
-// other tells; what arrives names only what the organ has. (That no shape is half of another is for
-// latest_slot_test and, here, the thread sanitizer.)
-TEST(Telemetry, TheShapeOfAPatchReachesThePageWhole) {
-  const auto scene = model::scene::load_scene(TACT_SOURCE_DIR "/model/scenes/gum.toml", {});
-  ASSERT_TRUE(scene) << scene.error().message;
-  const auto tissue = std::move(*model::scene::make_tissue(*scene));
-  const auto device = std::move(*hal::registry::open_device(*scene));
-  loop::Controller controller(tissue->contact_scene(), gate::Gate(scene->limits, 0.001, 1.0),
-                              /*hard_real_time=*/true);
-  loop::SimulatedClock clock;
-  hal::NoSafetyLines lines;
-  loop::Requests requests;
-  requests.arm_at_start.store(true);
-  const auto ring = std::make_unique<loop::TickRing>();
-  loop::RtLoop loop({.period_ns = 1'000'000, .ticks_per_shape = 4}, *device, lines, controller,
-                    clock, requests, *ring);
-  Telemetry telemetry(*ring, FrameBuilder(tissue->law().contact_law(), controller.shapes(), false),
-                      {.frame_rate_Hz = 1000.0}, Sinks{});
-  const Hello hello = make_hello(
-      *scene, *tissue, {.device = device->info(), .limits_checksum = "", .hand_socket = ""});
-  telemetry.start();
-  std::uint32_t displaced = 0;
-  for (int i = 0; i < 8000; ++i) {
-    loop.step();
-    if (i % 50 != 0) continue;
-    const Frame frame = telemetry.newest_frame();
-    ASSERT_EQ(message_of(host::record::check_frame(frame, hello)), "") << "tick " << frame.tick;
-    const auto patch = nlohmann::json::parse(host::server::frame_json(frame, hello)).at("patch");
-    ASSERT_EQ(patch.at("count"), frame.patch.vertex_count);
-    ASSERT_EQ(patch.at("cut").size(), frame.patch.cut_count);
-    displaced = std::max(displaced, frame.patch.vertex_count);
-    usleep(500);
-  }
-  EXPECT_EQ(tests::message_of(telemetry.stop()), "");
-  EXPECT_GT(displaced, 10u);
-  EXPECT_GT(telemetry.newest_frame().patch.cut_total, 5u);
-  EXPECT_EQ(telemetry.newest_frame().fault, 0);
-}
-
 TEST(Telemetry, ASecondControllerOnTheSameSocketIsRefused) {
   const std::string path = fresh_socket_path();
   const WholeController run(path);
-  const auto second = TelemetrySocket::open(path, Hello{}, -1);
+  const auto second = TelemetrySocket::open(path, -1);
   ASSERT_FALSE(second);
   EXPECT_NE(second.error().message.find("another tactd"), std::string::npos);
 }
@@ -287,11 +257,11 @@ TEST(Telemetry, TheSocketOfADeadControllerIsReplaced) {
   path.copy(address.sun_path, sizeof address.sun_path - 1);
   ASSERT_EQ(bind(dead, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
   close(dead);  // the file stays, nobody listens
-  EXPECT_TRUE(TelemetrySocket::open(path, Hello{}, -1));
+  EXPECT_TRUE(TelemetrySocket::open(path, -1));
 }
 
 TEST(Telemetry, APathThatIsTooLongIsRefusedWithTheRemedy) {
-  const auto refused = TelemetrySocket::open(std::string(200, 'x'), Hello{}, -1);
+  const auto refused = TelemetrySocket::open(std::string(200, 'x'), -1);
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().message.find("--socket"), std::string::npos);
 }

@@ -28,6 +28,7 @@ namespace tact::host::record::recording_test {
 using tests::message_of;
 
 constexpr std::size_t kFrames = 50;
+const std::size_t kFrameBytes = chunk_of(Frame{}).size();
 
 class RecordingFile : public ::testing::Test {
  protected:
@@ -36,36 +37,33 @@ class RecordingFile : public ::testing::Test {
               ("tact-recording-" + std::to_string(getpid()) + ".tact")) {
     std::filesystem::remove(path_);
     RecordingWriter writer;
-    EXPECT_EQ(message_of(writer.open(path_, hello_, mesh_)), "");
+    EXPECT_EQ(message_of(writer.open(path_, header_, mesh_)), "");
     for (std::size_t i = 0; i < kFrames; ++i) EXPECT_EQ(message_of(writer.write(frame(i))), "");
     EXPECT_EQ(message_of(writer.close()), "");
   }
   ~RecordingFile() override { std::filesystem::remove(path_); }
 
   static Frame frame(std::size_t i) {
-    Frame frame =
-        test::make_frame(static_cast<float>(i), firmware::telemetry::SiteState::kTouching);
+    Frame frame = test::make_frame(static_cast<float>(i), firmware::protocol::SiteState::kTouching);
     frame.tick = i;
     frame.time_ns = static_cast<std::int64_t>(i) * 10'000'000;
     return frame;
   }
-  std::uint64_t first_frame_byte() const {
-    return sizeof(FileHeader) + sizeof(Hello) + mesh_.size();
-  }
+  std::uint64_t first_frame_byte() const { return start_of_recording(header_, mesh_).size(); }
 
   std::string path_;
-  Hello hello_ = test::make_hello(3, 1, 3, 1);
+  RunHeader header_ = test::make_header(3, 1, 3, 1);
   MeshBytes mesh_ = test::TinyMeshes{}.bytes();
 };
 
 TEST(Meshes, MayEndWithColoursOfAllVerticesOfTheOrganAndNotOfSome) {
-  const Hello hello = test::make_hello(3, 1, 3, 1);
+  const RunHeader header = test::make_header(3, 1, 3, 1);
   MeshBytes mesh = test::TinyMeshes{}.bytes();
-  EXPECT_EQ(check_mesh(hello, mesh), std::nullopt);
+  EXPECT_EQ(check_mesh(header, mesh), std::nullopt);
   mesh.resize(mesh.size() + 9, std::byte{0xFF});
-  EXPECT_EQ(check_mesh(hello, mesh), std::nullopt);
+  EXPECT_EQ(check_mesh(header, mesh), std::nullopt);
   mesh.pop_back();
-  EXPECT_TRUE(check_mesh(hello, mesh));
+  EXPECT_TRUE(check_mesh(header, mesh));
 }
 
 TEST_F(RecordingFile, ComesBackAsItWasWritten) {
@@ -76,12 +74,12 @@ TEST_F(RecordingFile, ComesBackAsItWasWritten) {
   EXPECT_EQ(read.recording.mesh, mesh_);
   EXPECT_NEAR(read.recording.length_s(), 0.49, 1e-12);
   for (std::size_t i = 0; i < kFrames; ++i)
-    EXPECT_EQ(recording_frame(read.recording.frames[i]), recording_frame(frame(i)));
+    EXPECT_EQ(chunk_of(read.recording.frames[i]), chunk_of(frame(i)));
 }
 
 TEST_F(RecordingFile, KeepsEveryWholeFrameOfATruncatedFile) {
   const std::uint64_t whole = 20;
-  std::filesystem::resize_file(path_, first_frame_byte() + whole * sizeof(FrameRecord) + 100);
+  std::filesystem::resize_file(path_, first_frame_byte() + whole * kFrameBytes + 100);
   const ReadResult read = read_recording(path_);
   ASSERT_TRUE(read.usable);
   EXPECT_EQ(read.recording.frames.size(), whole);
@@ -90,7 +88,7 @@ TEST_F(RecordingFile, KeepsEveryWholeFrameOfATruncatedFile) {
 }
 
 TEST_F(RecordingFile, LosesOnlyTheFrameThatIsDamaged) {
-  tests::flip_byte(path_, first_frame_byte() + 7 * sizeof(FrameRecord) + 300);
+  tests::flip_byte(path_, first_frame_byte() + 7 * kFrameBytes + 300);
   const ReadResult read = read_recording(path_);
   ASSERT_TRUE(read.usable);
   ASSERT_EQ(read.recording.frames.size(), kFrames - 1);
@@ -99,30 +97,20 @@ TEST_F(RecordingFile, LosesOnlyTheFrameThatIsDamaged) {
   EXPECT_NE(read.damage.find("1 of 50 frames"), std::string::npos) << read.damage;
 }
 
-TEST_F(RecordingFile, IsRefusedWhenItsSceneIsDamaged) {
-  tests::flip_byte(path_, sizeof(FileHeader) + sizeof(Hello) + 3);
-  const ReadResult read = read_recording(path_);
-  EXPECT_FALSE(read.usable);
-  EXPECT_NE(read.damage.find("checksum"), std::string::npos) << read.damage;
+TEST_F(RecordingFile, IsRefusedWhenHeadOrMeshesAreDamaged) {
+  tests::flip_byte(path_, first_frame_byte() - 3);
+  EXPECT_FALSE(read_recording(path_).usable);
+  EXPECT_NE(read_recording(path_).damage.find("its meshes are damaged"), std::string::npos);
+  tests::flip_byte(path_, 100);
+  EXPECT_FALSE(read_recording(path_).usable);
+  EXPECT_NE(read_recording(path_).damage.find("its head is damaged"), std::string::npos);
 }
 
-TEST_F(RecordingFile, IsRefusedWhenAnotherVersionMadeIt) {
-  std::fstream(path_, std::ios::in | std::ios::out | std::ios::binary)
-      .seekp(sizeof kRecordingMagic)
-      .put('\x08');
+TEST_F(RecordingFile, OfAnEarlierFormatIsRefusedWithTheRemedy) {
+  std::fstream(path_, std::ios::in | std::ios::out | std::ios::binary) << "tactrec\n";
   const ReadResult read = read_recording(path_);
   EXPECT_FALSE(read.usable);
-  EXPECT_TRUE(
-      read.damage.starts_with("recording version 8 cannot be read by this tact-view "
-                              "(version 7, or 9 with an operator); record it again"))
-      << read.damage;
-}
-
-TEST_F(RecordingFile, OfOtherSizesButTheSameVersionSaysSo) {
-  tests::flip_byte(path_, offsetof(FileHeader, frame_bytes));
-  const ReadResult read = read_recording(path_);
-  EXPECT_FALSE(read.usable);
-  EXPECT_NE(read.damage.find("though both say version 7"), std::string::npos) << read.damage;
+  EXPECT_NE(read.damage.find("record it again"), std::string::npos) << read.damage;
 }
 
 TEST_F(RecordingFile, EveryDamageIsTold) {
@@ -141,7 +129,7 @@ TEST_F(RecordingFile, SurvivesEveryLength) {
 
 TEST_F(RecordingFile, IsNeverOverwritten) {
   RecordingWriter writer;
-  EXPECT_NE(message_of(writer.open(path_, hello_, mesh_)).find("never overwritten"),
+  EXPECT_NE(message_of(writer.open(path_, header_, mesh_)).find("never overwritten"),
             std::string::npos);
   EXPECT_EQ(message_of(writer.write(frame(0))), "");  // and does nothing
   EXPECT_EQ(read_recording(path_).recording.frames.size(), kFrames);
@@ -150,7 +138,7 @@ TEST_F(RecordingFile, IsNeverOverwritten) {
 TEST(Recording, SaysWhatIsWrongWithAFileThatIsNone) {
   EXPECT_NE(read_recording("/nonexistent/x.tact").damage.find("no such file"), std::string::npos);
   EXPECT_NE(read_recording(std::string(TACT_SOURCE_DIR) + "/CMakeLists.txt")
-                .damage.find("not a tact recording"),
+                .damage.find("is no file of tact"),
             std::string::npos);
 }
 
@@ -159,11 +147,11 @@ TEST_F(RecordingFile, KeepsWhatItHasWhenTheDiskIsFull) {
   rlimit before{};
   ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
   const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-  const rlimit small{.rlim_cur = first_frame_byte() + 10 * sizeof(FrameRecord),
+  const rlimit small{.rlim_cur = first_frame_byte() + 10 * kFrameBytes,
                      .rlim_max = before.rlim_max};
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
   RecordingWriter writer;
-  std::optional<model::Error> error = writer.open(path_, hello_, mesh_);
+  std::optional<model::Error> error = writer.open(path_, header_, mesh_);
   for (std::size_t i = 0; i < 1000 && !error; ++i) error = writer.write(frame(i));
   setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, handler);
@@ -189,9 +177,9 @@ std::ptrdiff_t columns(const std::string& line) {
 }
 
 TEST(RecordingCsv, SaysWhichRunItWasAndWhatARowIs) {
-  Hello hello = test::make_hello(3, 1, 3, 1);
-  std::strcpy(hello.scene_name, "two\nlines");
-  const std::string facts = csv_facts(hello);
+  RunHeader header = test::make_header(3, 1, 3, 1);
+  header.scene_name = "two\nlines";
+  const std::string facts = csv_facts(header);
   EXPECT_TRUE(
       facts.starts_with("# tact frames\n# scene: two lines\n# law: rhombus chain, N = 10\n"))
       << facts;
@@ -201,23 +189,22 @@ TEST(RecordingCsv, SaysWhichRunItWasAndWhatARowIs) {
 }
 
 TEST(RecordingCsv, HasOneNameForEveryColumn) {
-  const Hello hello = test::make_hello(3, 1, 3, 1);
+  const RunHeader header = test::make_header(3, 1, 3, 1);
   std::string row;
-  append_csv_row(row, test::make_frame(1.0f, firmware::telemetry::SiteState::kHeld), hello);
-  EXPECT_EQ(columns(row), columns(csv_header(hello)));
-  EXPECT_EQ(columns(row), 39 + 2 * (11 + 11 + 3));
+  append_csv_row(row, test::make_frame(1.0f, firmware::protocol::SiteState::kHeld), header);
+  EXPECT_EQ(columns(row), columns(csv_header(header)));
+  EXPECT_EQ(columns(row), 42 + 2 * (12 + 11 + 3));
   EXPECT_EQ(std::count(row.begin(), row.end(), '\n'), 1);
 }
 
 TEST(RecordingCsv, TellsASphereInsideAndLossesOfContact) {
-  Frame frame = test::make_frame(0.5f, firmware::telemetry::SiteState::kInside);
+  Frame frame = test::make_frame(0.5f, firmware::protocol::SiteState::kInside);
   frame.contact_losses = 21;
   std::string row;
-  append_csv_row(row, frame, test::make_hello(3, 1, 3, 1));
+  append_csv_row(row, frame, test::make_header(3, 1, 3, 1));
   EXPECT_NE(row.find(",inside,"), std::string::npos) << row;
-  EXPECT_NE(row.find(",21,0,"), std::string::npos) << row;
-  EXPECT_NE(csv_header({}).find(",given_energy_J,grip_force_N,contact_losses,cut_triangles,"),
-            std::string::npos);
+  EXPECT_NE(row.find(",0,21,"), std::string::npos) << row;
+  EXPECT_NE(csv_header({}).find(",non_rt,contact_losses,cut_triangles,"), std::string::npos);
 }
 
 TEST(RecordingCsv, TellsCutsAndTheLargestDisplacementOfAPatch) {
@@ -229,7 +216,7 @@ TEST(RecordingCsv, TellsCutsAndTheLargestDisplacementOfAPatch) {
   frame.patch.displacement_um[1][1] = -4000;
   frame.patch.displacement_um[2][0] = 32767;  // not in use
   std::string row;
-  append_csv_row(row, frame, Hello{});
+  append_csv_row(row, frame, RunHeader{});
   EXPECT_NE(row.find(",40,2,0.005000\n"), std::string::npos) << row;
   EXPECT_NE(csv_header({}).find(",cut_triangles,patch_vertices,patch_most_m\n"), std::string::npos);
 }
@@ -238,17 +225,21 @@ TEST(RecordingCsv, ReadsBackToTheSameFloat) {
   Frame frame;
   frame.force_N[0] = 0.1f + 0.2f;
   std::string row;
-  append_csv_row(row, frame, Hello{});
+  append_csv_row(row, frame, RunHeader{});
   std::string cell = row;
-  for (int i = 0; i < 20; ++i) cell.erase(0, cell.find(',') + 1);  // force_x_N is column 21
+  const std::string names = csv_header({});
+  for (auto i = columns(names.substr(0, names.find(",force_x_N"))); i > 0; --i)
+    cell.erase(0, cell.find(',') + 1);
   EXPECT_EQ(std::stof(cell), frame.force_N[0]);
 }
 
 TEST(RecordingCsv, GivesEveryColumnAUnitOrNoneOnPurpose) {
-  const std::string header = csv_header(test::make_hello(3, 1, 3, 1));
+  const std::string header = csv_header(test::make_header(3, 1, 3, 1));
   EXPECT_NE(header.find("force_x_N,"), std::string::npos);
   EXPECT_NE(header.find("worst_margin_us,"), std::string::npos);
-  EXPECT_NE(header.find("site2_u10_m,site2_tilt_x,site2_tilt_y,site2_tilt_z\n"), std::string::npos);
+  EXPECT_NE(header.find("site2_profile_10_m,site2_tilt_x,site2_tilt_y,site2_tilt_z,site2_state,"
+                        "site2_state_name,"),
+            std::string::npos);
 }
 
 }  // namespace tact::host::record::recording_test

@@ -78,15 +78,15 @@ class Register : public ::testing::Test {
     udp::socket sender(io, udp::v4());
     std::mt19937 noise(1);
     const tracking::TrackingCamera eye = test::camera("front", pose::Pose{});
-    const record::Hello hello = test::make_hello(3, 1, 3, 1);
+    const record::RunHeader header = test::make_header(3, 1, 3, 1);
     for (std::uint64_t i = 0; !done;) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
-      if (!source.accept(hello, test::TinyMeshes{}.bytes())) continue;
+      if (!source.accept(header, test::TinyMeshes{}.bytes())) continue;
       ++i;
       const std::size_t place = i / 220 % places;  // a place that was missed comes again
       const bool moves = i % 220 < 10;
       const Vector3d tip_m(kPlaces_m[place]);
-      record::Frame frame = test::make_frame(0.0f, firmware::telemetry::SiteState::kFree);
+      record::Frame frame = test::make_frame(0.0f, firmware::protocol::SiteState::kFree);
       for (int axis = 0; axis < 3; ++axis)
         frame.tool_position_m[axis] = static_cast<float>(tip_m[axis]);
       frame.tool_velocity_mps[0] = moves ? 0.1f : 0.001f;

@@ -14,17 +14,17 @@ namespace tact::host::server::frame_json_test {
 
 using tests::message_of;
 
-record::Hello busiest_hello() {
-  record::Hello hello = test::make_hello(3, 1, 3, 1);
-  hello.site_count = firmware::telemetry::kMaxSites;
-  hello.ring_count = firmware::telemetry::kMaxRings;
-  return hello;
+record::RunHeader busiest_header() {
+  record::RunHeader header = test::make_header(3, 1, 3, 1);
+  header.spheres.resize(firmware::protocol::kMaxSites);
+  header.ring_count = firmware::protocol::kMaxRings;
+  return header;
 }
 
 // Every site held, every number as long as it can be.
 record::Frame longest_frame() {
   const float longest = -std::numeric_limits<float>::min();  // -1.175e-38
-  record::Frame frame = test::make_frame(longest, firmware::telemetry::SiteState::kHeld);
+  record::Frame frame = test::make_frame(longest, firmware::protocol::SiteState::kHeld);
   frame.tick = frame.late_ticks = frame.skipped_ticks = frame.dropped_records = UINT64_MAX;
   frame.time_ns = INT64_MIN;
   frame.fault = frame.limit = UINT16_MAX;
@@ -33,7 +33,7 @@ record::Frame longest_frame() {
 }
 
 TEST(FrameJson, StaysInItsLengthWhateverItsNumbersAre) {
-  const std::string text = frame_json(longest_frame(), busiest_hello());
+  const std::string text = frame_json(longest_frame(), busiest_header());
   EXPECT_LE(text.size(), kMaxFrameJsonBytes);
   EXPECT_GT(text.size(), 1500u);  // the profiles are really in it
   EXPECT_TRUE(nlohmann::json::accept(text));
@@ -41,99 +41,90 @@ TEST(FrameJson, StaysInItsLengthWhateverItsNumbersAre) {
 
 TEST(FrameJson, SaysNullForNumbersThatAreNotFinite) {
   const record::Frame frame = test::make_frame(std::numeric_limits<float>::quiet_NaN(),
-                                               firmware::telemetry::SiteState::kTouching);
-  const auto json = nlohmann::json::parse(frame_json(frame, busiest_hello()), nullptr, false);
+                                               firmware::protocol::SiteState::kTouching);
+  const auto json = nlohmann::json::parse(frame_json(frame, busiest_header()), nullptr, false);
   ASSERT_FALSE(json.is_discarded());
   EXPECT_TRUE(json["force_N"][2].is_null());
-  EXPECT_TRUE(json["sites"][3]["u_m"][31].is_null());
-  EXPECT_TRUE(json["margin_us"].is_null());
+  EXPECT_TRUE(json["sites"][3]["profile_m"][31].is_null());
+  EXPECT_TRUE(json["worst_margin_us"].is_null());
 }
 
 TEST(FrameJson, ListsOnlySitesInContactWithTheRingsInUse) {
-  record::Frame frame = test::make_frame(0.002f, firmware::telemetry::SiteState::kFree);
-  frame.site[1].state = firmware::telemetry::SiteState::kHeld;
-  const record::Hello hello = test::make_hello(3, 1, 3, 1);  // 2 sites, 11 rings
-  const auto json = nlohmann::json::parse(frame_json(frame, hello), nullptr, false);
+  record::Frame frame = test::make_frame(0.002f, firmware::protocol::SiteState::kFree);
+  frame.site[1].state = firmware::protocol::SiteState::kHeld;
+  const record::RunHeader header = test::make_header(3, 1, 3, 1);  // 2 sites, 11 rings
+  const auto json = nlohmann::json::parse(frame_json(frame, header), nullptr, false);
   ASSERT_EQ(json["sites"].size(), 1u);
   EXPECT_EQ(json["sites"][0]["site"], 1);
   EXPECT_EQ(json["sites"][0]["state"], 2);
-  EXPECT_EQ(json["sites"][0]["u_m"].size(), 11u);
+  EXPECT_EQ(json["sites"][0]["profile_m"].size(), 11u);
 }
 
 TEST(FrameJson, ListsASphereInsideAndCountsLossesOfContact) {
-  record::Frame frame = test::make_frame(0.0f, firmware::telemetry::SiteState::kFree);
-  frame.site[0].state = firmware::telemetry::SiteState::kInside;
+  record::Frame frame = test::make_frame(0.0f, firmware::protocol::SiteState::kFree);
+  frame.site[0].state = firmware::protocol::SiteState::kInside;
   frame.contact_losses = 4;
   const auto json =
-      nlohmann::json::parse(frame_json(frame, test::make_hello(3, 1, 3, 1)), nullptr, false);
+      nlohmann::json::parse(frame_json(frame, test::make_header(3, 1, 3, 1)), nullptr, false);
   ASSERT_EQ(json["sites"].size(), 1u);
   EXPECT_EQ(json["sites"][0]["state"], 3);
   EXPECT_EQ(json["contact_losses"], 4);
 }
 
-TEST(FrameJson, KeepsForceToFourDigitsAndPositionToAMicrometre) {
+TEST(FrameJson, KeepsSixDigits) {
   record::Frame frame;
   frame.force_N[2] = 1.23456f;
   frame.tool_position_m[0] = 0.123456f;
   frame.time_ns = 1'500'000'000;
-  const auto json = nlohmann::json::parse(frame_json(frame, busiest_hello()), nullptr, false);
-  EXPECT_NEAR(json["force_N"][2].get<double>(), 1.23456, 5e-4);
-  EXPECT_NEAR(json["tool_m"][0].get<double>(), 0.123456, 5e-7);
-  EXPECT_EQ(json["time_s"], 1.5);
+  const auto json = nlohmann::json::parse(frame_json(frame, busiest_header()), nullptr, false);
+  EXPECT_NEAR(json["force_N"][2].get<double>(), 1.23456, 5e-6);
+  EXPECT_NEAR(json["tool_position_m"][0].get<double>(), 0.123456, 5e-7);
+  EXPECT_EQ(json["time_ns"], 1'500'000'000);
   EXPECT_TRUE(json["sites"].empty());
 }
 
 TEST(FrameJson, DoesNotTrustCountsBeyondTheArrays) {
-  record::Hello hello = busiest_hello();
-  hello.site_count = hello.ring_count = UINT32_MAX;
-  const record::Frame frame = test::make_frame(1.0f, firmware::telemetry::SiteState::kHeld);
-  const auto json = nlohmann::json::parse(frame_json(frame, hello), nullptr, false);
-  EXPECT_EQ(json["sites"].size(), firmware::telemetry::kMaxSites);
+  record::RunHeader header = busiest_header();
+  header.spheres.resize(9);
+  header.ring_count = UINT32_MAX;
+  const record::Frame frame = test::make_frame(1.0f, firmware::protocol::SiteState::kHeld);
+  const auto json = nlohmann::json::parse(frame_json(frame, header), nullptr, false);
+  EXPECT_EQ(json["sites"].size(), firmware::protocol::kMaxSites);
 }
 
-TEST(SceneJson, SaysWhatTheHelloSays) {
-  record::Hello hello = test::make_hello(5, 6, 7, 8);
-  std::strcpy(hello.limits_checksum, "1a2b3c4d");
-  const auto json = nlohmann::json::parse(scene_json(hello), nullptr, false);
+TEST(SceneJson, SaysWhatTheHeadSays) {
+  record::RunHeader header = test::make_header(5, 6, 7, 8);
+  header.limits_checksum = "1a2b3c4d";
+  header.hand_socket = "/run/user/0/tact/hand";
+  const auto json = nlohmann::json::parse(scene_json(header), nullptr, false);
   EXPECT_EQ(json["limits_checksum"], "1a2b3c4d");
-  EXPECT_EQ(json["scene"], "liver (synthetic)");
-  EXPECT_EQ(json["organ"]["triangles"], 6);
-  EXPECT_EQ(json["tool"]["vertices"], 7);
+  EXPECT_EQ(json["scene_name"], "liver (synthetic)");
+  EXPECT_EQ(json["organ_triangles"], 6);
   EXPECT_EQ(json["spheres"].size(), 2u);
   EXPECT_EQ(json["simulated"], true);
-  EXPECT_EQ(json["non_rt"], false);
   EXPECT_EQ(json["cannot_grip"], false);
-  EXPECT_EQ(json["torque_limit_Nm"], 0.0);
-  hello.torque_limit_mNm = 50;
-  EXPECT_EQ(nlohmann::json::parse(scene_json(hello))["torque_limit_Nm"], 0.05);
-  hello.cannot_grip = 1;
-  EXPECT_EQ(nlohmann::json::parse(scene_json(hello))["cannot_grip"], true);
+  EXPECT_FALSE(json.contains("hand_socket"));
 }
 
-TEST(SceneJson, SaysWhatOrganAndToolLookLike) {
-  record::Hello hello = test::make_hello(5, 6, 7, 8);
-  std::strcpy(hello.organ_material, "paint");
-  std::strcpy(hello.tool_material, "glove");
-  hello.piece_count = 1;
-  hello.piece_color_ratio[0][1] = 0.5f;
-  const auto look = nlohmann::json::parse(scene_json(hello)).at("look");
-  EXPECT_EQ(look.at("organ"), "paint");
-  EXPECT_EQ(look.at("tool"), "glove");
-  EXPECT_EQ(look.at("pieces"), nlohmann::json::parse("[[0.0, 0.5, 0.0]]"));
-  EXPECT_EQ(message_of(record::check_hello(hello)), "");
-  hello.piece_count = UINT32_MAX;
-  EXPECT_NE(message_of(record::check_hello(hello)), "");
-  EXPECT_EQ(nlohmann::json::parse(scene_json(hello)).at("look").at("pieces").size(),
-            firmware::telemetry::kMaxPieces);
-  hello.piece_count = 1;
-  hello.piece_color_ratio[3][2] = -1.0f;
-  EXPECT_NE(message_of(record::check_hello(hello)), "");
+TEST(CheckHeader, RefusesCountsAndNumbersWithoutSense) {
+  const auto refuses = [](auto spoil) {
+    record::RunHeader header = test::make_header(5, 6, 7, 8);
+    spoil(header);
+    return record::check_header(header).has_value();
+  };
+  EXPECT_FALSE(refuses([](record::RunHeader&) {}));
+  EXPECT_TRUE(refuses([](record::RunHeader& h) { h.piece_color_ratio.resize(5); }));
+  EXPECT_TRUE(refuses([](record::RunHeader& h) { h.piece_color_ratio = {{0, 0, -1.0f}}; }));
+  EXPECT_TRUE(refuses([](record::RunHeader& h) { h.spheres.resize(5); }));
+  EXPECT_TRUE(refuses([](record::RunHeader& h) { h.ring_count = 33; }));
+  EXPECT_TRUE(refuses([](record::RunHeader& h) { h.tool_vertices = 4'000'001; }));
+  EXPECT_TRUE(refuses([](record::RunHeader& h) { h.rate_Hz = -1.0; }));
 }
 
-TEST(SceneJson, SurvivesANameWithoutEndAndWithBrokenUtf8) {
-  record::Hello hello = test::make_hello(3, 1, 3, 1);
-  std::memset(hello.scene_name, 0xFF, sizeof hello.scene_name);
-  EXPECT_TRUE(nlohmann::json::accept(scene_json(hello)));
+TEST(SceneJson, SurvivesANameWithBrokenUtf8) {
+  record::RunHeader header = test::make_header(3, 1, 3, 1);
+  header.scene_name = std::string(50, '\xFF');
+  EXPECT_TRUE(nlohmann::json::accept(scene_json(header)));
 }
 
 TEST(FrameJson, TellsDisplacedVerticesAndCutsOfALawWithoutProfiles) {
@@ -147,59 +138,59 @@ TEST(FrameJson, TellsDisplacedVerticesAndCutsOfALawWithoutProfiles) {
   frame.patch.cut_count = 2;
   frame.patch.cut_triangle[0] = 11;
   frame.patch.cut_triangle[1] = 12;
-  record::Hello hello = test::make_hello(3, 1, 3, 1);
-  hello.ring_count = 0;
-  const auto patch = nlohmann::json::parse(frame_json(frame, hello)).at("patch");
+  record::RunHeader header = test::make_header(3, 1, 3, 1);
+  header.ring_count = 0;
+  const auto patch = nlohmann::json::parse(frame_json(frame, header)).at("patch");
   EXPECT_EQ(patch.at("count"), 2);
   EXPECT_EQ(patch.at("moved"), "BwAAAHARAQABAP7/AwD/fwAA//8=")
       << "the same bytes as in the page's own test";
   EXPECT_EQ(patch.at("cut_total"), 40);
   EXPECT_EQ(patch.at("cut"), (std::vector<int>{11, 12}));
-  hello.ring_count = 3;
-  EXPECT_FALSE(nlohmann::json::parse(frame_json(frame, hello)).contains("patch"));
+  header.ring_count = 3;
+  EXPECT_FALSE(nlohmann::json::parse(frame_json(frame, header)).contains("patch"));
 }
 
 TEST(FrameJson, StaysInItsLengthWithAFullPatchAndEverySiteHeld) {
   record::Frame frame = longest_frame();
-  frame.patch.vertex_count = firmware::telemetry::kMaxPatchVertices;
-  frame.patch.cut_total = 4'000'000;  // of the largest mesh that check_hello lets pass
-  frame.patch.cut_count = firmware::telemetry::kMaxCutsReported;
+  frame.patch.vertex_count = firmware::protocol::kMaxPatchVertices;
+  frame.patch.cut_total = 4'000'000;  // of the largest mesh that check_header lets pass
+  frame.patch.cut_count = firmware::protocol::kMaxCutsReported;
   for (auto& triangle : frame.patch.cut_triangle) triangle = 3'999'999;
-  record::Hello hello = busiest_hello();
-  hello.ring_count = 0;
-  hello.organ_vertices = hello.organ_triangles = 4'000'000;
-  ASSERT_EQ(message_of(record::check_hello(hello)), "");
-  ASSERT_EQ(message_of(record::check_frame(frame, hello)), "");
-  const std::string text = frame_json(frame, hello);
+  record::RunHeader header = busiest_header();
+  header.ring_count = 0;
+  header.organ_vertices = header.organ_triangles = 4'000'000;
+  ASSERT_EQ(message_of(record::check_header(header)), "");
+  ASSERT_EQ(message_of(record::check_frame(frame, header)), "");
+  const std::string text = frame_json(frame, header);
   EXPECT_LE(text.size(), kMaxFrameJsonBytes);
   EXPECT_GT(text.size(), kMaxFrameJsonBytes - 200) << "the bound is no larger than it must be";
   EXPECT_TRUE(nlohmann::json::accept(text));
 }
 
 TEST(CheckFrame, RefusesPatchesThatNameWhatIsNotThere) {
-  const record::Hello hello = test::make_hello(3, 2, 3, 1);
+  const record::RunHeader header = test::make_header(3, 2, 3, 1);
   record::Frame good{};
   good.patch.vertex_count = 2;
   good.patch.vertex[1] = 2;
   good.patch.cut_total = good.patch.cut_count = 2;
   good.patch.cut_triangle[1] = 1;
-  EXPECT_EQ(message_of(record::check_frame(good, hello)), "");
+  EXPECT_EQ(message_of(record::check_frame(good, header)), "");
   const auto refuses = [&](auto spoil) {
     record::Frame frame = good;
     spoil(frame);
-    return record::check_frame(frame, hello).has_value();
+    return record::check_frame(frame, header).has_value();
   };
   EXPECT_TRUE(refuses([](record::Frame& f) { f.patch.vertex[1] = 3; }));
   EXPECT_TRUE(refuses([](record::Frame& f) { f.patch.cut_triangle[1] = 2; }));
   EXPECT_TRUE(refuses(
-      [](record::Frame& f) { f.patch.vertex_count = firmware::telemetry::kMaxPatchVertices + 1; }));
+      [](record::Frame& f) { f.patch.vertex_count = firmware::protocol::kMaxPatchVertices + 1; }));
   EXPECT_TRUE(refuses(
-      [](record::Frame& f) { f.patch.cut_count = firmware::telemetry::kMaxCutsReported + 1; }));
+      [](record::Frame& f) { f.patch.cut_count = firmware::protocol::kMaxCutsReported + 1; }));
   EXPECT_TRUE(refuses([](record::Frame& f) { f.patch.cut_total = 1; }));
   EXPECT_TRUE(refuses([](record::Frame& f) { f.patch.cut_total = 3; }));
   EXPECT_TRUE(refuses([](record::Frame& f) { f.state = firmware::loop::State{4}; }));
   EXPECT_TRUE(
-      refuses([](record::Frame& f) { f.site[3].state = firmware::telemetry::SiteState{4}; }));
+      refuses([](record::Frame& f) { f.site[3].state = firmware::protocol::SiteState{4}; }));
 }
 
 }  // namespace tact::host::server::frame_json_test

@@ -84,7 +84,7 @@ TEST_F(HttpSession, TurnsTheSixtyFifthConnectionAwayAndTellsIt) {
 
 TEST(LiveView, SharesItsFramesAndMeshesWithAllDownloads) {
   host::server::LiveView view;
-  view.begin(make_hello(3, 1, 3, 1), TinyMeshes{}.bytes(), host::server::Link::kLive);
+  view.begin(make_header(3, 1, 3, 1), TinyMeshes{}.bytes(), host::server::Link::kLive);
   Frame frame;
   for (frame.tick = 1; frame.tick <= 9; ++frame.tick) view.add(frame);
   const auto early = view.recent(0, UINT64_MAX);

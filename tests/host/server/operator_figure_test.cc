@@ -34,14 +34,14 @@ nlohmann::json reported(OperatorFigure& figure, const record::Frame& frame,
 std::string seen(std::uint64_t frames) { return "{\"seen\":" + std::to_string(frames) + "}"; }
 
 TEST(OperatorFigure, TakesTheToolByTheUpperPartOfItsMesh) {
-  const record::Hello hello = test::make_hello(3, 1, 3, 1);
-  EXPECT_NEAR(grip_of(hello, mesh_with_tool()).z(), 0.08, 1e-6);
-  EXPECT_NEAR(grip_of(hello, {}).z(), figure::FigureSettings{}.grip_m.z(), 1e-12);
+  const record::RunHeader header = test::make_header(3, 1, 3, 1);
+  EXPECT_NEAR(grip_of(header, mesh_with_tool()).z(), 0.08, 1e-6);
+  EXPECT_NEAR(grip_of(header, {}).z(), figure::FigureSettings{}.grip_m.z(), 1e-12);
 }
 
 TEST(OperatorFigure, HoldsTheToolThatTelemetryTells) {
   OperatorFigure figure(1.75);
-  figure.begin(test::make_hello(3, 1, 3, 1), mesh_with_tool());
+  figure.begin(test::make_header(3, 1, 3, 1), mesh_with_tool());
   record::Frame frame = frame_at(0.02f, 0);
   frame.tool_orientation[0] = 0.0f;  // half a turn about z: the grip stays above the tip
   frame.tool_orientation[3] = 1.0f;
@@ -52,7 +52,7 @@ TEST(OperatorFigure, HoldsTheToolThatTelemetryTells) {
 
 TEST(OperatorFigure, AToolThatIsNotFiniteStaysWhereItWas) {
   OperatorFigure figure(1.75);
-  figure.begin(test::make_hello(3, 1, 3, 1), mesh_with_tool());
+  figure.begin(test::make_header(3, 1, 3, 1), mesh_with_tool());
   const auto before = reported(figure, frame_at(0.02f, 0));
   record::Frame none = frame_at(std::numeric_limits<float>::quiet_NaN(), 10'000'000);
   none.tool_orientation[0] = std::numeric_limits<float>::quiet_NaN();
@@ -67,7 +67,7 @@ TEST(OperatorFigure, StandsWhereTheSceneHasItsShoulder) {
   const Eigen::Vector3d shoulder_m(0.55, 0.20, 0.45);
   figure.put_shoulder_at(shoulder_m);
   for (int scene = 0; scene < 2; ++scene) {
-    figure.begin(test::make_hello(3, 1, 3, 1), mesh_with_tool());
+    figure.begin(test::make_header(3, 1, 3, 1), mesh_with_tool());
     reported(figure, frame_at(0.0f, 0));
     const Eigen::Vector3d got_m = figure.figure()[figure::FigureJoint::kRightShoulder];
     EXPECT_LT((got_m - shoulder_m).norm(), 1e-9) << "scene " << scene;

@@ -24,7 +24,7 @@ class Heard final : public LiveListener {
 };
 
 record::Frame frame_at(std::uint64_t tick) {
-  record::Frame frame = test::make_frame(0.0f, firmware::telemetry::SiteState::kFree);
+  record::Frame frame = test::make_frame(0.0f, firmware::protocol::SiteState::kFree);
   frame.tick = tick;
   frame.time_ns = std::llround(static_cast<double>(tick) * test::kMotionFrame_s * 1e9);
   const pose::Pose tool = test::tool_at(static_cast<double>(tick) * test::kMotionFrame_s);
@@ -114,12 +114,12 @@ TEST_F(OperatorReplay, StaysBoundWhenTheDeviceBeginsAnew) {
   };
   const Vector3d upright(0.4, -0.08, 0.56), leans = upright + Vector3d(-0.10, 0.05, -0.03);
   std::uint64_t tick = 0;
-  live.begin(hello_, meshes_);
+  live.begin(header_, meshes_);
   Vector3d neutral_m, leaning_m, again_m;
   for (; tick < 120; ++tick) neutral_m = head_m(upright, tick);
   for (; tick < 240; ++tick) leaning_m = head_m(leans, tick);
   EXPECT_GT((leaning_m - neutral_m).norm(), 0.05);
-  live.begin(hello_, meshes_);  // its clock is at 0 again, and the operator still leans
+  live.begin(header_, meshes_);  // its clock is at 0 again, and the operator still leans
   for (tick = 0; tick < 120; ++tick) again_m = head_m(leans, tick);
   EXPECT_LT((again_m - leaning_m).norm(), 3e-3);
 }

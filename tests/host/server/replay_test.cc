@@ -56,10 +56,10 @@ class Replay : public ::testing::Test {
   /// 100 frames in 0.99 s; stopped by a fault from frame 80 on.
   static record::Recording recording() {
     record::Recording out;
-    out.hello = test::make_hello(3, 1, 3, 1);
+    out.header = test::make_header(3, 1, 3, 1);
     out.mesh = test::TinyMeshes{}.bytes();
     for (int i = 0; i < 100; ++i) {
-      record::Frame frame = test::make_frame(0.0f, firmware::telemetry::SiteState::kFree);
+      record::Frame frame = test::make_frame(0.0f, firmware::protocol::SiteState::kFree);
       frame.tick = static_cast<std::uint64_t>(i);
       frame.time_ns = 7'000'000'000 + i * kFrame_ns;
       frame.state = i < 80 ? State::kArmed : State::kStopped;

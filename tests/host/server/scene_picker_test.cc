@@ -36,10 +36,10 @@ class Picker : public ::testing::Test {
     return tests::message_of(picker_.load(folder_));
   }
   void show(const char* scene, bool is_simulated, Link link = Link::kLive) {
-    Hello hello = make_hello(3, 1, 3, 1);
-    std::strncpy(hello.scene_name, scene, sizeof hello.scene_name - 1);
-    hello.simulated = is_simulated ? 1 : 0;
-    view_.begin(hello, TinyMeshes{}.bytes(), link);
+    RunHeader header = make_header(3, 1, 3, 1);
+    header.scene_name = scene;
+    header.simulated = is_simulated;
+    view_.begin(header, TinyMeshes{}.bytes(), link);
     picker_.begin();
   }
   void ask(const char* request) { picker_.ask(json::parse(request)); }

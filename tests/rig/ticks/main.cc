@@ -15,12 +15,12 @@
 #include <optional>
 
 #include "firmware/loop/supervisor.h"
-#include "firmware/telemetry/tick_log.h"
+#include "firmware/protocol/tick_log.h"
 
 namespace tact::rig {
 namespace {
 
-using firmware::telemetry::LoggedTick;
+using firmware::protocol::LoggedTick;
 using nlohmann::json;
 
 std::int64_t now_ns(clockid_t clock) {
@@ -145,7 +145,7 @@ class FaultStory {
 };
 
 int report_story(const std::string& path, std::int64_t injected_ns) {
-  auto log = firmware::telemetry::TickLogReader::open(path);
+  auto log = firmware::protocol::TickLog::open(path);
   if (!log) {
     fmt::print(stderr, "tact-rig-ticks: {}\n", log.error().message);
     return 2;
@@ -158,7 +158,7 @@ int report_story(const std::string& path, std::int64_t injected_ns) {
 
 /// A deadline of a loop that still runs: all others lie whole periods from it.
 int report_grid(const std::string& path) {
-  auto log = firmware::telemetry::TickLogReader::open(path);
+  auto log = firmware::protocol::TickLog::open(path);
   if (LoggedTick tick; log && log->next(tick)) return fmt::print("{}\n", tick.due_ns), 0;
   fmt::print(stderr, "tact-rig-ticks: {}\n", log ? path + " has no tick yet" : log.error().message);
   return 2;

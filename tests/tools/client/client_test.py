@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""tools/client/tact.py reads what the programs of BUILD_DIR write and send, and its layouts are those of host/PROTOCOL.md.
+"""tools/client/tact.py reads what the programs of BUILD_DIR write and send, and its fields are those of host/PROTOCOL.md.
 
     python3 tests/tools/client/client_test.py BUILD_DIR
 
 Needs python3-numpy and python3-matplotlib. Exit status 0 or 1.
 """
 import csv
+import json
 import pathlib
-import re
 import signal
 import subprocess
 import sys
@@ -20,28 +20,10 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tools/client"))
 sys.dont_write_bytecode = True
 import tact  # noqa: E402
+from run_bytes import byte_of_tick, chunk_of  # noqa: E402
 
 LIVER = ROOT / "model/scenes/liver.toml"
 BUILD = pathlib.Path(".")
-LAYOUTS = {"MessageHeader": tact.MESSAGE_HEADER, "Hello": tact.HELLO, "Frame": tact.FRAME, "FrameSite": tact.FRAME_SITE,
-           "FramePatch": tact.FRAME_PATCH, "FileHeader": tact.FILE_HEADER, "FrameRecord": tact.FRAME_RECORD,
-           "LogHeader": tact.LOG_HEADER, "LogRecord": tact.LOG_RECORD, "LoggedTick": tact.LOGGED_TICK}
-SCALARS = {"char": 1, "u8": 1, "u16": 2, "i16": 2, "u32": 4, "i32": 4, "f32": 4, "u64": 8, "i64": 8, "f64": 8}
-
-
-def told():
-    """{struct: (bytes, [(field, offset, bytes)])} of host/PROTOCOL.md."""
-    out, name = {}, None
-    for line in (ROOT / "host/PROTOCOL.md").read_text().splitlines():
-        if head := re.fullmatch(r"### (\w+), (\d+) bytes", line):
-            name = head[1]
-            out[name] = (int(head[2]), [])
-        elif row := re.match(r"\| `([\w.]+)` \| (\d+) \| `(\w+)((?:\[\d+\])*)` \|", line):
-            size = SCALARS.get(row[3]) or LAYOUTS[row[3]].itemsize
-            for count in re.findall(r"\d+", row[4]):
-                size *= int(count)
-            out[name][1].append((row[1], int(row[2]), size))
-    return out
 
 
 def tactd(*arguments):
@@ -61,15 +43,11 @@ class Client(unittest.TestCase):
     def tearDownClass(cls):
         cls.temporary.cleanup()
 
-    def test_layouts_are_those_of_the_document(self):
-        document = told()
-        for name, layout in LAYOUTS.items():
-            size, rows = document[name]
-            self.assertEqual(layout.itemsize, size, name)
-            ours = [(field, layout.fields[field][1], layout.fields[field][0].itemsize) for field in layout.names]
-            if name == "LoggedTick":  # shorter names, the same places
-                rows, ours = [row[1:] for row in rows], [row[1:] for row in ours]
-            self.assertEqual(ours, rows, name)
+    def test_fields_are_those_of_the_document(self):
+        document = (ROOT / "host/PROTOCOL.md").read_text()
+        for name, field in tact.read_ticks(self.log).fields.items():
+            shape = "".join(f"[{length}]" for length in field.get("shape", []))
+            self.assertIn(f"| `{name}` | `{field['type']}{shape}` | {field.get('unit', '')} |", document)
 
     def test_ticks_are_those_of_the_replay(self):
         table = self.folder / "ticks.csv"
@@ -78,32 +56,36 @@ class Client(unittest.TestCase):
         rows = list(csv.DictReader(line for line in table.read_text().splitlines() if not line.startswith("#")))
         log = tact.read_ticks(self.log)
         self.assertEqual((log.damage, len(log.ticks), log.recording), ("", len(rows), None))
-        self.assertEqual(tact.text(log.header["scene_name"]), "liver")
-        self.assertGreater(log.ticks["written_force_N"].max(), 0.1)
+        self.assertEqual(log.header["scene_name"], "liver")
+        self.assertGreater(log.ticks["force_N"].max(), 0.1)
         for tick, row in zip(log.ticks, rows):
             self.assertEqual(tick["tick"], int(row["tick"]))
             for i, axis in enumerate("xyz"):
-                self.assertEqual(tick["tool_position_m"][i], float(row[f"tool_{axis}_m"]))
-                self.assertEqual(tick["written_force_N"][i], float(row[f"force_{axis}_N"]))
-                self.assertEqual(tick["wanted_force_N"][i], float(row[f"wanted_{axis}_N"]))
-            self.assertEqual(tact.STATES[tick["state"]], row["state"])
+                self.assertEqual(tick["tool_position_m"][i], float(row[f"tool_position_{axis}_m"]))
+                self.assertEqual(tick["force_N"][i], float(row[f"force_{axis}_N"]))
+                self.assertEqual(tick["wanted_force_N"][i], float(row[f"wanted_force_{axis}_N"]))
+            self.assertEqual(log.fields["state"]["values"][tick["state"]], row["state_name"])
 
     def test_damage_is_told_and_costs_its_tick_alone(self):
-        data = bytearray(self.log.read_bytes())
-        data[tact.LOG_HEADER.itemsize + 100 * tact.LOG_RECORD.itemsize + 7] ^= 1
+        data, (first, size) = bytearray(self.log.read_bytes()), byte_of_tick(self.log, 0)
+        data[first + 100 * size + 27] ^= 1
         broken = self.folder / "broken.tactlog"
         broken.write_bytes(data)
         log = tact.read_ticks(broken)
         self.assertEqual(len(log.ticks), 4999)
         self.assertEqual(log.damage, "its bytes are not those that were written; 1 of 5000 ticks are damaged, "
-                                     "the first is number 101")
-        broken.write_bytes(data[:tact.LOG_HEADER.itemsize + 250 * tact.LOG_RECORD.itemsize + 9])
-        self.assertRegex(tact.read_ticks(broken).damage, "it has no end.*; 1 of 250 .*; cut off in tick number 251")
+                                     f"the first at byte {first + 100 * size}")
+        data[first + 200 * size + 3] ^= 1  # of its header
+        broken.write_bytes(data)
+        self.assertEqual(len(tact.read_ticks(broken).ticks), 4998)
+        self.assertIn(f"{size} bytes belong to no whole part, the first at byte {first + 200 * size}", tact.read_ticks(broken).damage)
+        broken.write_bytes(data[:first + 150 * size + 9])
+        self.assertRegex(tact.read_ticks(broken).damage, "it has no end.*; 1 of 150 .*; cut off at byte")
         broken.write_bytes(b"tactlog6" + data[8:])
-        with self.assertRaisesRegex(tact.Error, "a tick log of version 6, no tick log or black box of this version"):
+        with self.assertRaisesRegex(tact.Error, "before files of tact had version 1; record it again"):
             tact.read_ticks(broken)
         for path, sentence in (("nowhere", "nowhere: No such file"), ("/dev/zero", "is no regular file"),
-                               (ROOT, "is no regular file"), (LIVER, "no file of tact, no tick log")):
+                               (ROOT, "is no regular file"), (LIVER, "is no file of tact")):
             with self.assertRaisesRegex(tact.Error, sentence):
                 tact.read_ticks(path)
 
@@ -118,8 +100,8 @@ class Client(unittest.TestCase):
         run = tactd("--seconds", 3, "--no-black-box", "--socket", path)
         try:
             frames = look(path)
-            self.assertEqual(tact.text(frames.hello["scene_name"]), "liver")
-            self.assertEqual(len(frames.organ.vertex_m), frames.hello["organ_vertices"])
+            self.assertEqual(frames.header["scene_name"], "liver")
+            self.assertEqual(len(frames.organ.vertex_m), frames.header["organ_vertices"])
             self.assertLess(frames.organ.triangle.max(), len(frames.organ.vertex_m))
             seen = list(frames)
             run.wait(30)
@@ -149,23 +131,34 @@ class Client(unittest.TestCase):
         self.assertGreater(len(box.recording.frames), 0)
         self.assertEqual(box.ticks["fault"][-1], 122)  # loop ran away
         data, broken = bytearray(newest.read_bytes()), self.folder / "box.tactlog"
-        pictures = tact.LOG_HEADER.itemsize + len(box.ticks) * tact.LOG_RECORD.itemsize
+        first, size = byte_of_tick(newest, 0)
+        pictures = first + len(box.ticks) * size
         broken.write_bytes(data[:pictures + 1000])
         cut = tact.read_ticks(broken)
-        self.assertEqual((len(cut.ticks), cut.recording), (len(box.ticks), None))
-        self.assertIn("its pictures: ends before its first frame", cut.damage)
+        self.assertEqual((len(cut.ticks), len(cut.recording.frames)), (len(box.ticks), 0))
+        self.assertIn("cut off at byte", cut.damage)
         broken.write_bytes(data[:pictures - 100])
         self.assertEqual(len(tact.read_ticks(broken).ticks), len(box.ticks) - 1)
+        data[first - 100] ^= 1
+        broken.write_bytes(data)
+        self.assertIsNone(tact.read_ticks(broken).recording)
+        self.assertIn("its meshes are damaged or missing", tact.read_ticks(broken).damage)
 
     def test_meshes_may_end_with_colours_of_all_vertices_and_not_of_some(self):
-        hello = {"organ_vertices": 2, "organ_triangles": 1, "tool_vertices": 1, "tool_triangles": 1}
-        self.assertIsNone(tact._meshes(hello, bytes(60), "here")[0].color)
-        organ, tool = tact._meshes(hello, bytes(60) + bytes(range(6)), "here")
+        run = {"organ_vertices": 2, "organ_triangles": 1, "tool_vertices": 1, "tool_triangles": 1}
+
+        def meshes(content):
+            data = tact.MAGIC
+            head = json.dumps({"version": 1, "run": run, "records": {}}).encode()
+            data += chunk_of(tact.HEAD, head) + chunk_of(tact.MESHES, content)
+            return tact._File(data, "here", "").meshes()
+        self.assertIsNone(meshes(bytes(60))[0].color)
+        organ, tool = meshes(bytes(60) + bytes(range(6)))
         self.assertEqual(organ.color.tolist(), [[0, 1, 2], [3, 4, 5]])
         self.assertIsNone(tool.color)
         for wrong in (59, 61, 65, 67):
             with self.assertRaisesRegex(tact.Error, "here: its meshes are not as long"):
-                tact._meshes(hello, bytes(wrong), "here")
+                meshes(bytes(wrong))
 
     def test_nobody_at_the_socket_is_told(self):
         with self.assertRaisesRegex(tact.Error, "does tactd run, and may this user look"):

@@ -45,10 +45,10 @@ export class HandControl {
 
   /** The tool is where the next move starts. */
   frame(frame: Frame, now_ms: number): void {
-    this.tool_m = frame.tool_m;
+    this.tool_m = frame.tool_position_m;
     if (!this.target) {
       this.grip_ratio = frame.grip_ratio ?? 0;
-      const [w, x, y, z] = frame.turn;
+      const [w, x, y, z] = frame.tool_orientation;
       this.turn.set(x, y, z, w).normalize();
     }
     const holds = this.mode || this.fingers.size > 0 || now_ms - this.touched_ms < kForget_ms;

@@ -4,7 +4,7 @@
 
 import { dated_name, save } from "./file_names";
 import { by_id } from "../document/dom";
-import type { Frame } from "../link/protocol";
+import { time_s_of, type Frame } from "../link/protocol";
 
 export class Recorder {
   private first: Frame | null = null;
@@ -19,7 +19,7 @@ export class Recorder {
     if (this.last && frame.tick < this.last.tick) this.first = null; // another run began
     this.last = frame;
     if (!this.first) return;
-    by_id("record").firstChild!.textContent = `Stop ${(frame.time_s - this.first.time_s).toFixed(0)} s `;
+    by_id("record").firstChild!.textContent = `Stop ${(time_s_of(frame) - time_s_of(this.first)).toFixed(0)} s `;
   }
 
   start(): void {

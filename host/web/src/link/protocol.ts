@@ -2,47 +2,17 @@
 // protocol.ts - what tact-view sends, with its units in the names. Vectors are [x, y, z] in frame W:
 // +x towards the operator, +y to the right, +z up.
 
-export type Vec = [number, number, number];
+import type { FrameFields, Scene, SiteFields, Vec } from "./records";
 
-export interface Sphere {
-  radius_m: number;
-  offset_m: Vec; // tool frame
-}
+export type { Scene, Vec } from "./records";
 
-export interface Scene {
-  scene: string;
-  device: string;
-  law: string;
-  organ: { vertices: number; triangles: number };
-  tool: { vertices: number; triangles: number };
-  ring_count: number;
-  ring_pitch_m: number;
-  rate_Hz: number;
-  frame_rate_Hz: number;
-  force_limit_N: number;
-  torque_limit_Nm: number; // 0: the device has no torque
-  continuous_force_N: number;
-  energy_budget_J: number;
-  limits_checksum: string;
-  non_rt: boolean;
-  simulated: boolean;
-  cannot_grip: boolean; // the scene grips, the device has nothing to close the jaws
-  spheres: Sphere[];
-  look: { organ: string; tool: string; pieces: Vec[] }; // [look] of the scene
-}
+export type Sphere = Scene["spheres"][number];
 
 export const kSiteInside = 3;
 
 /** A probe sphere in contact, or inside the organ. */
-export interface Site {
+export interface Site extends SiteFields {
   site: number;
-  state: number; // 1 touching, 2 held, 3 inside the organ: no force until it has once been outside
-  point_m: Vec; // on the undeformed surface
-  normal: Vec; // outward, unit
-  shift_m: Vec; // tangential displacement of the tissue
-  depth_m: number; // press positive
-  u_m: number[]; // displacement into the tissue at radius j * ring_pitch_m, its mean around the site
-  tilt: Vec; // what u_m lacks at x: tilt . (x - point_m)
 }
 
 /** Of a law without profiles: vertices that are not at rest, and cut triangles. */
@@ -53,32 +23,15 @@ export interface Patch {
   cut: number[]; // some of them
 }
 
-export interface Frame {
+export interface Frame extends FrameFields {
   kind: "frame";
-  tick: number;
-  time_s: number;
-  state: number;
-  fault: number;
-  limit: number;
-  late: number;
-  skipped: number;
-  dropped: number;
-  contact_losses: number; // so far
-  tool_m: Vec;
-  turn: [number, number, number, number]; // w, x, y, z
-  velocity_mps: Vec;
-  grip_ratio: number;
-  force_N: Vec;
-  torque_Nm: Vec;
-  wanted_N: Vec;
-  margin_us: number;
-  tick_us: number;
-  peak_N: number;
-  rms_N: number;
-  given_J: number; // more than was taken
-  grip_N: number; // on the fingers, opening positive
   sites: Site[];
   patch?: Patch;
+}
+
+/** Since the loop started. */
+export function time_s_of(frame: Frame): number {
+  return frame.time_ns * 1e-9;
 }
 
 /** A round cone between two joints of the operator's figure. */
@@ -189,15 +142,15 @@ export interface Mesh {
 /** Takes organ and tool out of /mesh.bin: vertices, triangles, vertices, triangles, colours of the organ's vertices. */
 export function split_meshes(scene: Scene, bytes: ArrayBuffer): { organ: Mesh; tool: Mesh } {
   let at = 0;
-  const take = (part: { vertices: number; triangles: number }): Mesh => {
-    const vertex_m = new Float32Array(bytes, at, part.vertices * 3);
+  const take = (vertices: number, triangles: number): Mesh => {
+    const vertex_m = new Float32Array(bytes, at, vertices * 3);
     at += vertex_m.byteLength;
-    const triangle = new Uint32Array(bytes, at, part.triangles * 3);
+    const triangle = new Uint32Array(bytes, at, triangles * 3);
     at += triangle.byteLength;
     return { vertex_m, triangle };
   };
-  const organ = take(scene.organ);
-  const tool = take(scene.tool);
+  const organ = take(scene.organ_vertices, scene.organ_triangles);
+  const tool = take(scene.tool_vertices, scene.tool_triangles);
   if (bytes.byteLength > at) organ.color = new Uint8Array(bytes, at, organ.vertex_m.length);
   return { organ, tool };
 }

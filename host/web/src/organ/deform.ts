@@ -100,12 +100,12 @@ export class Deformer {
 
   /** d = -n u, added; s w, where it is the largest. */
   private dent(site: Site, out_m: Float32Array): void {
-    this.profile.set(site.u_m);
+    this.profile.set(site.profile_m);
     const reach_m = this.profile.reach_m;
-    const [px, py, pz] = site.point_m;
+    const [px, py, pz] = site.surface_point_m;
     const [nx, ny, nz] = site.normal;
     const [tx, ty, tz] = site.tilt;
-    const u0_m = site.u_m[0] ?? 0;
+    const u0_m = site.profile_m[0] ?? 0;
     const per_u0 = Math.abs(u0_m) > 1e-9 ? 1 / u0_m : 0;
     for (let i = 0; i < this.rest_m.length; i += 3) {
       const x = this.rest_m[i] - px;

@@ -55,7 +55,7 @@ export class OrganView {
       ? vertex_tints(mesh.color)
       : this.made_of.mottled > 0
         ? OrganView.tints(mesh, this.made_of.mottled)
-        : piece_tints(mesh, scene.look.pieces);
+        : piece_tints(mesh, scene.piece_color_ratio);
     const tint = new THREE.BufferAttribute(this.rest_tint.slice(), 3);
     tint.setUsage(THREE.DynamicDrawUsage);
     this.geometry.setAttribute("tint", tint);

@@ -53,9 +53,9 @@ export class Hud {
     this.force_limit_N = scene.force_limit_N;
     this.continuous_force_N = scene.continuous_force_N;
     this.energy_budget_J = scene.energy_budget_J;
-    write("scene", scene.scene);
-    write("law", scene.law);
-    write("device", `${scene.device} · ${Math.round(scene.rate_Hz)} Hz`);
+    write("scene", scene.scene_name);
+    write("law", scene.law_name);
+    write("device", `${scene.device_name} · ${Math.round(scene.rate_Hz)} Hz`);
     by_id("open_organ").hidden = boundary_edges === 0;
     write("boundary_edges", `open organ, ${boundary_edges} boundary edges`);
     document.body.classList.toggle("has_torque", scene.torque_limit_Nm > 0);
@@ -69,7 +69,7 @@ export class Hud {
     by_id("now").setAttribute("aria-label", this.is_replay ? "In the recording" : "Now");
     const scene = this.scene_known;
     if (!scene) return;
-    document.title = `tact: ${scene.scene}${this.is_replay ? " (replay)" : ""}`;
+    document.title = `tact: ${scene.scene_name}${this.is_replay ? " (replay)" : ""}`;
     const notes: string[] = [];
     if (scene.non_rt)
       notes.push(
@@ -135,11 +135,11 @@ export class Hud {
     write("torque", `${(1e3 * length_of(frame.torque_Nm)).toFixed(1)} of ${most_mNm.toPrecision(3)} mN m`);
     write("depth", Hud.depth(frame));
     write("grip", Hud.grip(frame));
-    write("rms", `${(frame.rms_N ?? 0).toFixed(2)} of ${this.continuous_force_N.toPrecision(2)} N`);
-    write("energy", `${((frame.given_J ?? 0) * 1e3).toFixed(1)} of ${(this.energy_budget_J * 1e3).toPrecision(3)} mJ`);
-    write("tick", `${(frame.tick_us ?? 0).toFixed(1)} µs`);
-    write("margin", `${(frame.margin_us ?? 0).toFixed(0)} µs`);
-    write("late", `${frame.late} · ${frame.skipped}`);
+    write("rms", `${(frame.rms_force_N ?? 0).toFixed(2)} of ${this.continuous_force_N.toPrecision(2)} N`);
+    write("energy", `${((frame.given_energy_J ?? 0) * 1e3).toFixed(1)} of ${(this.energy_budget_J * 1e3).toPrecision(3)} mJ`);
+    write("tick", `${(frame.median_tick_us ?? 0).toFixed(1)} µs`);
+    write("margin", `${(frame.worst_margin_us ?? 0).toFixed(0)} µs`);
+    write("late", `${frame.late_ticks} · ${frame.skipped_ticks}`);
     write("fps", `${fps.toFixed(0)} /s`);
     this.fault(now_ms);
   }
@@ -227,7 +227,7 @@ export class Hud {
   }
 
   private static grip(frame: Frame): string {
-    const force = Math.abs(frame.grip_N ?? 0) >= 0.05 ? `, ${frame.grip_N.toFixed(1)}\u00a0N` : "";
+    const force = Math.abs(frame.grip_force_N ?? 0) >= 0.05 ? `, ${frame.grip_force_N.toFixed(1)}\u00a0N` : "";
     if (frame.sites.some((site) => site.state === 2)) return `holds tissue${force}`;
     const percent = Math.round((frame.grip_ratio ?? 0) * 100);
     return (percent < 2 ? "open" : percent > 98 ? "closed" : `${percent} %`) + force;

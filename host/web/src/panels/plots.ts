@@ -2,7 +2,7 @@
 // plots.ts - depth, force and time left before the deadline over the last ten seconds.
 
 import { largest, Plot } from "./plot";
-import { length_of, type Frame } from "../link/protocol";
+import { length_of, time_s_of, type Frame } from "../link/protocol";
 import { robust_range, whole_range } from "./scale";
 
 const kSpan_s = 10;
@@ -58,14 +58,14 @@ export class Plots {
   }
 
   add(frame: Frame): void {
-    const last_s = this.times_s[this.times_s.length - 1] ?? frame.time_s;
-    if (frame.time_s < last_s || frame.time_s > last_s + kLongestGap_s) this.clear();
-    this.times_s.push(frame.time_s);
+    const last_s = this.times_s[this.times_s.length - 1] ?? time_s_of(frame);
+    if (time_s_of(frame) < last_s || time_s_of(frame) > last_s + kLongestGap_s) this.clear();
+    this.times_s.push(time_s_of(frame));
     this.depth_mm.forEach((line, i) => line.push((frame.sites.find((site) => site.site === i)?.depth_m ?? 0) * 1e3));
-    this.force_N[0].push(length_of(frame.wanted_N));
+    this.force_N[0].push(length_of(frame.wanted_force_N));
     this.force_N[1].push(length_of(frame.force_N));
-    this.margin_us[0].push(frame.margin_us ?? 0);
-    if (this.times_s[0] < frame.time_s - 1.5 * kSpan_s) this.forget(frame.time_s - kSpan_s);
+    this.margin_us[0].push(frame.worst_margin_us ?? 0);
+    if (this.times_s[0] < time_s_of(frame) - 1.5 * kSpan_s) this.forget(time_s_of(frame) - kSpan_s);
   }
 
   draw(now_ms: number): void {

@@ -24,9 +24,9 @@ export const kMaterials: ReadonlyMap<string, Material> = new Map([
 
 /** A name that this page does not know is tissue. Colours that are given are shown as they are. */
 export function organ_material(scene: Scene, mesh: Mesh): Material {
-  const made_of = kMaterials.get(scene.look.organ) ?? kMaterials.get("tissue")!;
+  const made_of = kMaterials.get(scene.organ_material) ?? kMaterials.get("tissue")!;
   if (mesh.color) return { ...made_of, ...kPlain, look: { ...made_of.look, ...kGrey } };
-  return scene.look.pieces.length > 0 ? { ...made_of, ...kPlain } : made_of;
+  return scene.piece_color_ratio.length > 0 ? { ...made_of, ...kPlain } : made_of;
 }
 
 /** Red, green and blue of each vertex, times the picture of the material, which is of sRGB as they are. */
@@ -36,7 +36,7 @@ export function vertex_tints(color: Uint8Array): Float32Array {
 
 /** Of the tool it is steel. */
 export function tool_material(scene: Scene): Material {
-  return kMaterials.get(scene.look.tool) ?? kMaterials.get("steel")!;
+  return kMaterials.get(scene.tool_material) ?? kMaterials.get("steel")!;
 }
 
 /** Red, green and blue of each vertex, times the material's; one colour for each connected piece. */

@@ -122,8 +122,8 @@ export class ToolView {
   }
 
   show(frame: Frame): void {
-    const [w, x, y, z] = frame.turn;
-    this.tool.position.set(...frame.tool_m);
+    const [w, x, y, z] = frame.tool_orientation;
+    this.tool.position.set(...frame.tool_position_m);
     this.tool.quaternion.set(x, y, z, w).normalize();
     this.spheres.forEach((sphere, index) => {
       const site = frame.sites.find((candidate) => candidate.site === index);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware/telemetry/telemetry_frame.h"
+#include "firmware/telemetry/frame_builder.h"
 
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -14,15 +14,8 @@
 namespace tact::firmware::telemetry {
 namespace {
 
-/// Truncates to the field's size; always zero-terminated.
-template <std::size_t kSize>
-void put(char (&field)[kSize], const std::string& text) {
-  const std::size_t length = std::min(text.size(), kSize - 1);
-  std::memcpy(field, text.data(), length);
-  field[length] = '\0';
-}
-
-void put(float (&field)[3], const model::Vec3& v) {
+template <typename Floats>
+void put(Floats& field, const model::Vec3& v) {
   field[0] = static_cast<float>(v.x);
   field[1] = static_cast<float>(v.y);
   field[2] = static_cast<float>(v.z);
@@ -41,9 +34,7 @@ void put(Frame& frame, const loop::TickInput& input, const loop::TickOutput& out
   put(frame.force_N, output.written.force_N);
   put(frame.torque_Nm, output.written.torque_Nm);
   put(frame.wanted_force_N, output.wanted.force_N);
-  // The gate allows at most 8 N; the field holds 32 N.
-  frame.grip_force_mN =
-      static_cast<std::int16_t>(std::clamp(1e3 * output.written_grip_N, -32'000.0, 32'000.0));
+  frame.grip_force_N = static_cast<float>(output.written_grip_N);
   frame.fault = static_cast<std::uint16_t>(output.fault);
   frame.state = output.state;
   constexpr std::uint64_t kMax_count = std::numeric_limits<std::uint32_t>::max();
@@ -52,10 +43,10 @@ void put(Frame& frame, const loop::TickInput& input, const loop::TickOutput& out
 
 float to_us(std::int64_t ns) { return static_cast<float>(static_cast<double>(ns) * 1e-3); }
 
-/// In the order of telemetry_record.h; float is precise enough for drawing.
-void append(std::vector<char>& bytes, const model::mesh::SurfaceMesh& mesh) {
+/// Vertices, then triangles; float is precise enough for drawing.
+void append(std::vector<std::byte>& bytes, const model::mesh::SurfaceMesh& mesh) {
   const auto add = [&bytes](const void* data, std::size_t size) {
-    const char* from = static_cast<const char*>(data);
+    const auto* from = static_cast<const std::byte*>(data);
     bytes.insert(bytes.end(), from, from + size);
   };
   for (const model::Vec3& v : mesh.vertex_m) {
@@ -68,56 +59,48 @@ void append(std::vector<char>& bytes, const model::mesh::SurfaceMesh& mesh) {
 
 }  // namespace
 
-Hello make_hello(const model::scene::Scene& scene, const model::scene::Tissue& tissue,
-                 const HelloFacts& facts) {
-  Hello hello;
-  hello.organ_vertices = static_cast<std::uint32_t>(scene.organ_mesh.vertex_m.size());
-  hello.organ_triangles = static_cast<std::uint32_t>(scene.organ_mesh.triangle.size());
-  hello.tool_vertices = static_cast<std::uint32_t>(scene.tool_mesh.vertex_m.size());
-  hello.tool_triangles = static_cast<std::uint32_t>(scene.tool_mesh.triangle.size());
-  hello.site_count = static_cast<std::uint32_t>(scene.tool.spheres.size());
-  std::array<double, kMaxRings> ring_m{};
+RunHeader header_of(const model::scene::Scene& scene, const model::scene::Tissue& tissue) {
+  RunHeader header;
+  header.scene_name = scene.name;
+  header.scene_hash = scene.hash;
+  header.law_name = tissue.law().title();
+  header.rate_Hz = scene.rate_Hz;
+  header.frame_rate_Hz = scene.frame_rate_Hz;
+  header.organ_vertices = static_cast<std::uint32_t>(scene.organ_mesh.vertex_m.size());
+  header.organ_triangles = static_cast<std::uint32_t>(scene.organ_mesh.triangle.size());
+  header.tool_vertices = static_cast<std::uint32_t>(scene.tool_mesh.vertex_m.size());
+  header.tool_triangles = static_cast<std::uint32_t>(scene.tool_mesh.triangle.size());
+  for (const auto& sphere : scene.tool.spheres)
+    header.spheres.push_back(
+        {sphere.radius_m, {sphere.offset_m.x, sphere.offset_m.y, sphere.offset_m.z}});
+  std::array<double, protocol::kMaxRings> ring_m{};
   // Any point and no indentation: only the number of profile points is needed.
-  hello.ring_count = static_cast<std::uint32_t>(tissue.law().contact_law().profile(
+  header.ring_count = static_cast<std::uint32_t>(tissue.law().contact_law().profile(
       {.surface_point = {.triangle = 0, .weight = {1, 0, 0}}}, ring_m));
-  hello.ring_pitch_m = static_cast<float>(tissue.law().contact_law().ring_pitch_m());
-  hello.rate_Hz = static_cast<float>(scene.rate_Hz);
-  hello.frame_rate_Hz = static_cast<float>(scene.frame_rate_Hz);
-  hello.force_limit_N = static_cast<float>(facts.force_limit_N);
-  // Rounded up, because 0 means that there is no torque; 1e-6 keeps whole numbers as they are.
-  hello.torque_limit_mNm = static_cast<std::uint16_t>(
-      std::clamp(std::ceil(1e3 * facts.torque_limit_Nm - 1e-6), 0.0, 65'535.0));
-  hello.continuous_force_N = static_cast<float>(facts.continuous_force_N);
-  hello.energy_budget_J = static_cast<float>(facts.energy_budget_J);
-  for (std::size_t i = 0; i < scene.tool.spheres.size(); ++i) {
-    hello.sphere_radius_m[i] = static_cast<float>(scene.tool.spheres[i].radius_m);
-    put(hello.sphere_offset_m[i], scene.tool.spheres[i].offset_m);
+  header.ring_pitch_m = tissue.law().contact_law().ring_pitch_m();
+  header.organ_material = scene.look.organ;
+  header.tool_material = scene.look.tool;
+  static_assert(model::scene::kMaxPieces <= protocol::kMaxPieces);
+  for (const model::Vec3& ratio : scene.look.piece_color_ratio) {
+    std::array<float, 3> color{};
+    put(color, ratio);
+    header.piece_color_ratio.push_back(color);
   }
-  hello.non_rt = facts.non_rt ? 1 : 0;
-  hello.cannot_grip = facts.cannot_grip ? 1 : 0;
-  hello.simulated = facts.hand_socket.empty() ? 0 : 1;
-  put(hello.scene_name, scene.name);
-  put(hello.limits_checksum, facts.limits_checksum);
-  put(hello.device_name, facts.device.name);
-  put(hello.law_name, tissue.law().title());
-  put(hello.organ_material, scene.look.organ);
-  put(hello.tool_material, scene.look.tool);
-  static_assert(model::scene::kMaxPieces <= kMaxPieces);
-  hello.piece_count = static_cast<std::uint32_t>(scene.look.piece_color_ratio.size());
-  for (std::size_t i = 0; i < scene.look.piece_color_ratio.size(); ++i)
-    put(hello.piece_color_ratio[i], scene.look.piece_color_ratio[i]);
-  put(hello.hand_socket, facts.hand_socket);
-  return hello;
+  return header;
 }
 
-model::Result<int> make_mesh_file(const model::scene::Scene& scene) {
-  std::vector<char> bytes;
+std::vector<std::byte> mesh_bytes(const model::scene::Scene& scene) {
+  std::vector<std::byte> bytes;
   append(bytes, scene.organ_mesh);
   append(bytes, scene.tool_mesh);
   for (const model::mesh::Rgb& color : scene.look.vertex_color)
-    bytes.insert(bytes.end(), color.begin(), color.end());
+    for (const std::uint8_t part : color) bytes.push_back(std::byte{part});
+  return bytes;
+}
+
+model::Result<int> make_memory_file(const std::string& bytes) {
   // Sealed last, so that a viewer can map it safely: it can neither shrink nor change.
-  const int fd = memfd_create("tact-meshes", MFD_CLOEXEC | MFD_ALLOW_SEALING);
+  const int fd = memfd_create("tact-run", MFD_CLOEXEC | MFD_ALLOW_SEALING);
   std::size_t written = 0;
   while (fd >= 0 && written < bytes.size()) {
     const ssize_t n = write(fd, bytes.data() + written, bytes.size() - written);
@@ -125,7 +108,7 @@ model::Result<int> make_mesh_file(const model::scene::Scene& scene) {
     written += static_cast<std::size_t>(n);
   }
   if (fd < 0 || written < bytes.size())
-    return model::Error{std::string("telemetry mesh file: ") + std::strerror(errno) +
+    return model::Error{std::string("telemetry memory file: ") + std::strerror(errno) +
                         "; free some memory and start again"};
   fcntl(fd, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL);
   return fd;
@@ -177,8 +160,8 @@ Frame FrameBuilder::take(std::uint64_t dropped_records) {
   frame.rms_force_N = static_cast<float>(r.output.rms_force_N);
   frame.given_energy_J = given_energy_J_;
   frame.limit = static_cast<std::uint16_t>(limit_);
-  frame.non_rt = non_rt_ ? 1 : 0;
-  static_assert(kMaxSites == model::contact::kMaxSpheres);
+  frame.non_rt = non_rt_;
+  static_assert(protocol::kMaxSites == model::contact::kMaxSpheres);
   const auto contacts = r.contacts.all();
   for (std::size_t i = 0; i < contacts.size(); ++i) add_site(contacts[i], frame.site[i]);
   add_patch(frame.patch);
@@ -189,8 +172,8 @@ Frame FrameBuilder::take(std::uint64_t dropped_records) {
 }
 
 void FrameBuilder::add_patch(FramePatch& patch) {
-  static_assert(kMaxPatchVertices == model::contact::kMaxShapeNodes &&
-                kMaxCutsReported == model::contact::kCutWindow);
+  static_assert(protocol::kMaxPatchVertices == model::contact::kMaxShapeNodes &&
+                protocol::kMaxCutsReported == model::contact::kCutWindow);
   constexpr double kMax_um = std::numeric_limits<std::int16_t>::max();
   shapes_.read(shape_);  // keeps the last shape if there is no new one
   patch.vertex_count = shape_.node_count;
@@ -214,14 +197,14 @@ void FrameBuilder::add_site(const model::contact::SphereContact& sphere_contact,
   put(site.normal, sphere_contact.normal);
   put(site.shift_m, sphere_contact.shift_m);
   site.depth_m = static_cast<float>(sphere_contact.depth_m);
-  site.state = static_cast<SiteState>(sphere_contact.state);
+  site.state = static_cast<protocol::SiteState>(sphere_contact.state);
   // Only the sphere's own indentation, because the page adds up all indentations. A sphere within
   // the indentation of another has none.
   const bool is_held = sphere_contact.state == model::contact::ContactState::kHeld;
   const bool presses = sphere_contact.state == model::contact::ContactState::kTouching &&
                        sphere_contact.indentation_m > 0.0;
   if (!is_held && !presses) return;
-  std::array<double, kMaxRings> ring_m{};
+  std::array<double, protocol::kMaxRings> ring_m{};
   const model::contact::Indentation in{.surface_point = sphere_contact.surface_point,
                                        .normal = sphere_contact.normal,
                                        .indentation_m = sphere_contact.indentation_m};

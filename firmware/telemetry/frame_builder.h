@@ -1,34 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
-// telemetry_frame.h - turns tick records into messages for viewers: one Hello, then Frames.
+// frame_builder.h - turns a scene into the head of a run, and tick records into frames.
 #pragma once
 
+#include <cstddef>
+#include <string>
 #include <vector>
 
-#include "firmware/telemetry/telemetry_record.h"
-#include "firmware/telemetry/tick_log.h"
-#include "hal/device.h"
+#include "firmware/protocol/frame.h"
+#include "firmware/protocol/logged_tick.h"
+#include "firmware/protocol/run_header.h"
 #include "model/result.h"
 #include "model/scene/scene.h"
 #include "model/scene/tissue.h"
 
 namespace tact::firmware::telemetry {
 
-struct HelloFacts {
-  hal::DeviceInfo device;
-  double force_limit_N = 0.0;
-  double torque_limit_Nm = 0.0;
-  double continuous_force_N = 0.0;
-  double energy_budget_J = 0.0;
-  std::string limits_checksum{};
-  bool non_rt = false;
-  bool cannot_grip = false;
-  std::string hand_socket{};  // empty: the device is not simulated
-};
+using protocol::Frame;
+using protocol::FramePatch;
+using protocol::FrameSite;
+using protocol::LoggedTick;
+using protocol::RunHeader;
 
-Hello make_hello(const model::scene::Scene& scene, const model::scene::Tissue& tissue,
-                 const HelloFacts& facts);
-/// A sealed memory file of the meshes, laid out as telemetry_record.h says.
-model::Result<int> make_mesh_file(const model::scene::Scene& scene);
+/// What of the head follows from the scene. Device, limits, PC and date are the caller's.
+RunHeader header_of(const model::scene::Scene& scene, const model::scene::Tissue& tissue);
+/// Organ vertices (3 float each, W, m), organ triangles (3 uint32 each), the same for the tool mesh
+/// (tool frame, m), then, if the scene has them, the colours of the organ's vertices (3 uint8 each,
+/// sRGB).
+std::vector<std::byte> mesh_bytes(const model::scene::Scene& scene);
+/// A sealed memory file.
+model::Result<int> make_memory_file(const std::string& bytes);
 
 /// One tick as a frame: what the tick does not hold comes from `picture`, the frame before it.
 Frame frame_of_tick(const Frame& picture, const LoggedTick& tick, std::int64_t time_ns);
@@ -43,6 +43,7 @@ class FrameBuilder {
 
   void add(const loop::TickRecord& record);
   bool has_news() const { return !tick_us_.empty(); }
+  bool non_rt() const { return non_rt_; }
   Frame take(std::uint64_t dropped_records);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware/telemetry/telemetry_frame.h"
+#include "firmware/telemetry/frame_builder.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -11,7 +11,7 @@
 
 #include "tests/support/shapes.h"
 
-namespace tact::firmware::telemetry::telemetry_frame_test {
+namespace tact::firmware::telemetry::frame_builder_test {
 
 using model::Vec3;
 using model::contact::ContactState;
@@ -30,7 +30,7 @@ class LeaningLaw final : public model::contact::ContactLaw {
   }
 };
 
-TEST(TelemetryFrame, CarriesHowTheDentOfATouchedSiteLeans) {
+TEST(FrameBuilder, CarriesHowTheDentOfATouchedSiteLeans) {
   const LeaningLaw law;
   const auto shapes = std::make_unique<loop::ShapeSlot>();
   FrameBuilder builder(law, *shapes, false);
@@ -47,7 +47,7 @@ TEST(TelemetryFrame, CarriesHowTheDentOfATouchedSiteLeans) {
   for (const float of_a_free_one : frame.site[1].tilt) EXPECT_EQ(of_a_free_one, 0.0F);
 }
 
-TEST(TelemetryFrame, CarriesLossesOfContactAndASphereInsideWithoutADent) {
+TEST(FrameBuilder, CarriesLossesOfContactAndASphereInsideWithoutADent) {
   const LeaningLaw law;
   const auto shapes = std::make_unique<loop::ShapeSlot>();
   FrameBuilder builder(law, *shapes, false);
@@ -60,31 +60,23 @@ TEST(TelemetryFrame, CarriesLossesOfContactAndASphereInsideWithoutADent) {
   builder.add(record);
   const Frame frame = builder.take(0);
   EXPECT_EQ(frame.contact_losses, 7u);
-  EXPECT_EQ(frame.site[0].state, SiteState::kInside);
+  EXPECT_EQ(frame.site[0].state, protocol::SiteState::kInside);
   EXPECT_EQ(frame.site[0].tilt[0], 0.0F);
   record.output.contact_losses = 5'000'000'000;
   const LoggedTick tick = LoggedTick::of(record, false);
   EXPECT_EQ(frame_of_tick(frame, tick, 0).contact_losses, 4'294'967'295u);
 }
 
-TEST(TelemetryFrame, TheMeshFileEndsWithTheColoursOfTheOrgansVertices) {
+TEST(FrameBuilder, TheMeshesEndWithTheColoursOfTheOrgansVertices) {
   model::scene::Scene scene;
   scene.organ_mesh = tests::make_plate(0.1, 1);
-  const auto length = [&scene] {
-    const auto fd = make_mesh_file(scene);
-    EXPECT_TRUE(fd);
-    const off_t end = lseek(*fd, 0, SEEK_END);
-    std::array<std::uint8_t, 3> last{};
-    EXPECT_EQ(pread(*fd, last.data(), 3, end - 3), 3);
-    close(*fd);
-    return std::pair(end, last);
-  };
-  const off_t plain = length().first;
+  const std::size_t plain = mesh_bytes(scene).size();
   scene.look.vertex_color.assign(scene.organ_mesh.vertex_m.size(), {1, 2, 3});
   scene.look.vertex_color.back() = {7, 8, 9};
-  const auto [end, last] = length();
-  EXPECT_EQ(end, plain + 3 * static_cast<off_t>(scene.organ_mesh.vertex_m.size()));
-  EXPECT_EQ(last, (std::array<std::uint8_t, 3>{7, 8, 9}));
+  const std::vector<std::byte> bytes = mesh_bytes(scene);
+  EXPECT_EQ(bytes.size(), plain + 3 * scene.organ_mesh.vertex_m.size());
+  EXPECT_EQ(bytes.back(), std::byte{9});
+  EXPECT_EQ(bytes[bytes.size() - 3], std::byte{7});
 }
 
-}  // namespace tact::firmware::telemetry::telemetry_frame_test
+}  // namespace tact::firmware::telemetry::frame_builder_test

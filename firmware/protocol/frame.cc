@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// The one list of a frame's fields: name with unit, and meaning. Vectors are x, y, z in frame W.
+#include "firmware/protocol/frame.h"
+
+#include <cstddef>
+
+#include "firmware/protocol/labels.h"
+
+namespace tact::firmware::protocol {
+namespace {
+
+const char* site_state(std::uint64_t number) {
+  static constexpr std::array kNames{"free", "touching", "held", "inside"};
+  return number < kNames.size() ? kNames[number] : "unknown";
+}
+
+#define FIELD(member, meaning) TACT_FIELD(FrameSite, member, #member, meaning)
+constexpr std::array kSite{
+    FIELD(surface_point_m, "touched or held point of the undeformed surface"),
+    FIELD(normal, "outward unit normal there"),
+    FIELD(shift_m, "tangential displacement of the tissue"),
+    FIELD(depth_m, "press positive, pull negative"),
+    FIELD(profile_m,
+          "displacement into the tissue at radius j ring_pitch_m; ring_count are in use"),
+    FIELD(tilt, "m/m; added to the profile at x: tilt . (x - surface_point_m)"),
+    FIELD(state, "inside: no force until it has once been outside").labelled(site_state)};
+#undef FIELD
+
+#define FIELD(member, meaning) TACT_FIELD(FramePatch, member, #member, meaning)
+constexpr std::array kPatch{FIELD(vertex_count, "displaced vertices in this frame"),
+                            FIELD(cut_total, "triangles cut so far"),
+                            FIELD(cut_first, "index in that list of the first one here"),
+                            FIELD(cut_count, "cut triangles in this frame"),
+                            FIELD(vertex, "of the organ's mesh; vertex_count are in use"),
+                            FIELD(cut_triangle, "of the organ's mesh; cut_count are in use"),
+                            FIELD(displacement_um, "from rest; vertex_count are in use")};
+#undef FIELD
+
+#define FIELD(member, meaning) TACT_FIELD(Frame, member, #member, meaning)
+constexpr std::array kFrame{
+    FIELD(tick, "number of the newest tick"),
+    FIELD(time_ns, "since the loop started"),
+    FIELD(late_ticks, "so far"),
+    FIELD(skipped_ticks, "so far"),
+    FIELD(dropped_records, "so far"),
+    FIELD(tool_position_m, ""),
+    FIELD(tool_orientation, "unit quaternion from the tool frame to W").with_components(kWxyz),
+    FIELD(tool_velocity_mps, ""),
+    FIELD(grip_ratio, "0 open, 1 closed"),
+    FIELD(force_N, "written to the device"),
+    FIELD(torque_Nm, "written to the device"),
+    FIELD(wanted_force_N, "of the law, before the gate"),
+    FIELD(worst_margin_us, "least time left before a deadline since the last frame"),
+    FIELD(median_tick_us, "duration of the ticks since the last frame"),
+    FIELD(peak_force_N, "largest magnitude since the last frame"),
+    FIELD(rms_force_N, "written, over limits.thermal_time_s"),
+    FIELD(given_energy_J, "net energy given since arming; largest since the last frame"),
+    FIELD(grip_force_N, "written to the fingers, opening positive"),
+    FIELD(fault, "latched; number of tactd --faults, 0 none").labelled(fault_name),
+    FIELD(limit, "last one that acted since the last frame; number of tactd --faults, 0 none")
+        .labelled(fault_name),
+    FIELD(state, "").labelled(state_name),
+    FIELD(non_rt, "the PC has no hard real time, the force is capped"),
+    FIELD(contact_losses, "so far: the tool moved unseen, farther than its speed limit allows"),
+    FIELD(site, "probe spheres of the tool; as many as the head has spheres are in use"),
+    FIELD(patch, "of a mass-spring law")};
+#undef FIELD
+
+}  // namespace
+
+FieldTable FrameSite::fields() { return kSite; }
+FieldTable FramePatch::fields() { return kPatch; }
+FieldTable Frame::fields() { return kFrame; }
+
+}  // namespace tact::firmware::protocol

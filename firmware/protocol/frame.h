@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// frame.h - what a viewer draws of one moment: the newest tick, and the extremes since the frame
+// before. frame.cc says what each field is.
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/loop/state.h"
+#include "firmware/protocol/chunks.h"
+#include "firmware/protocol/record_fields.h"
+
+namespace tact::firmware::protocol {
+
+inline constexpr std::size_t kMaxSites = 4;            // probe spheres on the tool
+inline constexpr std::size_t kMaxRings = 32;           // profile points of one site
+inline constexpr std::size_t kMaxPatchVertices = 180;  // in one frame
+inline constexpr std::size_t kMaxCutsReported = 32;    // in one frame
+inline constexpr std::size_t kMaxPieces = 4;           // pieces of the organ's mesh with a colour
+
+// kInside: the sphere is inside the organ and gives no force until it has once been outside.
+enum class SiteState : std::uint8_t { kFree = 0, kTouching = 1, kHeld = 2, kInside = 3 };
+
+struct FrameSite {
+  float surface_point_m[3] = {};
+  float normal[3] = {};
+  float shift_m[3] = {};
+  float depth_m = 0.0f;
+  float profile_m[kMaxRings] = {};
+  float tilt[3] = {};
+  SiteState state = SiteState::kFree;
+
+  static FieldTable fields();
+};
+
+/// Replaces the profiles of a mass-spring law. Each frame reports a window of the list of cuts; the
+/// window advances from frame to frame.
+struct FramePatch {
+  std::uint32_t vertex_count = 0;
+  std::uint32_t cut_total = 0, cut_first = 0;
+  std::uint32_t cut_count = 0;
+  std::uint32_t vertex[kMaxPatchVertices] = {};
+  std::uint32_t cut_triangle[kMaxCutsReported] = {};
+  std::int16_t displacement_um[kMaxPatchVertices][3] = {};
+
+  static FieldTable fields();
+};
+
+struct Frame {
+  static constexpr ChunkKind kKind = ChunkKind::kFrame;
+  static constexpr const char* kName = "frame";
+
+  std::uint64_t tick = 0;
+  std::int64_t time_ns = 0;
+  std::uint64_t late_ticks = 0, skipped_ticks = 0, dropped_records = 0;
+  float tool_position_m[3] = {};
+  float tool_orientation[4] = {1, 0, 0, 0};
+  float tool_velocity_mps[3] = {};
+  float grip_ratio = 0.0f;
+  float force_N[3] = {};
+  float torque_Nm[3] = {};
+  float wanted_force_N[3] = {};
+  float worst_margin_us = 0.0f;
+  float median_tick_us = 0.0f;
+  float peak_force_N = 0.0f;
+  float rms_force_N = 0.0f;
+  float given_energy_J = 0.0f;
+  float grip_force_N = 0.0f;
+  std::uint16_t fault = 0;
+  std::uint16_t limit = 0;
+  loop::State state = loop::State::kOff;
+  bool non_rt = false;
+  std::uint32_t contact_losses = 0;
+  FrameSite site[kMaxSites] = {};
+  FramePatch patch;
+
+  static FieldTable fields();
+};
+
+}  // namespace tact::firmware::protocol

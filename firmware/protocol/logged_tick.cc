@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// The one list of a logged tick's fields: member, name with unit, and meaning. Vectors are x, y, z
+// in frame W.
+#include "firmware/protocol/logged_tick.h"
+
+#include <cstddef>
+
+#include "firmware/protocol/labels.h"
+
+namespace tact::firmware::protocol {
+namespace {
+
+#define FIELD(member, name, meaning) TACT_FIELD(LoggedTick, member, name, meaning)
+#define INPUT(member, name, meaning) FIELD(input.member, name, meaning)
+#define OUTPUT(member, name, meaning) FIELD(output.member, name, meaning)
+constexpr std::array kTick{
+    FIELD(tick, "tick", "number of the tick"),
+    FIELD(non_rt, "non_rt", "the PC has no hard real time, the force is capped"),
+    FIELD(due_ns, "due_ns", "the deadline that woke it, CLOCK_MONOTONIC"),
+    FIELD(margin_ns, "margin_ns", "of the tick before: time left to the next deadline"),
+    FIELD(phase_ns, "phase_ns", "duration of each phase; publish and total of the tick before")
+        .with_components(loop::kPhaseName),
+    INPUT(sample.tool.position_m, "tool_position_m", ""),
+    INPUT(sample.tool.orientation, "tool_orientation", "unit quaternion, tool frame to W"),
+    INPUT(sample.tool.velocity_mps, "tool_velocity_mps", ""),
+    INPUT(sample.tool.angular_velocity_radps, "tool_angular_velocity_radps", ""),
+    INPUT(sample.tool.grip_ratio, "grip_ratio", "0 open, 1 closed"),
+    INPUT(sample.grip_gap_m, "grip_gap_m", "between the fingers of a gripper that can press"),
+    INPUT(sample.grip_speed_mps, "grip_speed_mps", "of that gap, opening positive"),
+    INPUT(sample.stamp_ns, "sample_stamp_ns", "when the device was read, CLOCK_MONOTONIC"),
+    INPUT(sample.sequence, "sample_sequence", "counts the device's samples, never repeats"),
+    INPUT(sample.fresh, "sample_fresh", "0: the device had no new sample"),
+    INPUT(device_fault, "device_fault", "number of tactd --faults, 0 none").labelled(fault_name),
+    INPUT(commands.arm, "command_arm", ""),
+    INPUT(commands.stop, "command_stop", ""),
+    INPUT(commands.reset, "command_reset", ""),
+    INPUT(commands.disarm, "command_disarm", ""),
+    INPUT(ready, "ready", "safety lines and device would let a force through"),
+    INPUT(clutch, "clutch", "0 coupled, 1 yields, 2 open"),
+    INPUT(skipped_periods, "skipped_periods", "before this tick"),
+    INPUT(clutches, "clutches", "so far: how often the clutch has opened"),
+    INPUT(clutch_shift_m, "clutch_shift_m", "of the tool from the handle"),
+    OUTPUT(wanted.force_N, "wanted_force_N", "of the law, before the gate"),
+    OUTPUT(wanted.torque_Nm, "wanted_torque_Nm", "of the law, before the gate"),
+    OUTPUT(written.force_N, "force_N", "written to the device"),
+    OUTPUT(written.torque_Nm, "torque_Nm", "written to the device"),
+    OUTPUT(state, "state", "").labelled(state_name),
+    OUTPUT(limit, "limit", "last one that acted; number of tactd --faults, 0 none")
+        .labelled(fault_name),
+    OUTPUT(fault, "fault", "latched; number of tactd --faults, 0 none").labelled(fault_name),
+    OUTPUT(given_energy_J, "given_energy_J", "net energy given since arming"),
+    OUTPUT(rms_force_N, "rms_force_N", "written, over limits.thermal_time_s"),
+    OUTPUT(contact_losses, "contact_losses",
+           "so far: the tool moved unseen, farther than its speed limit allows"),
+    OUTPUT(wanted_grip_N, "wanted_grip_force_N", "of the law on the fingers, opening positive"),
+    OUTPUT(written_grip_N, "grip_force_N", "written to the fingers, opening positive")};
+#undef FIELD
+#undef INPUT
+#undef OUTPUT
+
+}  // namespace
+
+FieldTable LoggedTick::fields() { return kTick; }
+
+LoggedTick LoggedTick::of(const loop::TickRecord& record, bool non_rt) {
+  return {.tick = record.tick,
+          .non_rt = non_rt,
+          .due_ns = record.due_ns,
+          .margin_ns = record.margin_ns,
+          .phase_ns = record.phase_ns,
+          .input = record.input,
+          .output = record.output};
+}
+
+}  // namespace tact::firmware::protocol

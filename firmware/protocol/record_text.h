@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// record_text.h - records as rows of a CSV and as JSON, by the table of their fields.
+//
+// In a CSV a vector has a column for each component, with the unit last: tool_position_m is
+// tool_position_x_m, ...; an enumeration has its number and, as NAME_name, its label. Numbers are
+// the shortest decimals that read back to the same value.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "firmware/protocol/record_fields.h"
+
+namespace tact::firmware::protocol {
+
+/// How many elements of a field are written; nothing: all.
+using CountOf = std::function<std::optional<std::size_t>(const Field&)>;
+
+/// Names with commas between them. A record in a record has its name and number before its fields,
+/// from 1 on: site1_depth_m.
+std::string csv_columns(FieldTable fields, const CountOf& count_of = {});
+void append_csv(std::string& out, FieldTable fields, const void* record,
+                const CountOf& count_of = {});
+
+/// "name":value,... without records in records. Floats have six digits; what is not finite is null.
+void append_json(std::string& out, FieldTable fields, const void* record,
+                 const CountOf& count_of = {});
+
+}  // namespace tact::firmware::protocol

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// run_file.h - the one file format: tick log, recording and black box are chunks (chunks.h) in a
+// sealed file (model/io/seal.h), which begins with eight letters and the head.
+//
+//     tick log   head, ticks                        tactd --record
+//     recording  head, meshes, frames, operators    tact-view --record
+//     black box  head, meshes, ticks, frames        tactd, at a fault
+//
+// The head is JSON: {"version": 1, "run": a RunHeader, "records": {name: {"kind", "fields"}}}. The
+// memory file of the telemetry socket has the same letters, head and meshes, and each message is
+// one chunk: what follows one another is a recording.
+#pragma once
+
+#include <cstddef>
+#include <initializer_list>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "firmware/protocol/chunks.h"
+#include "firmware/protocol/frame.h"
+#include "firmware/protocol/record_fields.h"
+#include "firmware/protocol/run_header.h"
+#include "model/io/seal.h"
+#include "model/result.h"
+
+namespace tact::firmware::protocol {
+
+inline constexpr std::string_view kMagic = "tactrun\n";
+inline constexpr int kVersion = 1;  // of the format; a field more or less does not change it
+
+/// A kind of record in a file.
+struct RecordType {
+  ChunkKind kind;
+  const char* name;
+  FieldTable fields;
+};
+template <typename Record>
+RecordType type_of_record() {
+  return {Record::kKind, Record::kName, Record::fields()};
+}
+
+/// The bytes before the first record; without meshes a tick log's.
+std::string start_of_run(const RunHeader& header, std::span<const std::byte> meshes,
+                         std::initializer_list<RecordType> records);
+
+template <typename Record>
+std::string chunk_of(const Record& record) {
+  std::string content;
+  content.reserve(sizeof record);
+  pack(Record::fields(), &record, content);
+  return chunk_of(Record::kKind, content);
+}
+
+/// A tick log as it grows. Writes in an ordinary thread. After a loss nothing more is written: a
+/// log with a gap cannot be replayed.
+class RunWriter {
+ public:
+  static model::Result<RunWriter> create(const std::string& path, const std::string& start);
+  void add(const std::string& bytes);
+  std::optional<model::Error> flush();
+  /// The error after which nothing more is written, if any.
+  const std::optional<model::Error>& trouble() const { return trouble_; }
+  /// Closes the file. After a loss it is not sealed, so readers report it as unfinished.
+  std::optional<model::Error> close();
+
+ private:
+  explicit RunWriter(model::io::SealedWriter file) : file_(std::move(file)) {}
+
+  std::optional<model::io::SealedWriter> file_;
+  std::optional<model::Error> trouble_;
+};
+
+/// Reads a file, or the bytes of the memory file.
+class RunReader {
+ public:
+  static model::Result<RunReader> open(const std::string& path, std::string_view remedy);
+  static model::Result<RunReader> of_bytes(std::string bytes);
+
+  const RunHeader& header() const { return header_; }
+  /// Without fields where no record of that kind can be in the file.
+  template <typename Record>
+  model::Result<Unpacker> unpacker() const {
+    return make_unpacker(type_of_record<Record>());
+  }
+  /// The next good chunk; false at the end. Those that are damaged are skipped.
+  bool next(Chunk& chunk) { return chunks_.next(chunk); }
+  bool skipped() const { return chunks_.skipped(); }
+  /// Call after the last chunk: empty, or the damage, with "; " at its end.
+  std::string damage();
+
+ private:
+  RunReader(ChunkReader::Source source, std::unique_ptr<model::io::SealedFile> file)
+      : file_(std::move(file)), chunks_(std::move(source), kMagic.size()) {}
+  std::optional<model::Error> read_head();
+  model::Result<Unpacker> make_unpacker(const RecordType& type) const;
+
+  std::unique_ptr<model::io::SealedFile> file_;  // null: of_bytes
+  ChunkReader chunks_;
+  RunHeader header_;
+  std::shared_ptr<const nlohmann::json> records_;
+};
+
+}  // namespace tact::firmware::protocol

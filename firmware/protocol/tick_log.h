@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// tick_log.h - reads the ticks of a tick log or a black box.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "firmware/protocol/logged_tick.h"
+#include "firmware/protocol/run_file.h"
+
+namespace tact::firmware::protocol {
+
+class TickLog {
+ public:
+  /// An error if the file has no ticks, or its ticks lack a field of this program: what they
+  /// replay would not be the run.
+  static model::Result<TickLog> open(const std::string& path);
+  const RunHeader& header() const { return reader_.header(); }
+  /// The next good tick; skips damaged ones. False at the end.
+  bool next(LoggedTick& tick);
+  /// True if the last tick comes after damage.
+  bool skipped() const { return skipped_; }
+  /// Call after the last tick: empty, or the damage and the number of good ticks.
+  std::string damage();
+
+ private:
+  TickLog(RunReader reader, Unpacker unpacker)
+      : reader_(std::move(reader)), unpacker_(std::move(unpacker)) {}
+
+  RunReader reader_;
+  Unpacker unpacker_;
+  Chunk chunk_;
+  std::uint64_t good_ = 0;
+  bool skipped_ = false;
+};
+
+}  // namespace tact::firmware::protocol
