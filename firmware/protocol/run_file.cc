@@ -50,12 +50,15 @@ Result<RunWriter> RunWriter::create(const std::string& path, const std::string& 
 }
 
 void RunWriter::add(const std::string& bytes) {
-  if (!trouble_) trouble_ = file_->put(bytes);
+  if (!trouble_) keep(file_->put(bytes));
 }
 
-std::optional<Error> RunWriter::flush() {
-  if (!trouble_) trouble_ = file_->flush();
-  return trouble_;
+void RunWriter::flush() {
+  if (!trouble_) keep(file_->flush());
+}
+
+void RunWriter::keep(const std::optional<Error>& error) {
+  if (error) trouble_ = Error{error->message + "; what was written before is kept"};
 }
 
 std::optional<Error> RunWriter::close() {

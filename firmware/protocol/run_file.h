@@ -60,13 +60,14 @@ class RunWriter {
  public:
   static model::Result<RunWriter> create(const std::string& path, const std::string& start);
   void add(const std::string& bytes);
-  std::optional<model::Error> flush();
+  void flush();
   /// The error after which nothing more is written, if any.
   const std::optional<model::Error>& trouble() const { return trouble_; }
   /// Closes the file. After a loss it is not sealed, so readers report it as unfinished.
   std::optional<model::Error> close();
 
  private:
+  void keep(const std::optional<model::Error>& error);
   explicit RunWriter(model::io::SealedWriter file) : file_(std::move(file)) {}
 
   std::optional<model::io::SealedWriter> file_;

@@ -2,8 +2,8 @@
 // recording.h - a run of tactd in one file, and the last minutes of it in memory.
 //
 // The format is firmware/protocol/run_file.h; a black box of tactd is a recording, too. Of a
-// damaged or truncated file the good part is read, with one message about the rest. With a tracker it also
-// has the operator and the figure shown, frame by frame (operator_record.h).
+// damaged or truncated file the good part is read, with one message about the rest. With a tracker
+// it also has the operator and the figure shown, frame by frame (operator_record.h).
 #pragma once
 
 #include <deque>

@@ -37,7 +37,7 @@ std::optional<Error> RecordingWriter::check() {
   const std::optional<Error> error = file_->trouble();
   if (!error) return std::nullopt;
   file_.reset();
-  return Error{error->message + "; recording stopped, what was written before is kept"};
+  return Error{error->message + "; recording stopped"};
 }
 
 std::optional<Error> RecordingWriter::write(const Frame& frame,

@@ -26,7 +26,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests/tools/client"))
-from run_bytes import chunk_of, tact  # noqa: E402
+from run_bytes import FRAME, chunk_of  # noqa: E402
 BUILD = Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build").resolve()
 LIMIT_S, MIB, STRANGER = 58, 1 << 20, 65534
 FIVE_MINUTES = 18_000  # frames at 60 Hz
@@ -142,7 +142,7 @@ def long_run(tactd_path, path):
     wire, _ = listener.accept()
     socket.send_fds(wire, [magic], [start])
     for i in range(1, FIVE_MINUTES + 1):
-        wire.send(chunk_of(tact.FRAME, struct.pack("<Qq", i, i * 16_666_667) + frame[32:]))  # tick, time, the rest
+        wire.send(chunk_of(FRAME, struct.pack("<Qq", i, i * 16_666_667) + frame[32:]))  # tick, time, the rest
     return view, wire
 
 

@@ -41,7 +41,7 @@ TEST_F(Scarce, AFileSizeLimitEndsTheRecordAndNotTheLoop) {
                               "lives\nwait $tactd; echo status $?; cat told");
   EXPECT_TRUE(has(out, "lives\n")) << out.output;
   EXPECT_TRUE(has(out, "status 1\n")) << out.output;
-  EXPECT_TRUE(has(out, "what came before tick ")) << out.output;
+  EXPECT_TRUE(has(out, "what was written before is kept")) << out.output;
   EXPECT_EQ(times("log: cannot be written: File too large", out.output), 2u)
       << "at once and at the end: " << out.output;
   ASSERT_FALSE(report().is_discarded()) << out.output;
