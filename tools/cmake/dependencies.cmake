@@ -33,7 +33,7 @@ if(TACT_LAB)
   find_package(benchmark REQUIRED)
   find_library(METIS metis REQUIRED)
 endif()
-if(BUILD_TESTING)
+if(BUILD_TESTING AND TACT_PROGRAMS)
   find_package(GTest REQUIRED)
   find_library(OPENIGTLINK OpenIGTLink)  # a peer of tests; without it those are left out
   find_path(OPENIGTLINK_INCLUDE_DIR igtlClientSocket.h PATH_SUFFIXES openigtlink)
