@@ -5,12 +5,10 @@
 //     node tests/browser/maintenance_test.mjs BUILD_DIR   (tactd, tact-view, page/)
 //
 // Takes long: run only by tools/check --long and --only browser.
-// CHROMIUM names another browser. Picture: BUILD_DIR/page-maintenance.png. Prints "N passed, M
-// failed"; exit status 0 or 1.
+// CHROMIUM names another browser. Prints "N passed, M failed"; exit status 0 or 1.
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import {
-  build,
   check,
   distance,
   folder,
@@ -234,8 +232,7 @@ async function lose_the_tracker(browser) {
   await stop_all(all);
 }
 
-/** Full quality, whatever it costs here: for the eye. */
-async function take_picture(browser) {
+async function look_from_outside(browser) {
   const all = await start_all(browser, "picture", description);
   await all.page.goto(sharp(all.url));
   await all.page.keyboard.press("v"); // from outside, whoever's head is tracked
@@ -251,7 +248,6 @@ async function take_picture(browser) {
   );
   const { link, tick, tracking_words, fps } = await numbers(all.page);
   check("shows the operator pressing", presses, `${link}, tick ${tick}, "${tracking_words}", ${fps.toFixed(1)} frames/s`);
-  await all.page.screenshot({ path: join(build, "page-maintenance.png") });
   await stop_all(all);
 }
 
@@ -259,6 +255,6 @@ await play(async () => {
   const browser = await start_browser();
   await follow_the_recording(browser);
   await lose_the_tracker(browser);
-  await take_picture(browser);
+  await look_from_outside(browser);
   await browser.close();
 });

@@ -3,8 +3,8 @@
 //
 //     node tests/browser/page_test.mjs BUILD_DIR      (tactd, tact-view and page/ are there)
 //
-// CHROMIUM names another browser. Pictures: BUILD_DIR/page.png, and page_hand.png with the mouse in
-// use. Prints "N passed, M failed"; exit status 0 or 1.
+// CHROMIUM names another browser. Pictures: BUILD_DIR/page_hand.png with the mouse in use, page_SCENE.png.
+// Prints "N passed, M failed"; exit status 0 or 1.
 import { join } from "node:path";
 
 import { check_black_box } from "./black_box.mjs";
@@ -195,8 +195,8 @@ async function check_loss(page, tactd) {
   return again;
 }
 
-/** Full quality, whatever it costs here: for the eye. */
-async function take_picture(browser, url) {
+/** Another browser looks at the same run, in full quality. */
+async function check_second_browser(browser, url) {
   const page = await browser.newPage({ viewport: size });
   await page.goto(sharp(url));
   check(
@@ -208,7 +208,6 @@ async function take_picture(browser, url) {
       60000,
     ),
   );
-  await page.screenshot({ path: join(build, "page.png") });
   await page.close();
 }
 
@@ -265,7 +264,7 @@ async function run() {
   tactd = await check_loss(page, tactd);
   check("has no error on the console", complaints.length === 0, complaints.slice(0, 3).join("; "));
   await page.close();
-  await take_picture(browser, url);
+  await check_second_browser(browser, url);
   await check_replay(browser, recording);
   await check_black_box(browser);
   await check_scene(

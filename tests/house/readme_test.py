@@ -27,6 +27,7 @@ TOPS = ("model/", "hal/", "firmware/", "host/", "tools/")  # whose rooms have a 
 SOURCE = re.compile(r"(?:.*/)?([^/]+\.(?:h|cc)|package\.json)")
 TEST_PROGRAM = re.compile(r"`(?:build/tests/)?((?:[a-z0-9]+_)+test)(?: [^`]*)?`")
 TEST_FILE = re.compile(r"`((?:[\w-]+/)*\w+_test\.(?:cc|mjs))`")
+MAX_PUBLIC = 10
 COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 
 
@@ -119,6 +120,15 @@ def silent_files():
         yield f"tools/rooms names {len(words)} files: it does not see the rooms"
 
 
+def public_breaches(path, text, cmake):
+    """The headers that tact offers other programs: few, and each with its row."""
+    headers = re.search(r"set\(public_headers([^)]*)\)", cmake)[1].split()
+    if len(headers) > MAX_PUBLIC:
+        yield f"tools/cmake/library.cmake:1: {len(headers)} public headers: {MAX_PUBLIC} at most"
+    for name in sorted({*headers} ^ {*re.findall(r"^\| `(\w+(?:/\w+)+\.h)` \|", text, re.M)}):
+        yield f"{path}:1: {name}: is a public header of tools/cmake/library.cmake, or has a row: both, or none"
+
+
 def host_breaches(path, text):
     """What host/ includes of other folders, as tests/house/rooms.py allows it."""
     single = {f"{other}/{name}" for (room, other), headers in rooms.SINGLE_HEADERS.items()
@@ -192,13 +202,20 @@ def blind_rules():
     for name, other in rooms_of.items():
         if len(list(breaches({**files, "README.md": good, **other}))) != 1:
             blind.append(name)
+    row, public = "| `a/b.h` | c |\n", "set(public_headers\n  a/b.h)"
+    blind += [name for name, text, cmake in (
+        ("header without a row", "", public), ("row without a header", row, "set(public_headers)"),
+        ("many headers", row, public[:-1] + " a/b.h" * MAX_PUBLIC + ")")) if not list(public_breaches("a", text, cmake))]
+    blind += [f"takes for a breach: {found}" for found in public_breaches("a", row, public)]
     blind += [f"takes for a breach: {found}" for found in breaches({**files, "README.md": good})]
     return blind
 
 
 def main():
     files = tree()
-    found = [*breaches(files), *silent_files()]
+    examples = "tools/examples/README.md"
+    found = [*breaches(files), *silent_files(),
+             *public_breaches(examples, files[examples], (ROOT / "tools/cmake/library.cmake").read_text())]
     print(*(f"{breach}\n" for breach in found), sep="", end="")
     texts = [text for text in files.values() if text is not None]
     links = sum(len(LINK.findall(text)) for text in texts)

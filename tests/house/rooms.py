@@ -71,7 +71,7 @@ ROOMS = {
 }
 # A tool measures every room above; of the other tools it may include these.
 TOOLS = {
-    **dict.fromkeys(["printed", "program"], []),
+    **dict.fromkeys(["examples", "printed", "program"], []),
     **dict.fromkeys(["calibrate", "doctor", "ground_truth", "mesh", "report"], ["program"]),
     **dict.fromkeys(["jitter", "limits", "sweep"], ["program", "report"]),
     "condense": ["program", "ground_truth", "mesh"],

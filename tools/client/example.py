@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""From a tick log to two pictures: how a force follows the depth of a press, and how long a tick takes.
+"""From a tick log, or from the tactd that runs, to pictures: the force in time; of a log also how long a tick takes.
 
     build/tactd model/scenes/liver.toml --seconds 20 --record run.tactlog
     python3 tools/client/example.py run.tactlog --out .
+    python3 tools/client/example.py --seconds 10 --out .          # while tactd runs
 
 Run it as a whole, or cell by cell (# %%) in an editor that knows them. Needs numpy and matplotlib.
 """
@@ -23,17 +24,32 @@ except ImportError as error:
     sys.exit(f"example.py: {error}; apt install python3-matplotlib for Debian's python3, else pip install matplotlib")
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-parser.add_argument("log", help="of tactd --record, or a black box")
+parser.add_argument("log", nargs="?", help="of tactd --record, or a black box; without it the tactd that runs")
+parser.add_argument("--seconds", type=float, default=10.0, help="of the tactd that runs")
 parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("."), help="folder for force.png and ticks.png")
 arguments = parser.parse_args()
+
+
+def frames_of(live):
+    frames = []
+    for frame in live:
+        frames.append(frame)
+        if frame["time_ns"] - frames[0]["time_ns"] >= 1e9 * arguments.seconds:
+            break
+    return np.array(frames)
+
+
 try:
-    log = tact.read_ticks(arguments.log)
+    log = tact.read_ticks(arguments.log) if arguments.log else None
+    source = log or tact.live(timeout_s=5.0)
+    run = log.ticks if log else frames_of(source)
 except tact.Error as error:
     sys.exit(f"example.py: {error}")
-if log.damage:
+if log and log.damage:
     print(f"example.py: {log.damage}; what is good of it follows", file=sys.stderr)
-if not len(log.ticks):
-    sys.exit(f"example.py: {arguments.log}: no good tick")
+if not len(run):
+    sys.exit(f"example.py: {arguments.log or 'tactd'}: no good tick")
+time_s = log.time_s if log else 1e-9 * (run["time_ns"] - run["time_ns"][0])
 
 
 def keep(picture, name):
@@ -45,21 +61,23 @@ def keep(picture, name):
 
 
 # %% Force in time: what the law asked for, and what the gate let through
-wanted_N = np.linalg.norm(log.ticks["wanted_force_N"], axis=1)
-written_N = np.linalg.norm(log.ticks["force_N"], axis=1)
+wanted_N = np.linalg.norm(run["wanted_force_N"], axis=1)
+written_N = np.linalg.norm(run["force_N"], axis=1)
 figure, (above, below) = pyplot.subplots(2, 1, sharex=True, figsize=(8, 6))
-above.plot(log.time_s, wanted_N, label="by the law", linewidth=1)
-above.plot(log.time_s, written_N, "--", label="after the gate", linewidth=1)
+above.plot(time_s, wanted_N, label="by the law", linewidth=1)
+above.plot(time_s, written_N, "--", label="after the gate", linewidth=1)
 above.set_ylabel("force, N")
 above.legend()
-below.plot(log.time_s, 1e3 * log.ticks["tool_position_m"][:, 2], linewidth=1)
+below.plot(time_s, 1e3 * run["tool_position_m"][:, 2], linewidth=1)
 below.set_ylabel("height of the tool, mm")
 below.set_xlabel("time, s")
-above.set_title(f"{log.header['scene_name']}: {log.header['law_name']}")
+above.set_title(f"{source.header['scene_name']}: {source.header['law_name']}")
 keep(figure, "force.png")
-print(f"{len(log.ticks)} ticks, {log.time_s[-1]:.1f} s, force at most {written_N.max():.3f} N")
+print(f"{len(run)} {'ticks' if log else 'frames'}, {time_s[-1]:.1f} s, force at most {written_N.max():.3f} N")
 
 # %% Phases of a tick, as shares of ticks that took at most so long
+if not log:
+    sys.exit()
 if not log.ticks["phase_ns"].any():
     print("a run in simulated time (--free-run) has no times of phases: no ticks.png")
     sys.exit()

@@ -7,10 +7,12 @@ find_package(nlohmann_json REQUIRED)
 find_package(tomlplusplus REQUIRED)
 find_package(Boost CONFIG REQUIRED)
 find_package(OpenSSL REQUIRED)
-find_library(GPIOD gpiod REQUIRED)  # Debian's libgpiod has no CMake file
-find_path(GPIOD_INCLUDE_DIR gpiod.h REQUIRED)
-find_library(LIBUSB usb-1.0 REQUIRED)  # nor has Debian's libusb
-find_library(SECCOMP seccomp REQUIRED)
+if(TACT_PROGRAMS)
+  find_library(GPIOD gpiod REQUIRED)  # Debian's libgpiod has no CMake file
+  find_path(GPIOD_INCLUDE_DIR gpiod.h REQUIRED)
+  find_library(LIBUSB usb-1.0 REQUIRED)  # nor has Debian's libusb
+  find_library(SECCOMP seccomp REQUIRED)
+endif()
 if(TACT_TOOLS AND NOT TACT_VIEW)
   message(FATAL_ERROR "TACT_TOOLS needs the viewer's tracking: -DTACT_VIEW=ON, or -DTACT_TOOLS=OFF too")
 endif()
@@ -31,7 +33,7 @@ if(TACT_LAB)
   find_package(benchmark REQUIRED)
   find_library(METIS metis REQUIRED)
 endif()
-if(BUILD_TESTING)
+if(BUILD_TESTING AND TACT_PROGRAMS)
   find_package(GTest REQUIRED)
   find_library(OPENIGTLINK OpenIGTLink)  # a peer of tests; without it those are left out
   find_path(OPENIGTLINK_INCLUDE_DIR igtlClientSocket.h PATH_SUFFIXES openigtlink)

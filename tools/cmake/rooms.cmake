@@ -82,7 +82,7 @@ endfunction()
 # their own files are not optimised. OPTIMISED programs compute in files of their own, or run what is
 # measured, which then shares no inline function with a file that is not.
 file(CONFIGURE OUTPUT program_prelude.cc CONTENT "")
-add_library(tact_program_base OBJECT EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/program_prelude.cc)
+add_library(tact_program_base OBJECT EXCLUDE_FROM_ALL ${PROJECT_BINARY_DIR}/program_prelude.cc)
 target_link_libraries(tact_program_base PRIVATE tact_flags CLI11::CLI11 nlohmann_json::nlohmann_json)
 target_precompile_headers(tact_program_base PRIVATE <CLI/CLI.hpp> <nlohmann/json.hpp>)
 target_compile_options(tact_program_base PRIVATE -O0)

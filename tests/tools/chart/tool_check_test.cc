@@ -113,6 +113,14 @@ TEST(CheckTool, IsWithoutFrictionAsTheReferenceIs) {
   EXPECT_EQ(rough->samples.back().force_N, smooth->samples.back().force_N);
 }
 
+TEST(TimeTool, TimesAToolThatTouchesOrRefuses) {
+  model::scene::Scene scene = make_scene();
+  scene.law = LawKind::kDiscStack;
+  EXPECT_TRUE(time_tool(scene, kShort).has_value());
+  scene.hand_site_m.z += 0.05;
+  EXPECT_FALSE(time_tool(scene, kShort).has_value());
+}
+
 TEST(CheckTool, RefusesAReferenceOfAnotherTool) {
   model::scene::Scene scene = make_scene();
   const ToolReference truth = linear_truth(scene, 20.0);

@@ -111,15 +111,24 @@ Result<Timing> time_tool(const Scene& scene, const TimingSettings& settings) {
   const std::vector<Tool> path = moving_tool(scene, hands_place(scene));
   firmware::loop::TickInput input;
   input.sample.fresh = true;
-  input.sample.tool = path.front();
-  controller.tick(input);  // ready, and armed by the next
-  input.commands.arm = true;
+  const auto tick = [&](const Tool& tool) {
+    input.sample.tool = tool;
+    return controller.tick(input);
+  };
+  // From outside: a tool that starts in the organ has no force. The first tick makes it ready.
+  for (double above_m = 2.0 * kAbove_m; above_m > 0.0; above_m -= kSpeed_mps / scene.rate_Hz) {
+    Tool tool = path.front();
+    tool.position_m -= above_m * scene.hand_inward;
+    tick(tool);
+    input.commands.arm = true;
+  }
+  if (!(norm(tick(path.front()).wanted.force_N) > 0.0))
+    return model::Error{scene.path + ": the tool does not touch the organ where it is timed"};
   std::size_t at = 0;
   return measure_time(
       [&] {
-        input.sample.tool = path[at];
         at = at + 1 == path.size() ? 0 : at + 1;
-        controller.tick(input);
+        tick(path[at]);
       },
       settings);
 }
