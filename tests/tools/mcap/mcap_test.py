@@ -180,8 +180,10 @@ class Mcap(unittest.TestCase):
 
     def test_a_black_box_has_ticks_and_frames_in_one_time(self):
         boxes = self.folder / "boxes"
-        run = start("tactd", LIVER, "--seconds", 20, "--no-telemetry", "--black-box", boxes)
-        time.sleep(1.5)
+        record = self.folder / "box_record.tactlog"
+        run = start("tactd", LIVER, "--seconds", 60, "--no-telemetry", "--black-box", boxes, "--record", record)
+        while run.poll() is None and (not record.exists() or record.stat().st_size < 500_000):
+            time.sleep(0.05)
         run.send_signal(signal.SIGXCPU)  # as if the loop had run away
         run.wait(30)
         source, target = next(boxes.glob("*.tactlog")), self.folder / "box.mcap"
