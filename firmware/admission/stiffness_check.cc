@@ -16,10 +16,9 @@ using model::Error;
 
 /// The key or section to change when the law is too stiff.
 std::string stiff_key(const model::scene::Scene& scene, const model::scene::TissueLaw& law) {
-  if (scene.law == model::scene::LawKind::kCompliance)
-    return "the tissue by elastic.youngs_modulus_Pa";
+  if (scene.law == "compliance") return "the tissue by elastic.youngs_modulus_Pa";
   if (scene.pull && law.pull_is_stiffer()) return "pull.stiffness_N_per_m";
-  return fmt::format("[{}]", model::scene::name_of(scene.law));
+  return fmt::format("[{}]", scene.law);
 }
 
 /// Rounds down, so that a printed limit is itself accepted.
@@ -76,9 +75,8 @@ Error damps_too_much(const model::scene::Scene& scene, const Demand& demand, dou
   return Error{fmt::format(
       "{}: law {} damps too much: {:.4g} N s/m on {}, where this device has {:.4g} N s/m of its "
       "own and {:.4g} N/m to show at {:g} Hz; lower the damping of [{}] to {:.4g} N s/m or less",
-      scene.path, model::scene::name_of(scene.law), demand.damping_Ns_per_m,
-      spheres_text(scene.tool.spheres.size()), own_Ns_per_m, needed_N_per_m, scene.rate_Hz,
-      model::scene::name_of(scene.law),
+      scene.path, scene.law, demand.damping_Ns_per_m, spheres_text(scene.tool.spheres.size()),
+      own_Ns_per_m, needed_N_per_m, scene.rate_Hz, scene.law,
       rounded_down(own_Ns_per_m * (1.0 - needed_N_per_m / demand.undamped_limit_N_per_m) /
                    demand.spheres))};
 }
@@ -95,7 +93,7 @@ Error too_stiff(const model::scene::Scene& scene, const model::scene::TissueLaw&
   const bool is_law =
       !(demand.law_N_per_m < demand.sliding_N_per_m);  // the stiffer one; a NaN selects the law
   const bool is_set = scene.contact.sliding_stiffness_N_per_m > 0.0;
-  const std::string what = is_law   ? fmt::format("law {}", model::scene::name_of(scene.law))
+  const std::string what = is_law   ? fmt::format("law {}", scene.law)
                            : is_set ? std::string("contact.sliding_stiffness_N_per_m")
                                     : std::string("the tissue, held and pulled along its surface,");
   const std::string remedy = is_law   ? "soften " + stiff_key(scene, law)

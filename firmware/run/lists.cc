@@ -9,12 +9,13 @@
 
 #include "hal/registry/open_device.h"
 #include "model/io/json.h"
+#include "model/reader/scene_text.h"
+#include "model/scene/laws.h"
 
 namespace tact::firmware::run {
 
 using hal::list::FoundPart;
 using hal::list::PartKind;
-using model::reader::SceneNumber;
 
 std::string devices_as_text(const std::vector<FoundPart>& parts) {
   std::string text;
@@ -52,30 +53,31 @@ std::string devices_as_json(const std::vector<FoundPart>& parts) {
          "\n";
 }
 
-std::string parameters_as_text(const std::vector<SceneNumber>& numbers) {
+std::string parameters_as_text(model::scene::Scene scene) {
   std::string text;
-  for (const SceneNumber& number : numbers)
-    fmt::format_to(std::back_inserter(text), "{:<42} {:<10g} {} .. {}{}{}{}  {}\n", number.key,
-                   number.value, number.low, number.high, number.unit.empty() ? "" : " ",
-                   number.unit, number.is_whole ? ", whole" : "", number.meaning);
+  for (const model::Parameter& p : parameters_of(*model::scene::find_law(scene.law), scene).all) {
+    const std::string_view unit = model::reader::unit_of_key(p.key);
+    fmt::format_to(std::back_inserter(text), "{:<42} {:<10g} {} .. {}{}{}{}  {}\n",
+                   fmt::format("{}.{}", scene.law, p.key), p.value(), p.range.low, p.range.high,
+                   unit.empty() ? "" : " ", unit, p.count ? ", whole" : "", p.meaning);
+  }
   return text;
 }
 
-std::string parameters_as_json(const model::scene::Scene& scene,
-                               const std::vector<SceneNumber>& numbers) {
+std::string parameters_as_json(model::scene::Scene scene) {
   nlohmann::json list = nlohmann::json::array();
-  for (const SceneNumber& number : numbers)
-    list.push_back({{"key", number.key},
-                    {"unit", number.unit},
-                    {"value", number.value},
-                    {"low", number.low},
-                    {"high", number.high},
-                    {"whole", number.is_whole},
-                    {"meaning", number.meaning}});
+  for (const model::Parameter& p : parameters_of(*model::scene::find_law(scene.law), scene).all)
+    list.push_back({{"key", fmt::format("{}.{}", scene.law, p.key)},
+                    {"unit", model::reader::unit_of_key(p.key)},
+                    {"value", p.value()},
+                    {"low", p.range.low},
+                    {"high", p.range.high},
+                    {"whole", p.count != nullptr},
+                    {"meaning", p.meaning}});
   const nlohmann::json out{{"format", "tactd-parameters"},
                            {"version", 1},
                            {"scene", scene.name},
-                           {"law", model::scene::name_of(scene.law)},
+                           {"law", scene.law},
                            {"simulated", hal::registry::is_simulated(scene.device)},
                            {"parameters", list}};
   return model::io::text_of(out, 2) + "\n";

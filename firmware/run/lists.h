@@ -16,11 +16,10 @@ std::string devices_as_text(const std::vector<hal::list::FoundPart>& parts);
 /// {"devices":[{"kind","name","what","scene","ready","lacking","remedy"}]}
 std::string devices_as_json(const std::vector<hal::list::FoundPart>& parts);
 
-/// Text: one line per number, as in --help-scene, with the scene's value.
-std::string parameters_as_text(const std::vector<model::reader::SceneNumber>& numbers);
+/// Text: one line per number of the law in use, as in --help-scene, with its value.
+std::string parameters_as_text(model::scene::Scene scene);
 
 /// {"scene","law","simulated","parameters":[{"key","unit","value","low","high","whole","meaning"}]}
-std::string parameters_as_json(const model::scene::Scene& scene,
-                               const std::vector<model::reader::SceneNumber>& numbers);
+std::string parameters_as_json(model::scene::Scene scene);
 
 }  // namespace tact::firmware::run

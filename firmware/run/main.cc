@@ -75,10 +75,8 @@ int print_devices(const std::string& json_path) {
 }
 
 int print_parameters(const model::scene::Scene& scene, const firmware::run::Options& options) {
-  const auto numbers = model::scene::law_numbers(scene, options.overrides);
-  if (!numbers) return complain(numbers.error().message, 2);
-  if (options.json_path != "-") say(stdout, "{}", firmware::run::parameters_as_text(*numbers));
-  return write_json(options.json_path, firmware::run::parameters_as_json(scene, *numbers));
+  if (options.json_path != "-") say(stdout, "{}", firmware::run::parameters_as_text(scene));
+  return write_json(options.json_path, firmware::run::parameters_as_json(scene));
 }
 
 /// Exit status 0 only if all forces have equal bits and no tick is missing or damaged.
@@ -120,7 +118,7 @@ model::Result<model::scene::Scene> load(firmware::run::Options& options) {
     options.overrides = std::move(*recorded);
   }
   auto scene = model::scene::load_scene(options.scene_path, options.overrides);
-  if (!scene || scene->law != model::scene::LawKind::kAuto) return scene;
+  if (!scene || scene->law != model::scene::kAutoLaw) return scene;
   const auto plan = model::scene::find_plan(*scene, options.overrides);
   if (!plan) return plan.error();
   const auto choice = model::scene::overrides_of(plan->sizes);

@@ -18,11 +18,11 @@ namespace tact::host::tracking {
 namespace {
 
 namespace fs = std::filesystem;
+using model::Choice;
 using model::Error;
+using model::Need;
 using model::Result;
-using model::reader::Choice;
 using model::reader::Keys;
-using model::reader::Need;
 
 // Chosen bounds, beyond any camera, operator or marker body, to detect a wrong unit.
 constexpr std::uintmax_t kMaxFile_bytes = 1'000'000;

@@ -10,20 +10,6 @@
 namespace tact::model::indent {
 namespace {
 
-const char* parameter_error(const DiscDimensions& p) {
-  if (!is_positive(p.inner_diameter_m)) return "inner_diameter_m must be finite and above 0";
-  if (!is_positive(p.outer_diameter_m) || p.outer_diameter_m <= p.inner_diameter_m)
-    return "outer_diameter_m must be finite and above inner_diameter_m";
-  if (!is_positive(p.thickness_m)) return "thickness_m must be finite and above 0";
-  if (!is_positive(p.free_height_m) || p.free_height_m <= p.thickness_m)
-    return "free_height_m must be finite and above thickness_m, or there is no cone to flatten";
-  if (!is_positive(p.youngs_modulus_Pa)) return "youngs_modulus_Pa must be finite and above 0";
-  // Outside of this an isotropic solid would give energy away.
-  if (!(p.poisson_ratio > -1.0 && p.poisson_ratio < 0.5))
-    return "poisson_ratio must lie between -1 and 0.5, both excluded";
-  return nullptr;
-}
-
 // DS-3 without E
 double stiffness_per_modulus_m(const DiscDimensions& p) RT_SAFE {
   const double alpha = disc_shape_factor(p.outer_diameter_m / p.inner_diameter_m);
@@ -84,8 +70,21 @@ double flattening_at_m(const Disc& disc, DiscForm form, double force_N) RT_SAFE 
   return disc.travel_m * x;
 }
 
+void visit(ParameterVisitor& v, DiscDimensions& p) {
+  v.number("outer_diameter_m", {1e-6, 0.1}, "D of a disc", p.outer_diameter_m);
+  v.number("inner_diameter_m", {1e-6, 0.1}, "d of a disc", p.inner_diameter_m);
+  v.number("thickness_m", {1e-7, 0.1}, "l of a disc", p.thickness_m);
+  v.number("free_height_m", {1e-7, 0.1}, "H0 of a disc, above its thickness", p.free_height_m);
+  v.number("youngs_modulus_Pa", {1.0, 1e13}, "E of a disc", p.youngs_modulus_Pa);
+  v.number("poisson_ratio", {0.0, 0.495, kHard}, "mu of a disc", p.poisson_ratio);
+}
+
 Result<Disc> make_disc(const DiscDimensions& p) {
-  if (const char* wrong = parameter_error(p)) return Error{std::string("disc: ") + wrong};
+  if (auto wrong = check_meaning("disc", p)) return *wrong;
+  if (p.outer_diameter_m <= p.inner_diameter_m || p.free_height_m <= p.thickness_m)
+    return Error{
+        "disc: outer_diameter_m must be above inner_diameter_m, and free_height_m above "
+        "thickness_m, or there is no cone to flatten"};
   const double travel_m = p.free_height_m - p.thickness_m;  // DS-4
   Disc disc{.outer_diameter_m = p.outer_diameter_m,
             .stiffness_N_per_m = p.youngs_modulus_Pa * stiffness_per_modulus_m(p),  // DS-3

@@ -18,6 +18,7 @@
 
 #include <cstdint>
 
+#include "model/parameters.h"
 #include "model/result.h"
 #include "model/rt.h"
 
@@ -31,8 +32,9 @@ struct DiscDimensions {
   double thickness_m = 0.0;       // l, > 0
   double free_height_m = 0.0;     // H0, above l
   double youngs_modulus_Pa = 0.0;
-  double poisson_ratio = 0.0;  // -1 .. 0.5, both excluded
+  double poisson_ratio = 0.0;  // below 0.5
 };
+void visit(ParameterVisitor& v, DiscDimensions& p);
 
 /// Constants of a disc that a stack needs.
 struct Disc {

@@ -4,22 +4,22 @@
 #include <cmath>
 #include <string>
 
-#include "model/ranges.h"
-
 namespace tact::model::indent {
-namespace {
 
-const char* parameter_error(const LayerDelays& p) {
-  if (!is_positive(p.first_delay_s)) return "first_delay_s must be finite and above 0";
-  if (!is_positive(p.delay_ratio)) return "delay_ratio must be finite and above 0";
-  if (!is_positive(p.refresh_rate_Hz)) return "refresh_rate_Hz must be finite and above 0";
-  if (p.layers < 1 || p.layers > kMaxLayers) return "layers must lie between 1 and 64";
-  if (layer_budget(p) == 0)
-    return "first_delay_s is not below 1 / refresh_rate_Hz, so no layer may move: shorten it";
-  return nullptr;
+void visit(ParameterVisitor& v, LayerDelays& p) {
+  v.number("first_delay_s", {1e-9, 1.0}, "t1: layer i is late by t1 q^(i-1)", p.first_delay_s);
+  v.number("delay_growth_ratio", {0.1, 100.0}, "q", p.delay_ratio);
+  v.number("refresh_rate_Hz", {1.0, 1e5}, "no layer moves later than its period",
+           p.refresh_rate_Hz);
+  v.count("layers", {1, kMaxLayers}, "discs at most", p.layers);
 }
 
-}  // namespace
+void visit(ParameterVisitor& v, DiscStackParameters& p) {
+  v.choice("form", kDiscForms, "almen-laszlo: stiffness jumps at each layer; linear: one spring",
+           p.form);
+  visit(v, p.disc);
+  visit(v, p.delays);
+}
 
 double delay_through_layer_s(const LayerDelays& delays, std::size_t layer) {
   // DS-7  T_i = t1 (1 + q + .. + q^(i-1)): the sum, because its closed form is 0/0 at q = 1
@@ -45,8 +45,12 @@ Result<DiscStack> make_disc_stack(const DiscStackParameters& parameters) {
 
 Result<DiscStack> make_disc_stack(const Disc& disc, DiscForm form, const LayerDelays& delays) {
   const char* wrong = disc_error(disc, form);
-  if (wrong == nullptr) wrong = parameter_error(delays);
   if (wrong != nullptr) return Error{std::string("disc stack: ") + wrong};
+  if (auto bad = check_meaning("disc stack", delays)) return *bad;
+  if (layer_budget(delays) == 0)
+    return Error{
+        "disc stack: first_delay_s is not below 1 / refresh_rate_Hz, so no layer may move: shorten "
+        "it"};
   DiscStack stack;
   stack.disc_ = disc;
   stack.form_ = form;

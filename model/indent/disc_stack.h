@@ -17,6 +17,7 @@
 // a model, not computing time: choose them so that the working depth stays within i_max h0.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -37,12 +38,26 @@ struct LayerDelays {
   double refresh_rate_Hz = 0.0;  // > 0; no layer moves later than 1/rate
   std::size_t layers = 0;        // cap, 1 .. kMaxLayers
 };
+void visit(ParameterVisitor& v, LayerDelays& p);
+
+/// In the order of DiscForm.
+inline constexpr std::array kDiscForms{
+    Choice{"almen-laszlo", "the disc as it is: stiffness jumps at every layer"},
+    Choice{"linear", "its secant: one linear spring"},
+};
+static_assert(kDiscForms.size() == static_cast<std::size_t>(DiscForm::kLinear) + 1);
+
+/// Its name in a scene.
+constexpr std::string_view name_of(DiscForm form) {
+  return kDiscForms[static_cast<std::size_t>(form)].name;
+}
 
 struct DiscStackParameters {
   DiscDimensions disc;
   DiscForm form = DiscForm::kAlmenLaszlo;
   LayerDelays delays;
 };
+void visit(ParameterVisitor& v, DiscStackParameters& p);
 
 /// The stack in equilibrium.
 struct DiscStackState {

@@ -3,8 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
-#include <string>
+#include <optional>
 
 #include "model/ranges.h"
 
@@ -17,21 +18,20 @@ constexpr int kMaxHalvings = 30;
 // HX-28: the force settles with a few rings; this many stand for a sheet without end.
 constexpr std::size_t kEndlessRings = 255;
 
-const char* parameter_error(const HexSheetParameters& p) {
-  if (!is_positive(p.ring_pitch_m)) return "ring_pitch_m must be finite and above 0";
-  if (!is_not_negative(p.contact_stiffness_N_per_m))
-    return "contact_stiffness_N_per_m must be finite and not below 0";
-  if (!is_positive(p.body_stiffness_N_per_m))
-    return "body_stiffness_N_per_m must be finite and above 0, or the dent has no unique shape";
-  if (!is_not_negative(p.surface_stiffness_N_per_m))
-    return "surface_stiffness_N_per_m must be finite and not below 0";
-  if (!is_not_negative(p.tension_N)) return "tension_N must be finite and not below 0";
+constexpr std::array kWeights{
+    Choice{"node", "a body spring per node: an elastic foundation"},
+    Choice{"ring", "a body spring per ring"},
+};
+static_assert(kWeights.size() == static_cast<std::size_t>(HexWeight::kRing) + 1);
+
+std::optional<Error> parameter_error(const HexSheetParameters& p) {
+  if (auto wrong = check_meaning("hexagonal sheet", p)) return wrong;
   if (p.contact_stiffness_N_per_m + p.surface_stiffness_N_per_m + p.tension_N == 0.0)
-    return "contact_stiffness_N_per_m, surface_stiffness_N_per_m and tension_N are all 0, so "
-           "nothing resists the tool: raise one of them";
-  if (p.rings < 1 || p.rings > kMaxHexRings) return "rings must lie between 1 and 31";
-  if (!is_positive(p.working_depth_m)) return "working_depth_m must be finite and above 0";
-  return nullptr;
+    return Error{
+        "hexagonal sheet: contact_stiffness_N_per_m, surface_stiffness_N_per_m and tension_N are "
+        "all 0, so nothing resists the tool: raise one of them"};
+  if (p.rings == 0) return Error{"hexagonal sheet: rings = 0; allowed: 1 or more"};
+  return std::nullopt;
 }
 
 struct SpringForce {
@@ -169,9 +169,23 @@ double endless_force_N(const HexSheetParameters& p, std::size_t rings) {
 
 }  // namespace
 
+void visit(ParameterVisitor& v, HexSheetParameters& p) {
+  v.choice("weight", kWeights, "body springs: one per node, or one per ring", p.weight);
+  v.number("ring_pitch_m", {1e-4, 0.05}, "r, length of a surface spring", p.ring_pitch_m);
+  v.number("contact_stiffness_N_per_m", {0.0, 1e5}, "K_N0, body spring at the contact",
+           p.contact_stiffness_N_per_m);
+  v.number("body_stiffness_N_per_m", {0.01, 1e5}, "K_N, the other body springs",
+           p.body_stiffness_N_per_m);
+  v.number("surface_stiffness_N_per_m", {0.0, 1e6}, "K_T, springs along the surface",
+           p.surface_stiffness_N_per_m);
+  v.number("tension_N", {0.0, 100.0}, "T0, of the surface springs at rest", p.tension_N);
+  v.number("working_depth_m", kDepth_m, "press and pull up to here", p.working_depth_m);
+  v.count("rings", {0, kMaxHexRings}, "m; 0: the fewest that meet [tolerance]", p.rings,
+          Need::kOptional);
+}
+
 Result<HexSheet> make_hex_sheet(const HexSheetParameters& p) {
-  if (const char* wrong = parameter_error(p))
-    return Error{std::string("hexagonal sheet: ") + wrong};
+  if (auto wrong = parameter_error(p)) return *wrong;
   return HexSheet(p);
 }
 
@@ -206,8 +220,7 @@ Result<std::size_t> rings_for_tolerance(const HexSheetParameters& parameters,
                                         double tolerance_ratio) {
   HexSheetParameters p = parameters;
   p.rings = kMaxHexRings;
-  if (const char* wrong = parameter_error(p))
-    return Error{std::string("hexagonal sheet: ") + wrong};
+  if (auto wrong = parameter_error(p)) return *wrong;
   if (!is_positive(tolerance_ratio))
     return Error{"hexagonal sheet: the force tolerance must be finite and above 0"};
   const double endless_N = endless_force_N(p, kEndlessRings);

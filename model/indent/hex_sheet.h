@@ -28,6 +28,7 @@
 #include <cstdint>
 
 #include "model/law/law.h"
+#include "model/parameters.h"
 #include "model/result.h"
 
 namespace tact::model::indent {
@@ -49,6 +50,8 @@ struct HexSheetParameters {
   HexWeight weight = HexWeight::kNode;
   double working_depth_m = 0.0;  // > 0
 };
+/// With rings 0: as few as a tolerance allows (rings_for_tolerance).
+void visit(ParameterVisitor& v, HexSheetParameters& p);
 
 /// The sheet in equilibrium.
 struct HexSheetState {

@@ -4,9 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string>
-
-#include "model/ranges.h"
 
 namespace tact::model::indent {
 
@@ -35,14 +32,16 @@ std::size_t HuntCrossley::profile(double depth_m, std::span<double> ring_m) cons
   return count;
 }
 
+void visit(ParameterVisitor& v, HuntCrossleyParameters& p) {
+  v.number("force_N", {1e-4, 100.0}, "of a slow press at working_depth_m", p.force_N);
+  v.number("working_depth_m", kDepth_m, "press up to here", p.working_depth_m);
+  v.number("exponent", {1.0, 4.0, kHard}, "n: the force grows as depth^n", p.exponent);
+  v.number("dissipation_s_per_m", {0.0, 100.0}, "lambda: damping over force",
+           p.dissipation_s_per_m);
+}
+
 Result<HuntCrossley> make_hunt_crossley(const HuntCrossleyParameters& p) {
-  const char* wrong = nullptr;
-  if (!is_positive(p.force_N)) wrong = "force_N must be finite and above 0";
-  if (!is_positive(p.working_depth_m)) wrong = "working_depth_m must be finite and above 0";
-  if (!(p.exponent >= 1.0 && p.exponent <= 4.0)) wrong = "exponent must lie between 1 and 4";
-  if (!is_not_negative(p.dissipation_s_per_m))
-    wrong = "dissipation_s_per_m must be finite and 0 or more";
-  if (wrong != nullptr) return Error{std::string("hunt_crossley: ") + wrong};
+  if (auto wrong = check_meaning("hunt_crossley", p)) return *wrong;
   return HuntCrossley(p);
 }
 

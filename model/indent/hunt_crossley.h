@@ -16,6 +16,7 @@
 #pragma once
 
 #include "model/law/law.h"
+#include "model/parameters.h"
 #include "model/result.h"
 
 namespace tact::model::indent {
@@ -26,6 +27,7 @@ struct HuntCrossleyParameters {
   double exponent = 1.5;             // n, 1 .. 4
   double dissipation_s_per_m = 0.0;  // lambda, >= 0
 };
+void visit(ParameterVisitor& v, HuntCrossleyParameters& p);
 
 class HuntCrossley final : public law::Law {
  public:

@@ -2,9 +2,6 @@
 #include "model/indent/rhombus_chain.h"
 
 #include <cmath>
-#include <numbers>
-
-#include "model/ranges.h"
 
 namespace tact::model::indent {
 namespace {
@@ -13,26 +10,23 @@ namespace {
 // which need 60 for the last bit of a double.
 constexpr int kMaxChainSteps = 100;
 
-const char* parameter_error(const RhombusChainParameters& p) {
-  if (!is_positive(p.rod_length_m)) return "rod_length_m must be finite and above 0";
-  if (!(p.initial_angle_rad > 0.0 && p.initial_angle_rad < std::numbers::pi / 2.0))
-    return "initial_angle_rad must lie between 0 and pi/2, both excluded";
-  if (!is_positive(p.normal_stiffness_N_per_m))
-    return "normal_stiffness_N_per_m must be finite and above 0";
-  if (p.tangential_stiffness_N_per_m != 0.0 && !is_positive(p.tangential_stiffness_N_per_m))
-    return "tangential_stiffness_N_per_m must be finite and not below 0";
-  if (!is_positive(p.growth)) return "growth must be finite and above 0";
-  if (p.units < 1 || p.units > kMaxUnits) return "units must lie between 1 and 64";
-  const double largest =
-      p.tangential_stiffness_N_per_m * std::exp(static_cast<double>(p.units - 1) / p.growth);
-  if (!std::isfinite(largest)) return "growth is too small for so many units: exp overflows";
-  return nullptr;
-}
-
 }  // namespace
 
+void visit(ParameterVisitor& v, RhombusChainParameters& p) {
+  v.number("rod_length_m", {1e-4, 0.1}, "length a of each rod", p.rod_length_m);
+  v.number("initial_angle_rad", {0.05, 1.5, kHard}, "angle of the rods to the surface at rest",
+           p.initial_angle_rad);
+  v.number("normal_stiffness_N_per_m", {0.01, 1e5}, "kN, along the normal",
+           p.normal_stiffness_N_per_m);
+  v.number("tangential_stiffness_N_per_m", {0.0, 1e5}, "kT of the first unit, along the surface",
+           p.tangential_stiffness_N_per_m);
+  // Less, and the springs of many units would overflow.
+  v.number("growth", {0.1, 100.0, kHard}, "beta: unit i has kT exp((i - 1) / beta)", p.growth);
+  v.count("units", {1, kMaxUnits}, "rhombus units in series", p.units);
+}
+
 Result<RhombusChain> make_rhombus_chain(const RhombusChainParameters& p) {
-  if (const char* wrong = parameter_error(p)) return Error{std::string("rhombus chain: ") + wrong};
+  if (auto wrong = check_meaning("rhombus chain", p)) return *wrong;
   RhombusChain chain;
   chain.count_ = p.units;
   for (std::size_t i = 0; i < p.units; ++i) {

@@ -19,6 +19,7 @@
 #include <cstddef>
 
 #include "model/indent/rhombus_unit.h"
+#include "model/parameters.h"
 #include "model/result.h"
 
 namespace tact::model::indent {
@@ -33,6 +34,7 @@ struct RhombusChainParameters {
   double growth = 0.0;                        // beta, > 0
   std::size_t units = 0;                      // N, 1 .. kMaxUnits
 };
+void visit(ParameterVisitor& v, RhombusChainParameters& p);
 
 /// The chain in equilibrium.
 struct ChainState {

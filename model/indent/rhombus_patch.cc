@@ -57,11 +57,17 @@ std::size_t RhombusPatch::profile(double depth_m, std::span<double> ring_m) cons
   return count;
 }
 
+void visit(ParameterVisitor& v, RhombusParameters& p) {
+  visit(v, p.chain);
+  v.number("area_m2", {0.0, 0.01},
+           "of the surface under one chain; 0: one chain under the whole tip", p.area_m2,
+           Need::kOptional);
+}
+
 Result<RhombusPatch> make_rhombus_patch(const RhombusChain& chain,
                                         const RhombusPatchParameters& p) {
-  if (!is_positive(p.tip_radius_m))
-    return Error{"rhombus patch: the tip's radius must be finite and above 0"};
-  if (!is_positive(p.area_m2)) return Error{"rhombus patch: area_m2 must be finite and above 0"};
+  if (!is_positive(p.tip_radius_m) || !is_positive(p.area_m2))
+    return Error{"rhombus patch: the tip's radius and area_m2 must be finite and above 0"};
   return RhombusPatch(chain, p);
 }
 

@@ -30,6 +30,13 @@ struct RhombusPatchParameters {
   double area_m2 = 0.0;       // A, > 0
 };
 
+/// The section [rhombus] of a scene.
+struct RhombusParameters {
+  RhombusChainParameters chain;
+  double area_m2 = 0.0;  // A; 0: one chain under the whole tip
+};
+void visit(ParameterVisitor& v, RhombusParameters& p);
+
 class RhombusPatch final : public law::Law {
  public:
   law::LawResponse respond(double depth_m) const RT_SAFE override;

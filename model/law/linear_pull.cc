@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/law/linear_pull.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 namespace tact::model::law {
 
@@ -27,12 +24,13 @@ std::size_t LinearPull::profile(double depth_m, std::span<double> ring_m) const 
   return count;
 }
 
+void visit(ParameterVisitor& v, LinearPullParameters& p) {
+  v.number("stiffness_N_per_m", {0.01, 1e5}, "of a held site pulled outward", p.stiffness_N_per_m);
+  v.number("limit_m", kDepth_m, "beyond it the force stays", p.limit_m);
+}
+
 Result<LinearPull> make_linear_pull(const Law& press, const LinearPullParameters& pull) {
-  if (!(pull.stiffness_N_per_m > 0.0) || !std::isfinite(pull.stiffness_N_per_m) ||
-      !(pull.limit_m > 0.0) || !std::isfinite(pull.limit_m))
-    return Error{fmt::format(
-        "pull: stiffness_N_per_m = {:g} with limit_m = {:g}; allowed: both above 0 and finite",
-        pull.stiffness_N_per_m, pull.limit_m)};
+  if (auto wrong = check_meaning("pull", pull)) return *wrong;
   return LinearPull(press, pull);
 }
 

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "model/law/law.h"
+#include "model/parameters.h"
 #include "model/result.h"
 
 namespace tact::model::law {
@@ -17,6 +18,7 @@ struct LinearPullParameters {
   double stiffness_N_per_m = 0.0;  // k, > 0
   double limit_m = 0.0;            // largest pull, > 0; beyond, the force stays
 };
+void visit(ParameterVisitor& v, LinearPullParameters& p);
 
 class LinearPull final : public Law {
  public:

@@ -72,7 +72,6 @@ void Keys::number(std::string_view key, Range range, std::string_view meaning, d
   const std::string fallback = need == Need::kOptional ? fmt::format("{}", out) : "";
   const toml::node* node = take(key, range_text(range, key), meaning, fallback);
   if (node) store(*node, key, as_number(*node, range), out);
-  report(key, out, range, false, meaning);
 }
 
 void Keys::count(std::string_view key, CountRange range, std::string_view meaning, std::size_t& out,
@@ -80,8 +79,6 @@ void Keys::count(std::string_view key, CountRange range, std::string_view meanin
   const std::string fallback = need == Need::kOptional ? fmt::format("{}", out) : "";
   const toml::node* node = take(key, range_text(range), meaning, fallback);
   if (node) store(*node, key, as_count(*node, range), out);
-  report(key, static_cast<double>(out),
-         {static_cast<double>(range.low), static_cast<double>(range.high)}, true, meaning);
 }
 
 void Keys::vector(std::string_view key, Range each, std::string_view meaning, Vec3& out,
@@ -244,18 +241,6 @@ std::optional<std::size_t> Keys::match(std::string_view key, std::span<const Cho
   check(node, key,
         value ? fmt::format("= \"{}\" is unknown", on_one_line(*value)) : value.error().message);
   return std::nullopt;
-}
-
-void Keys::report(std::string_view key, double value, Range range, bool is_whole,
-                  std::string_view meaning) {
-  if (!visit_.document()) return;
-  visit_.add({.key = path_to(key),
-              .unit = std::string(unit_of_key(key)),
-              .value = value,
-              .low = range.low,
-              .high = range.high,
-              .is_whole = is_whole,
-              .meaning = std::string(meaning)});
 }
 
 /// Called after the key was taken, so what is allowed stands in the last known entry.

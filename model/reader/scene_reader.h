@@ -15,24 +15,15 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <vector>
 
+#include "model/parameters.h"
 #include "model/reader/scene_document.h"
-#include "model/reader/scene_number.h"
 #include "model/reader/scene_values.h"
 #include "model/result.h"
 #include "model/types.h"
 
 namespace tact::model::reader {
-
-/// One of the texts that a key may have.
-struct Choice {
-  std::string_view name, meaning;
-};
-
-/// An optional key that is absent leaves its variable as it was: that is the default.
-enum class Need { kRequired, kOptional };
 
 /// One line of the reference; a heading has no key.
 struct ReferenceRow {
@@ -50,9 +41,6 @@ class SceneVisit {
   const SceneDocument* document() const { return document_; }
   const std::vector<ReferenceRow>& rows() const { return rows_; }
   void add(ReferenceRow row) { rows_.push_back(std::move(row)); }
-  /// What was read, in the order of the visit.
-  const std::vector<SceneNumber>& numbers() const { return numbers_; }
-  void add(SceneNumber number) { numbers_.push_back(std::move(number)); }
   void note(ProblemKind kind, const TextPosition& position, const std::string& message);
   /// The problem to tell, if there is one.
   std::optional<Error> problem() const;
@@ -65,12 +53,11 @@ class SceneVisit {
   };
   const SceneDocument* document_;
   std::vector<ReferenceRow> rows_;
-  std::vector<SceneNumber> numbers_;
   std::vector<Problem> problems_;
 };
 
 /// The keys of one section, while it is being visited.
-class Keys {
+class Keys final : public ParameterVisitor {
  public:
   using Inside = std::function<void(Keys&)>;
 
@@ -78,12 +65,13 @@ class Keys {
   static void visit_root(SceneVisit& visit, const Inside& inside);
 
   void text(std::string_view key, std::string_view meaning, std::string& out,
-            Need need = Need::kRequired);
-  void flag(std::string_view key, std::string_view meaning, bool& out, Need need = Need::kRequired);
+            Need need = Need::kRequired) override;
+  void flag(std::string_view key, std::string_view meaning, bool& out,
+            Need need = Need::kRequired) override;
   void number(std::string_view key, Range range, std::string_view meaning, double& out,
-              Need need = Need::kRequired);
+              Need need = Need::kRequired) override;
   void count(std::string_view key, CountRange range, std::string_view meaning, std::size_t& out,
-             Need need = Need::kRequired);
+             Need need = Need::kRequired) override;
   void vector(std::string_view key, Range each, std::string_view meaning, Vec3& out,
               Need need = Need::kRequired);
   void per_arm(std::string_view key, Range each, std::string_view meaning,
@@ -94,18 +82,10 @@ class Keys {
   /// A list of [number, x, y, z]: points with a number each.
   void points(std::string_view key, Range each, std::string_view meaning,
               std::vector<std::array<double, 4>>& out);
-  /// `out` becomes the index of the choice. Many choices get a row each in the reference.
+  using ParameterVisitor::choice;
+  /// Many choices get a row each in the reference.
   void choice(std::string_view key, std::span<const Choice> choices, std::string_view meaning,
-              std::size_t& out, Need need = Need::kRequired);
-  /// The same for an enumeration, or a flag, whose values are in the order of the choices.
-  template <typename T>
-    requires(std::is_enum_v<T> || std::is_same_v<T, bool>)
-  void choice(std::string_view key, std::span<const Choice> choices, std::string_view meaning,
-              T& out, Need need = Need::kRequired) {
-    auto index = static_cast<std::size_t>(out);
-    choice(key, choices, meaning, index, need);
-    out = static_cast<T>(index);
-  }
+              std::size_t& out, Need need = Need::kRequired) override;
 
   /// [key]; true when it is there.
   bool section(std::string_view key, std::string_view meaning, const Inside& inside,
@@ -151,8 +131,6 @@ class Keys {
   template <typename T>
   void store(const toml::node& node, std::string_view key, Result<T> value, T& out);
   void check(const toml::node& node, std::string_view key, std::string_view problem);
-  void report(std::string_view key, double value, Range range, bool is_whole,
-              std::string_view meaning);
   void finish();
   std::string unknown_message(std::string_view key) const;
   std::string path_to(std::string_view key) const;

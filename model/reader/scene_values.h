@@ -14,18 +14,11 @@
 #include <string_view>
 #include <vector>
 
+#include "model/parameters.h"
 #include "model/result.h"
 #include "model/types.h"
 
 namespace tact::model::reader {
-
-/// Allowed values, both ends included.
-struct Range {
-  double low = 0.0, high = 0.0;
-};
-struct CountRange {
-  std::size_t low = 0, high = 0;
-};
 
 /// "0 .. 0.05 m" for a key that ends in _m.
 std::string range_text(Range range, std::string_view key);

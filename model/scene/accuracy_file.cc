@@ -93,10 +93,10 @@ std::string hash_of_forces(const Scene& scene, const TissueLaw& law) {
 
 }  // namespace
 
-Result<std::string> hash_of_linear_forces(const Scene& scene, LawKind kind) {
+Result<std::string> hash_of_linear_forces(const Scene& scene, std::string_view law_name) {
   Scene linear = scene;
   linear.compliance.large_strain = false;
-  const auto law = make_tissue_law(linear, kind);
+  const auto law = make_tissue_law(linear, law_name);
   if (!law) return law.error();
   return hash_of_forces(linear, **law);
 }
@@ -123,7 +123,7 @@ std::string accuracy_text(const std::vector<Accuracy>& laws) {
 }
 
 Result<Accuracy> read_accuracy(const Scene& scene) {
-  const std::string path = accuracy_path(scene), name(name_of(scene.law));
+  const std::string path = accuracy_path(scene), &name = scene.law;
   if (!scene.elastic)
     return Error{fmt::format("{} has no [elastic], so there is nothing to solve and compare with",
                              scene.path)};

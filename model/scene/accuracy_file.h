@@ -34,7 +34,7 @@ bool keeps(const Accuracy& accuracy, const ToleranceSettings& tolerance);
 
 /// Of what the law answers at places and depths spread over the organ, of how they couple, and of
 /// the tool's spheres: 16 hex digits. As a linear reference judges it: compliance.large_strain off.
-Result<std::string> hash_of_linear_forces(const Scene& scene, LawKind kind);
+Result<std::string> hash_of_linear_forces(const Scene& scene, std::string_view law_name);
 
 /// "model/scenes/liver.accuracy"
 std::string accuracy_path(const Scene& scene);

@@ -1,58 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
-// law_settings.h - which law a scene chooses, and the numbers of every law that it describes.
+// law_settings.h - the numbers of every law that a scene describes.
 //
 // A scene may describe several laws: the chosen one is felt, the others are there to be compared
-// (tact-lab chart) or to be chosen by tact-lab plan (law = "auto").
+// (tact-lab chart) or to be chosen by tact-lab plan (law = "auto"). It keeps their parameters by
+// type, so it includes no law; laws.h lists them.
 #pragma once
 
-#include <array>
-#include <optional>
+#include <any>
+#include <cstddef>
+#include <map>
 #include <string>
 #include <string_view>
-#include <vector>
+#include <typeindex>
 
-#include "model/indent/disc_stack.h"
-#include "model/indent/hex_sheet.h"
-#include "model/indent/hunt_crossley.h"
-#include "model/indent/rhombus_chain.h"
-#include "model/law/linear_pull.h"
-#include "model/law/relaxation.h"
-#include "model/springs/spring_patch.h"
+#include "model/parameters.h"
 #include "model/types.h"
 
 namespace tact::model::scene {
 
-enum class LawKind {
-  kRhombus,
-  kDiscStack,
-  kHexSheet,
-  kHuntCrossley,
-  kSpringPatch,
-  kCompliance,
-  kAuto,
-};
+/// The least law that meets [tolerance], by tact-lab plan.
+inline constexpr std::string_view kAutoLaw = "auto";
 
-struct LawName {
-  LawKind kind;
-  std::string_view name, meaning;
-};
+class LawSettings {
+ public:
+  /// The parameters of this type, made where they are not there yet.
+  template <typename Parameters>
+  Parameters& of() {
+    std::any& one = by_type_[typeid(Parameters)];
+    if (!one.has_value()) one = Parameters{};
+    return *std::any_cast<Parameters>(&one);
+  }
+  template <typename Parameters>
+  const Parameters& of() const {
+    static const Parameters kDefault{};
+    const auto found = by_type_.find(typeid(Parameters));
+    return found == by_type_.end() ? kDefault : *std::any_cast<Parameters>(&found->second);
+  }
 
-inline constexpr std::array kLawNames{
-    LawName{LawKind::kRhombus, "rhombus", "energy-consistent spring chain"},
-    LawName{LawKind::kDiscStack, "disc_stack", "discs that go flat one after the other"},
-    LawName{LawKind::kHexSheet, "hex_sheet", "hexagonal skin on body springs, energy form"},
-    LawName{LawKind::kHuntCrossley, "hunt_crossley", "power law that resists speed as well"},
-    LawName{LawKind::kSpringPatch, "spring_patch", "masses and springs near the contact"},
-    LawName{LawKind::kCompliance, "compliance", "linear elastic organ, condensed offline"},
-    LawName{LawKind::kAuto, "auto", "the least law that meets [tolerance], by tact-lab plan"},
+ private:
+  std::map<std::type_index, std::any> by_type_;
 };
-
-/// Its name in a scene.
-constexpr std::string_view name_of(LawKind kind) {
-  for (const LawName& law : kLawNames)
-    if (law.kind == kind) return law.name;
-  return "";
-}
 
 /// The organ as a linear elastic body; the box is in the mesh's own frame, before organ.position_m.
 struct ElasticSettings {
@@ -60,6 +47,8 @@ struct ElasticSettings {
   double poisson_ratio = 0.0;
   Vec3 fixed_min_m{}, fixed_max_m{};  // triangles with all corners in this box are held
 };
+/// Its numbers, without the box.
+void visit(ParameterVisitor& v, ElasticSettings& elastic);
 
 struct ComplianceSettings {
   std::string map_path;          // absolute; written by tact-lab condense

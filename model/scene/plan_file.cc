@@ -9,7 +9,10 @@
 #include <cstdlib>
 #include <filesystem>
 #include <sstream>
+#include <string_view>
+#include <utility>
 
+#include "model/indent/disc_stack.h"
 #include "model/io/file_writer.h"
 #include "model/io/input_file.h"
 #include "model/io/seal.h"
@@ -20,48 +23,28 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The counts of LawSizes by their names in the file and in the scene.
-struct Count {
-  const char* key;
-  std::size_t LawSizes::* value;
-  const char* word;  // for people
-  const char* scene_key;
-};
-constexpr std::array kCounts{
-    Count{"table_knots", &LawSizes::table_knots, "knots", "table_knots"},
-    Count{"layers", &LawSizes::layers, "layers", "disc_stack.layers"},
-    Count{"rings", &LawSizes::rings, "rings", "hex_sheet.rings"},
-    Count{"nodes", &LawSizes::nodes, "nodes", "spring_patch.nodes"},
-    Count{"curves", &LawSizes::curves, "curves", "compliance.curves"},
-};
-
-const char* name_of(indent::DiscForm form) {
-  return form == indent::DiscForm::kLinear ? "linear" : "almen-laszlo";
+/// The sizes by their keys, in a plan and in a scene; the second is empty where the law has none.
+std::array<std::pair<std::string_view, std::size_t LawSizes::*>, 2> keys_of(std::string_view law) {
+  const LawRow* row = find_law(law);
+  return {{{"table_knots", &LawSizes::table_knots}, {row ? row->size_key : "", &LawSizes::size}}};
 }
 
 /// Error: what is missing or has no meaning.
 Result<Plan> plan_of(const toml::table& root) {
   Plan plan;
   const std::string law = root["law"].value_or<std::string>("");
-  const auto known = std::find_if(kLawNames.begin(), kLawNames.end(),
-                                  [&](const LawName& name) { return name.name == law; });
-  if (known == kLawNames.end() || known->kind == LawKind::kAuto)
-    return Error{fmt::format("law = \"{}\" is no law", law)};
-  plan.sizes.law = known->kind;
-  for (const Count& count : kCounts) {
-    const auto number = root[count.key].value_or<std::int64_t>(0);
+  if (find_law(law) == nullptr) return Error{fmt::format("law = \"{}\" is no law", law)};
+  plan.sizes.law = law;
+  for (const auto& [key, size] : keys_of(law)) {
+    const auto number = root[key].value_or<std::int64_t>(0);
     // Chosen, above every size that a scene takes: the scene's own ranges come later.
-    if (number < 0 || number > 100000) return Error{fmt::format("{} is out of range", count.key)};
-    plan.sizes.*count.value = static_cast<std::size_t>(number);
+    if (number < 0 || number > 100000) return Error{fmt::format("{} is out of range", key)};
+    plan.sizes.*size = static_cast<std::size_t>(number);
   }
-  if (const auto form = root["disc_form"].value<std::string>()) {
-    if (*form != name_of(indent::DiscForm::kLinear) &&
-        *form != name_of(indent::DiscForm::kAlmenLaszlo))
-      return Error{fmt::format("disc_form = \"{}\" is no form", *form)};
-    plan.sizes.disc_form = *form == name_of(indent::DiscForm::kLinear)
-                               ? indent::DiscForm::kLinear
-                               : indent::DiscForm::kAlmenLaszlo;
-  }
+  const std::string form = plan.sizes.disc_form = root["disc_form"].value_or<std::string>("");
+  if (!form.empty() &&
+      std::ranges::find(indent::kDiscForms, form, &Choice::name) == indent::kDiscForms.end())
+    return Error{fmt::format("disc_form = \"{}\" is no form", form)};
   const auto measured = [&](const char* key, double& value) {
     value = root[key].value_or<double>(-1.0);
     return std::isfinite(value) && value >= 0.0;
@@ -90,32 +73,31 @@ Result<Plan> parse_plan(const std::string& path) {
 }  // namespace
 
 std::string text_of(const LawSizes& sizes) {
-  std::string out(name_of(sizes.law));
-  if (sizes.disc_form) out += fmt::format(" {}", name_of(*sizes.disc_form));
-  for (const Count& count : kCounts)
-    if (sizes.*count.value != 0) out += fmt::format(" {} {}", sizes.*count.value, count.word);
+  std::string out = sizes.law;
+  if (!sizes.disc_form.empty()) out += " " + sizes.disc_form;
+  for (const auto& [key, size] : keys_of(sizes.law))
+    if (sizes.*size != 0)
+      out += fmt::format(" {} {}", sizes.*size, size == &LawSizes::size ? key : "knots");
   return out;
 }
 
-void use_sizes(const LawSizes& sizes, Scene& scene) {
-  const auto use = [](std::size_t from, std::size_t& to) {
-    if (from != 0) to = from;
-  };
+Scene sized(Scene scene, const LawSizes& sizes) {
   scene.law = sizes.law;
-  use(sizes.table_knots, scene.table_knots);
-  use(sizes.layers, scene.disc_stack.delays.layers);
-  use(sizes.rings, scene.hex_sheet.rings);
-  use(sizes.nodes, scene.spring_patch.nodes);
-  use(sizes.curves, scene.compliance.curves);
-  if (sizes.disc_form) scene.disc_stack.form = *sizes.disc_form;
+  if (sizes.table_knots != 0) scene.table_knots = sizes.table_knots;
+  if (const LawRow* law = find_law(sizes.law); law != nullptr && sizes.size != 0)
+    *parameters_of(*law, scene).find(law->size_key).count = sizes.size;
+  for (const auto form : {indent::DiscForm::kAlmenLaszlo, indent::DiscForm::kLinear})
+    if (sizes.disc_form == name_of(form)) scene.laws.of<indent::DiscStackParameters>().form = form;
+  return scene;
 }
 
 std::vector<std::string> overrides_of(const LawSizes& sizes) {
-  std::vector<std::string> out{fmt::format("law={}", name_of(sizes.law))};
-  if (sizes.disc_form) out.push_back(fmt::format("disc_stack.form={}", name_of(*sizes.disc_form)));
-  for (const Count& count : kCounts)
-    if (sizes.*count.value != 0)
-      out.push_back(fmt::format("{}={}", count.scene_key, sizes.*count.value));
+  std::vector<std::string> out{"law=" + sizes.law};
+  if (!sizes.disc_form.empty()) out.push_back("disc_stack.form=" + sizes.disc_form);
+  for (const auto& [key, size] : keys_of(sizes.law))
+    if (sizes.*size != 0)
+      out.push_back(
+          fmt::format("{}{}={}", size == &LawSizes::size ? sizes.law + "." : "", key, sizes.*size));
   return out;
 }
 
@@ -166,12 +148,11 @@ Result<std::string> plan_path(const std::string& scene_hash) {
 
 std::string plan_text(const Plan& plan) {
   std::string out = "# What tact-lab plan chose; tactd reads it for a scene with law = \"auto\".\n";
-  out += fmt::format("law = \"{}\"\n", name_of(plan.sizes.law));
-  if (plan.sizes.disc_form)
-    out += fmt::format("disc_form = \"{}\"\n", name_of(*plan.sizes.disc_form));
-  for (const Count& count : kCounts)
-    if (plan.sizes.*count.value != 0)
-      out += fmt::format("{} = {}\n", count.key, plan.sizes.*count.value);
+  out += fmt::format("law = \"{}\"\n", plan.sizes.law);
+  if (!plan.sizes.disc_form.empty())
+    out += fmt::format("disc_form = \"{}\"\n", plan.sizes.disc_form);
+  for (const auto& [key, size] : keys_of(plan.sizes.law))
+    if (plan.sizes.*size != 0) out += fmt::format("{} = {}\n", key, plan.sizes.*size);
   out += fmt::format(
       "tick_p999_us = {:.6g}\nforce_error_ratio = {:.6g}\nshape_error_ratio = {:.6g}\n"
       "machine = \"{}\"\nscene_hash = \"{}\"\n",
@@ -203,7 +184,7 @@ Result<Plan> read_plan(const std::string& path, const Scene& scene,
   if (plan->machine != machine_name())
     return broken(fmt::format("measured on another machine, {}", plan->machine));
   if (!scene.describes(plan->sizes.law))
-    return broken(fmt::format("the scene has no law {}", name_of(plan->sizes.law)));
+    return broken(fmt::format("the scene has no law {}", plan->sizes.law));
   return plan;
 }
 

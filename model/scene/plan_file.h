@@ -7,30 +7,19 @@
 // Set-up code only.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "model/result.h"
+#include "model/scene/laws.h"
 #include "model/scene/scene.h"
 
 namespace tact::model::scene {
 
-/// A law with what decides its cost; 0 and nothing leave the scene's own number.
-struct LawSizes {
-  LawKind law = LawKind::kAuto;
-  std::size_t table_knots = 0;                  // of every law that is read from a table
-  std::size_t layers = 0;                       // disc_stack
-  std::optional<indent::DiscForm> disc_form{};  // disc_stack
-  std::size_t rings = 0;                        // hex_sheet
-  std::size_t nodes = 0;                        // spring_patch
-  std::size_t curves = 0;                       // compliance
-};
-
 /// "rhombus, 65 knots"; a law alone where the sizes are the scene's.
 std::string text_of(const LawSizes& sizes);
 /// The scene with this law and these sizes.
-void use_sizes(const LawSizes& sizes, Scene& scene);
+Scene sized(Scene scene, const LawSizes& sizes);
 /// The same as --set values, so that a run can be named and repeated without the plan.
 std::vector<std::string> overrides_of(const LawSizes& sizes);
 /// " --set KEY=VALUE" for each, quoted for a shell where it must be.

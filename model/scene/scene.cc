@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <iterator>
 
 #include "model/mesh/obj.h"
 #include "model/mesh/turn.h"
@@ -70,7 +69,7 @@ void put_origin_at(const Vec3& handle_m, Scene& scene) {
 
 /// Would another map give other forces?
 bool needs_compliance(const Scene& scene) {
-  return scene.varies_by_place || scene.law == LawKind::kCompliance || scene.law == LawKind::kAuto;
+  return scene.varies_by_place || scene.law == "compliance" || scene.law == kAutoLaw;
 }
 
 /// A map is of one organ: on another mesh the law is felt as it is at every place. A map that
@@ -102,10 +101,6 @@ std::string whole_hash(const std::string& text_hash, const Scene& scene) {
   return hash.hex();
 }
 
-void visit_all(reader::SceneVisit& visit, SceneText& text) {
-  Keys::visit_root(visit, [&](Keys& root) { visit_scene(root, text); });
-}
-
 /// The reference, indented as a scene is; `margin` is that of the row before.
 std::string reference_line(const reader::ReferenceRow& row, std::string& margin) {
   const std::string times = row.fallback.empty() ? "" : "; " + row.fallback;
@@ -128,15 +123,13 @@ Result<Scene> load_scene(const std::string& path, const std::vector<std::string>
   if (!document) return document.error();
   SceneText text;
   reader::SceneVisit visit(&*document);
-  visit_all(visit, text);
+  Keys::visit_root(visit, [&](Keys& root) { visit_scene(root, text); });
   if (auto problem = visit.problem()) return *problem;
 
   Scene& scene = text.scene;
   scene.path = path;
-  if (!text.compliance_map.file.empty())
-    scene.compliance.map_path = absolute_path(path, text.compliance_map.file);
-  std::string& firmware = scene.device.falcon.firmware_path;
-  if (!firmware.empty()) firmware = absolute_path(path, firmware);
+  for (std::string* file : {&scene.compliance.map_path, &scene.device.falcon.firmware_path})
+    if (!file->empty()) *file = absolute_path(path, *file);
   scene.hand_site_m = text.script.site_m;
   scene.hand_inward = normalized(text.script.inward);
   // Strokes before meshes: what is wrong in the text is told before files are read that take long.
@@ -149,30 +142,14 @@ Result<Scene> load_scene(const std::string& path, const std::vector<std::string>
   return std::move(scene);
 }
 
-bool Scene::describes(LawKind kind) const {
-  return std::find(described.begin(), described.end(), kind) != described.end();
-}
-
-Result<std::vector<reader::SceneNumber>> law_numbers(const Scene& scene,
-                                                     const std::vector<std::string>& overrides) {
-  const Result<reader::SceneDocument> document = reader::load_scene_document(scene.path, overrides);
-  if (!document) return document.error();
-  SceneText text;
-  reader::SceneVisit visit(&*document);
-  visit_all(visit, text);
-  if (auto problem = visit.problem()) return *problem;
-  const std::string section = std::string(name_of(scene.law)) + ".";
-  std::vector<reader::SceneNumber> out;
-  std::ranges::copy_if(
-      visit.numbers(), std::back_inserter(out),
-      [&section](const reader::SceneNumber& number) { return number.key.starts_with(section); });
-  return out;
+bool Scene::describes(std::string_view law_name) const {
+  return std::ranges::find(described, law_name) != described.end();
 }
 
 std::string scene_reference() {
   SceneText text;
   reader::SceneVisit visit(nullptr);
-  visit_all(visit, text);
+  Keys::visit_root(visit, [&](Keys& root) { visit_scene(root, text); });
   std::string reference =
       "A scene is a TOML file. Numbers are SI; a key ends in its unit. The columns are key, "
       "allowed,\n"

@@ -7,16 +7,18 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "model/contact/blade.h"
 #include "model/contact/contact_settings.h"
 #include "model/device_settings.h"
 #include "model/hand_path.h"
+#include "model/law/linear_pull.h"
+#include "model/law/relaxation.h"
 #include "model/limits.h"
 #include "model/mesh/mesh.h"
 #include "model/mesh/rgb.h"
-#include "model/reader/scene_number.h"
 #include "model/result.h"
 #include "model/scene/law_settings.h"
 
@@ -47,14 +49,9 @@ struct Scene {
   std::string path;  // of the TOML file
   std::string name;
   double rate_Hz = 0.0;
-  LawKind law = LawKind::kRhombus;
-  std::vector<LawKind> described;  // laws that have a section
-  indent::RhombusChainParameters rhombus;
-  double rhombus_area_m2 = 0.0;  // of the surface under one chain; 0: one chain under the whole tip
-  indent::DiscStackParameters disc_stack;
-  indent::HexSheetParameters hex_sheet;  // rings 0: as few as the tolerance allows
-  indent::HuntCrossleyParameters hunt_crossley;
-  springs::SpringPatchParameters spring_patch;
+  std::string law = "rhombus";         // a name of laws.h, or kAutoLaw
+  std::vector<std::string> described;  // laws that have a section
+  LawSettings laws;
   ComplianceSettings compliance;
   std::size_t table_knots = 65;
   bool varies_by_place = false;  // by [compliance]: closed-form laws in series, anchors
@@ -80,17 +77,11 @@ struct Scene {
   std::string note;              // for people: what of the scene is not felt, and why; or empty
 
   /// Does the scene hold the numbers of this law?
-  bool describes(LawKind kind) const;
+  bool describes(std::string_view law_name) const;
 };
 
 /// Read a scene and its meshes. `overrides` are "key.path=value" as TOML writes values.
 Result<Scene> load_scene(const std::string& path, const std::vector<std::string>& overrides);
-
-/// The numbers of the law in use, with the keys, units and ranges of the scene's reader: what
-/// a person may change, to feel it. What a law or a device can bear is asked where a run is opened.
-/// `scene` was loaded with the same overrides.
-Result<std::vector<reader::SceneNumber>> law_numbers(const Scene& scene,
-                                                     const std::vector<std::string>& overrides);
 
 /// Every key with unit, range, default or "required", and meaning: a page for people.
 std::string scene_reference();

@@ -12,8 +12,7 @@ namespace tact::model::scene {
 namespace {
 
 /// A whole number that may be negative.
-void visit_whole(Keys& k, std::string_view key, reader::Range range, const char* meaning,
-                 int& out) {
+void visit_whole(Keys& k, std::string_view key, Range range, const char* meaning, int& out) {
   // Keys::count knows no number below zero; a number that must be whole is asked afterwards.
   double value = out;
   k.number(key, range, meaning, value, kOptional);
@@ -109,13 +108,13 @@ void visit_can(Keys& k, DeviceSettings& device) {
   // Each homing needs one of the two; describing has no homing yet.
   const bool on_jig = can.homing == Homing::kJig;
   k.per_arm("zero_turns", {-1e6, 1e6}, "of the motors, arms at 0 rad; the jig finds it",
-            can.zero_turns, on_jig ? kOptional : reader::Need::kRequired);
+            can.zero_turns, on_jig ? kOptional : Need::kRequired);
   k.per_arm("direction", {-1.0, 1.0}, "1 or -1: sign of a motor's turn for a rising arm",
             can.direction);
   if (std::ranges::any_of(can.direction, [](double sign) { return std::abs(sign) != 1.0; }))
     k.refuse({"direction"}, "device.can.direction takes 1 or -1 for each arm");
   k.per_arm("home_rad", {-3.2, 3.2}, "of the arms on the jig; \"jig\" alone needs it", can.home_rad,
-            on_jig ? reader::Need::kRequired : kOptional);
+            on_jig ? Need::kRequired : kOptional);
   k.number("max_velocity_turns_per_s", {0.0, 1000.0}, "of an ODrive's motor; 0: the drive's own",
            can.max_velocity_turns_per_s, kOptional);
   k.number("max_current_A", {0.0, 200.0}, "of an ODrive's motor; 0: the drive's own",
@@ -222,8 +221,8 @@ void visit_device(Keys& k, DeviceSettings& out) {
   // Without a kind, as where the reference is written, the simulated device is the one to show.
   const bool simulated = out.kind.empty() || out.kind == "sim-delta";
   k.section("sim", "imperfections of the simulated device", visit_sim, out.sim,
-            simulated ? reader::Need::kRequired : kOptional);
-  const reader::Need on_can = out.is_on_can() ? reader::Need::kRequired : kOptional;
+            simulated ? Need::kRequired : kOptional);
+  const Need on_can = out.is_on_can() ? Need::kRequired : kOptional;
   k.section("delta", "a delta on CAN: yours, as you measure it", visit_delta, out.delta, on_can);
   k.section("can", "its drives, can-odrive, can-cia402 or can-moteus", visit_can, out, on_can);
   k.section("falcon", "a Novint Falcon", visit_falcon, out.falcon, kOptional);

@@ -13,7 +13,7 @@ namespace {
 // Chosen: a slip of the pen, not a long session, is what it keeps out.
 constexpr std::size_t kMaxStrokes = 64;
 // A scanner's origin may lie anywhere.
-constexpr reader::Range kAnywhere_m{-1e6, 1e6};
+constexpr Range kAnywhere_m{-1e6, 1e6};
 
 void visit_mesh(Keys& k, MeshText& mesh) {
   // For the message that says which line names a file that is not there.
@@ -40,11 +40,11 @@ void visit_tool(Keys& k, SceneText& out) {
   k.section("blade", "a cutting edge, for law = \"spring_patch\"", visit_blade,
             out.scene.tool.blade);
   // Known by now: visit_scene visits the laws before the tool.
-  const LawKind law = out.scene.law;
-  if (out.scene.tool.blade && law != LawKind::kSpringPatch && law != LawKind::kAuto)
+  const std::string& law = out.scene.law;
+  if (out.scene.tool.blade && law != "spring_patch" && law != kAutoLaw)
     k.refuse({"blade"}, fmt::format("tool.blade cuts nothing with law = \"{}\"; write law = "
                                     "\"spring_patch\" or leave [tool.blade] out",
-                                    name_of(law)));
+                                    law));
 }
 
 // The page has a picture of each: host/web/src/scene/material.ts.
@@ -131,7 +131,7 @@ void visit_scene(Keys& k, SceneText& out) {
   k.text("name", "of the scene, shown by the viewer", scene.name);
   k.number("rate_Hz", {100.0, 10000.0}, "ticks of the control loop", scene.rate_Hz);
   // In the order of the reference page. rate_Hz and law come first: limits and tool ask for them.
-  visit_laws(k, out);
+  visit_laws(k, scene);
   visit_law_options(k, scene);
   visit_truth(k, scene);
   k.section("organ", "what is touched", [&](Keys& organ) {

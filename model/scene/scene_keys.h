@@ -3,8 +3,8 @@
 //
 // To add a key, add one line there: its name ending in its unit, the allowed range, what it means
 // and the variable it fills. The reader, its errors and the reference page follow from that line;
-// a test asks for the key in liver.toml. Ranges keep out slips of the pen; what a law itself can
-// bear is checked where the law is made. Set-up code only.
+// a test asks for the key in a shipped scene. The keys of a law stand in visit() of its header,
+// which the rows of laws.cc name. Set-up code only.
 #pragma once
 
 #include <string>
@@ -15,20 +15,13 @@
 
 namespace tact::model::scene {
 
-using reader::Choice;
+using Need::kOptional;
 using reader::Keys;
-using reader::Need::kOptional;
 
 /// A mesh as the scene names it.
 struct MeshText {
   std::string file;  // relative to the scene file
   double unit_m = 0.001;
-  reader::TextPosition position;
-};
-
-/// Another file as the scene names it.
-struct FileText {
-  std::string file;  // relative to the scene file
   reader::TextPosition position;
 };
 
@@ -39,7 +32,6 @@ struct SceneText {
   reader::TextPosition vertex_colors_position;
   Vec3 organ_orientation_deg;  // axis times angle, about the mesh's origin
   MeshText tool_mesh;
-  FileText compliance_map;
   HandScript script;
 };
 
@@ -49,7 +41,7 @@ void visit_scene(reader::Keys& root, SceneText& out);
 // Of that, in scene_device.cc:
 void visit_device(reader::Keys& keys, DeviceSettings& out);
 // In scene_laws.cc. `law` and the sections of all laws; the chosen one must be there.
-void visit_laws(reader::Keys& root, SceneText& out);
+void visit_laws(reader::Keys& root, Scene& scene);
 /// [pull] and [relaxation], of any law.
 void visit_law_options(reader::Keys& root, Scene& scene);
 /// [elastic], [[reference_site]] and [tolerance]: what reference, fit and plan of tact-lab ask.

@@ -18,29 +18,28 @@ namespace {
 
 constexpr std::array kActions{
     // in the order of Action
-    reader::Choice{"press", "move straight to depth_m below the touched point"},
-    reader::Choice{"hold", "stay"},
-    reader::Choice{"slide", "move along by offset_m"},
-    reader::Choice{"release",
-                   "open the grip in the first quarter of the time, then return to home_m"},
-    reader::Choice{"grip", "close the grip"},
-    reader::Choice{"pull", "move outward to height_m above the surface, with the grip closed"},
-    reader::Choice{"tear", "pull so far that the tear force is passed and the tissue lets go"},
-    reader::Choice{"turn", "turn the tool; a release turns it back"},
+    Choice{"press", "move straight to depth_m below the touched point"},
+    Choice{"hold", "stay"},
+    Choice{"slide", "move along by offset_m"},
+    Choice{"release", "open the grip in the first quarter of the time, then return to home_m"},
+    Choice{"grip", "close the grip"},
+    Choice{"pull", "move outward to height_m above the surface, with the grip closed"},
+    Choice{"tear", "pull so far that the tear force is passed and the tissue lets go"},
+    Choice{"turn", "turn the tool; a release turns it back"},
 };
 static_assert(kActions.size() == static_cast<std::size_t>(Action::kTurn) + 1);
 
 constexpr std::array kPivots{
-    reader::Choice{"tip", "the middle of the probe spheres"},
-    reader::Choice{"handle", "tool.handle_m"},
+    Choice{"tip", "the middle of the probe spheres"},
+    Choice{"handle", "tool.handle_m"},
 };
 
 // A grip that opened on the way home would pull at the tissue before it lets go.
 constexpr double kOpeningRatio = 0.25;
 
-constexpr reader::Range kDurations_s{0.05, 60.0};
-constexpr reader::Range kHeights_m{0.0, 0.1};
-constexpr reader::Range kAngles_deg{-20.0, 20.0};  // of the simulated wrist (hal/sim/sim_wrist.h)
+constexpr Range kDurations_s{0.05, 60.0};
+constexpr Range kHeights_m{0.0, 0.1};
+constexpr Range kAngles_deg{-20.0, 20.0};  // of the simulated wrist (hal/sim/sim_wrist.h)
 
 /// Error: the hand cannot be there.
 std::optional<Error> check_place(const Vec3& p, const Limits& limits) {
@@ -147,8 +146,7 @@ void visit_turn(reader::Keys& keys, Stroke& stroke) {
   keys.number("angle_deg", kAngles_deg, "about it, from how the tool rests; 0 turns it back",
               angle_deg);
   stroke.angle_rad = angle_deg * std::numbers::pi / 180.0;
-  keys.choice("about", kPivots, "what stays where it is", stroke.about_handle,
-              reader::Need::kOptional);
+  keys.choice("about", kPivots, "what stays where it is", stroke.about_handle, Need::kOptional);
 }
 
 }  // namespace

@@ -5,92 +5,28 @@
 
 #include <algorithm>
 
-#include "model/indent/rhombus_patch.h"
 #include "model/law/tabulated_law.h"
 #include "model/scene/tissue_law_builder.h"
 #include "model/scene/tissue_map.h"
+#include "model/springs/spring_patch.h"
 #include "model/tissue/compliance_family.h"
 
 namespace tact::model::scene {
-namespace {
 
-constexpr double kRingTolerance = 0.01;  // of the force, where the scene states none
-
-}  // namespace
-
-std::optional<Error> TissueLawBuilder::build(LawKind kind) {
-  switch (kind) {
-    case LawKind::kRhombus:
-      return add_rhombus();
-    case LawKind::kDiscStack:
-      return add_disc_stack();
-    case LawKind::kHexSheet:
-      return add_hex_sheet();
-    case LawKind::kHuntCrossley:
-      return add_hunt_crossley();
-    case LawKind::kCompliance:
-      return add_compliance();
-    case LawKind::kSpringPatch:
-      return add_spring_patch();
-    default:
-      return Error{
-          fmt::format("{}: law \"{}\" cannot be felt; choose another", scene_.path, name_of(kind))};
-  }
-}
-
-TissueLawBuilder::Step TissueLawBuilder::add_rhombus() {
-  law_->title_ = fmt::format("rhombus chain, energy form, {} units", scene_.rhombus.units);
-  auto chain = make_rhombus_chain(scene_.rhombus);
-  if (!chain) return blame(chain.error());
-  if (scene_.rhombus_area_m2 == 0.0) return add_table(keep(std::move(*chain)));
-  const auto tip_radius_m = scene_tip_radius_m(scene_);
-  if (!tip_radius_m) return tip_radius_m.error();
-  auto patch = make_rhombus_patch(
-      *chain, {.tip_radius_m = *tip_radius_m, .area_m2 = scene_.rhombus_area_m2});
-  if (!patch) return blame(patch.error());
-  law_->title_ += ", in parallel under the tip";
-  return add_table(keep(std::move(*patch)));
-}
-
-// Closed form already: a table would smooth the steps that the discs have.
-TissueLawBuilder::Step TissueLawBuilder::add_disc_stack() {
-  auto stack = make_disc_stack(scene_.disc_stack);
-  if (!stack) return blame(stack.error());
-  law_->title_ =
-      fmt::format("disc stack, {}, {} layers",
-                  scene_.disc_stack.form == indent::DiscForm::kLinear ? "linear" : "Almen-Laszlo",
-                  stack->layer_count());
-  auto pulled = with_pull(keep(std::move(*stack)));
+TissueLawBuilder::Step TissueLawBuilder::add_curve(const LawRow& row) {
+  auto curve = row.curve(scene_);
+  if (!curve) return blame(curve.error());
+  law_->title_ = curve->title.empty() ? row.meaning : curve->title;
+  draws_tissue_ = curve->draws_tissue;
+  law_->owned_.push_back(std::move(curve->law));
+  const auto pulled = with_pull(*law_->owned_.back());
   if (!pulled) return pulled.error();
-  law_->memory_bytes_ += sizeof(indent::DiscStack);
-  return finish_curve(**pulled);
-}
-
-TissueLawBuilder::Step TissueLawBuilder::add_hex_sheet() {
-  auto parameters = scene_.hex_sheet;
-  // 0: chosen here, as few as the tolerance allows.
-  if (parameters.rings == 0) {
-    const double tolerance_ratio =
-        scene_.tolerance ? scene_.tolerance->force_error_ratio : kRingTolerance;
-    auto rings = rings_for_tolerance(parameters, tolerance_ratio);
-    if (!rings) return blame(rings.error());
-    parameters.rings = *rings;
-  }
-  law_->title_ = fmt::format("hexagonal sheet, energy form, {} rings", parameters.rings);
-  auto sheet = make_hex_sheet(parameters);
-  if (!sheet) return blame(sheet.error());
-  // LW-2: its rings are given by the source, so it is drawn by them.
-  draws_tissue_ = true;
-  return add_table(keep(std::move(*sheet)));
-}
-
-TissueLawBuilder::Step TissueLawBuilder::add_hunt_crossley() {
-  law_->title_ =
-      fmt::format("Hunt and Crossley, force ~ depth^{:g} (1 + {:g} s/m speed)",
-                  scene_.hunt_crossley.exponent, scene_.hunt_crossley.dissipation_s_per_m);
-  auto law = make_hunt_crossley(scene_.hunt_crossley);
-  if (!law) return blame(law.error());
-  return add_table(keep(std::move(*law)));
+  law_->memory_bytes_ += curve->untabled_bytes;
+  if (curve->untabled_bytes > 0) return finish_curve(**pulled);
+  auto table = tabulate(**pulled, scene_.table_knots);
+  if (!table) return blame(table.error());
+  law_->memory_bytes_ += sizeof(law::TabulatedLaw);
+  return finish_curve(keep(std::move(*table)));
 }
 
 TissueLawBuilder::Step TissueLawBuilder::add_compliance() {
@@ -110,11 +46,12 @@ TissueLawBuilder::Step TissueLawBuilder::add_compliance() {
 
 // The hand meets no more than the virtual spring, whatever the nodes do in one tick.
 TissueLawBuilder::Step TissueLawBuilder::add_spring_patch() {
+  const auto& own = scene_.laws.of<springs::SpringPatchParameters>();
   // As the patch does: a mesh may have fewer vertices.
-  const std::size_t nodes = std::min(scene_.spring_patch.nodes, scene_.organ_mesh.vertex_m.size());
-  law_->title_ = fmt::format("mass-spring patch, {} nodes, {}", nodes,
-                             name_of(scene_.spring_patch.method.integrator));
-  springs::SpringPatchParameters parameters = scene_.spring_patch;
+  const std::size_t nodes = std::min(own.nodes, scene_.organ_mesh.vertex_m.size());
+  law_->title_ =
+      fmt::format("mass-spring patch, {} nodes, {}", nodes, name_of(own.method.integrator));
+  springs::SpringPatchParameters parameters = own;
   // What the scene says elsewhere: rate, tool, relaxation.
   parameters.tick_s = 1.0 / scene_.rate_Hz;
   parameters.spheres = scene_.tool.spheres.size();
@@ -142,18 +79,12 @@ Result<const law::Law*> TissueLawBuilder::with_pull(const law::Law& press) {
   return &keep(std::move(*pulled));
 }
 
-TissueLawBuilder::Step TissueLawBuilder::add_table(const law::Law& direct) {
-  auto law = with_pull(direct);
-  if (!law) return law.error();
-  auto table = tabulate(**law, scene_.table_knots);
-  if (!table) return blame(table.error());
-  law_->memory_bytes_ += sizeof(law::TabulatedLaw);
-  return finish_curve(keep(std::move(*table)));
-}
-
-Result<std::unique_ptr<TissueLaw>> make_tissue_law(const Scene& scene, LawKind kind) {
+Result<std::unique_ptr<TissueLaw>> make_tissue_law(const Scene& scene, std::string_view name) {
+  const LawRow* row = find_law(name);
+  if (row == nullptr)
+    return Error{fmt::format("{}: law \"{}\" cannot be felt; choose another", scene.path, name)};
   TissueLawBuilder builder(scene);
-  if (auto failed = builder.build(kind)) return *failed;
+  if (auto failed = row->curve ? builder.add_curve(*row) : (builder.*row->build)()) return *failed;
   return builder.take();
 }
 

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "model/contact/contact_law.h"
@@ -71,8 +72,8 @@ class TissueLaw {
   std::string title_;
 };
 
-/// `kind` with the scene's numbers, whatever law the scene itself chooses; the scene outlives it.
-/// The error names the scene's file and what its parameters lack.
-Result<std::unique_ptr<TissueLaw>> make_tissue_law(const Scene& scene, LawKind kind);
+/// The law of this name (laws.h) with the scene's numbers, whatever law the scene itself chooses;
+/// the scene outlives it. The error names the scene's file and what its parameters lack.
+Result<std::unique_ptr<TissueLaw>> make_tissue_law(const Scene& scene, std::string_view name);
 
 }  // namespace tact::model::scene

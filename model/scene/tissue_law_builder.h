@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "model/scene/laws.h"
 #include "model/scene/tissue_law.h"
 #include "model/tissue/elastic_field.h"
 
@@ -18,19 +19,14 @@ class TissueLawBuilder {
  public:
   explicit TissueLawBuilder(const Scene& scene) : scene_(scene) {}
 
-  std::optional<Error> build(LawKind kind);
+  using Step = std::optional<Error>;
+
+  Step add_curve(const LawRow& row);
+  Step add_compliance();
+  Step add_spring_patch();
   std::unique_ptr<TissueLaw> take() { return std::move(law_); }
 
  private:
-  using Step = std::optional<Error>;
-
-  Step add_rhombus();
-  Step add_disc_stack();
-  Step add_hex_sheet();
-  Step add_hunt_crossley();
-  Step add_compliance();
-  Step add_spring_patch();
-  Step add_table(const law::Law& direct);
   Result<const law::Law*> with_pull(const law::Law& press);
   Step finish_curve(const law::Law& curve);
   Step vary_by_place(const law::Law& curve);

@@ -64,7 +64,7 @@ TissueLawBuilder::Step TissueLawBuilder::vary_by_place(const law::Law& curve) {
 // The law is the tip's own indentation; the organ moves with its compliance, by finite rotations.
 TissueLawBuilder::Step TissueLawBuilder::bend(const law::Law& curve) {
   const auto tip_radius_m = scene_tip_radius_m(scene_);
-  if (!tip_radius_m) return tip_radius_m.error();
+  if (!tip_radius_m) return blame(tip_radius_m.error());
   auto map = read_scene_map(scene_);
   if (!map) return map.error();
   const ElasticSettings& elastic = *scene_.elastic;

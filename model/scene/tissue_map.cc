@@ -60,10 +60,10 @@ Result<double> scene_tip_radius_m(const Scene& scene) {
     // One family of curves is made for one tip.
     if (sphere.radius_m != spheres[0].radius_m)
       return Error{fmt::format(
-          "{}: tool.sphere has radii of {} and {} m, but compliance, varies_by_place and "
+          "tool.sphere has radii of {} and {} m, but compliance, varies_by_place and "
           "rhombus.area_m2 know one tip; give every sphere one radius_m, or choose another law and "
           "leave these keys out",
-          scene.path, spheres[0].radius_m, sphere.radius_m)};
+          spheres[0].radius_m, sphere.radius_m)};
   return spheres[0].radius_m;
 }
 
@@ -80,7 +80,7 @@ Result<std::vector<float>> read_scene_compliance(const Scene& scene) {
 
 Result<tissue::ComplianceFamily> read_scene_family(const Scene& scene, bool large_strain) {
   const auto tip_radius_m = scene_tip_radius_m(scene);
-  if (!tip_radius_m) return tip_radius_m.error();
+  if (!tip_radius_m) return Error{scene.path + ": " + tip_radius_m.error().message};
   auto map = read_scene_map(scene);
   if (!map) return map.error();
   auto family = make_compliance_family(*map, {.youngs_modulus_Pa = scene.elastic->youngs_modulus_Pa,

@@ -31,12 +31,6 @@ OscillatorState step_rk4(const Oscillator& o, double x, double v, double h) RT_S
 
 }  // namespace
 
-std::string_view name_of(Integrator integrator) {
-  for (const IntegratorName& entry : kIntegratorNames)
-    if (entry.integrator == integrator) return entry.name;
-  return "";
-}
-
 OscillatorState step(const Oscillator& o, const OscillatorState& from, const Method& method,
                      double step_s) RT_SAFE {
   if (!is_usable(o, from, method, step_s)) return {.status = law::LawStatus::kInvalid};

@@ -20,6 +20,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 
@@ -39,21 +40,27 @@ enum class Integrator : std::uint8_t {
 
 struct IntegratorName {
   Integrator integrator;
-  std::string_view name;
+  std::string_view name, meaning;
   int force_evaluations = 0;  // a step; implicit Euler adds its iterations
 };
 
 inline constexpr std::array kIntegratorNames{
-    IntegratorName{Integrator::kExplicitEuler, "explicit-euler", 1},
-    IntegratorName{Integrator::kImprovedEuler, "improved-euler", 1},
-    IntegratorName{Integrator::kMidpointAveraging, "midpoint-averaging", 2},
-    IntegratorName{Integrator::kRk2, "rk2", 2},
-    IntegratorName{Integrator::kRk4, "rk4", 4},
-    IntegratorName{Integrator::kImplicitEuler, "implicit-euler", 1},
+    IntegratorName{Integrator::kExplicitEuler, "explicit-euler",
+                   "grows without damping; for comparison", 1},
+    IntegratorName{Integrator::kImprovedEuler, "improved-euler",
+                   "semi-implicit: one evaluation, stable to 2 / omega undamped", 1},
+    IntegratorName{Integrator::kMidpointAveraging, "midpoint-averaging",
+                   "two evaluations, second order at alpha 1/2", 2},
+    IntegratorName{Integrator::kRk2, "rk2", "two evaluations, grows without damping", 2},
+    IntegratorName{Integrator::kRk4, "rk4", "four evaluations, fourth order", 4},
+    IntegratorName{Integrator::kImplicitEuler, "implicit-euler",
+                   "stable at every step, damps; a fixed number of iterations", 1},
 };
 
 /// Its name in a scene.
-std::string_view name_of(Integrator integrator);
+constexpr std::string_view name_of(Integrator integrator) {
+  return kIntegratorNames[static_cast<std::size_t>(integrator)].name;
+}
 
 /// An integrator with its one parameter.
 struct Method {

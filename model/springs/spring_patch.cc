@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -20,31 +21,6 @@ constexpr double kLostIndentations =
     10.0;  // an indentation of so many working depths is no tissue any more
 constexpr std::size_t kShownCutEdges = contact::kMaxShapeNodes / 2;
 
-const char* parameter_error(const SpringPatchParameters& p) {
-  const PatchTissue& t = p.tissue;
-  if (!is_positive(t.surface_stiffness_N_per_m))
-    return "surface_stiffness_N_per_m must be finite and above 0";
-  if (!is_positive(t.body_stiffness_N_per_m))
-    return "body_stiffness_N_per_m must be finite and above 0";
-  if (!is_not_negative(t.damping_time_s)) return "damping_time_s must be finite and not below 0";
-  if (!is_not_negative(t.body_damping_time_s))
-    return "body_damping_time_s must be finite and not below 0";
-  if (!(t.pretension_ratio >= 0.0 && t.pretension_ratio <= 0.5))
-    return "pretension_ratio must lie between 0 and 0.5";
-  if (!is_positive(p.coupling_stiffness_N_per_m))
-    return "coupling_stiffness_N_per_m must be finite and above 0";
-  if (!is_positive(p.node_mass_kg)) return "node_mass_kg must be finite and above 0";
-  if (!is_positive(p.working_depth_m)) return "working_depth_m must be finite and above 0";
-  if (!is_positive(p.tick_s)) return "tick_s must be finite and above 0";
-  if (p.spheres < 1 || p.spheres > contact::kMaxSpheres) return "spheres must lie between 1 and 4";
-  if (p.nodes < 16 || p.nodes > kMaxPatchNodes) return "nodes must lie between 16 and 1024";
-  if (!(p.method.alpha > 0.0 && p.method.alpha <= 1.0))
-    return "alpha must lie above 0 and not above 1";
-  if (p.iterations < 1 || p.iterations > 100) return "iterations must lie between 1 and 100";
-  if (p.substeps < 1 || p.substeps > 16) return "substeps must lie between 1 and 16";
-  return nullptr;
-}
-
 // F_s = -F grad w;  grad w = n x (sum of w_i (edge opposite i)) / (2 area)
 Vec3 slope_N(const contact::SurfaceView& mesh, const contact::TriangleCorners& corner,
              const std::array<double, 3>& indentation_m, double force_N) RT_SAFE {
@@ -57,7 +33,9 @@ Vec3 slope_N(const contact::SurfaceView& mesh, const contact::TriangleCorners& c
 }
 
 StepRule rule_of(const SpringPatchParameters& p) RT_SAFE {
-  return {.method = p.method, .step_s = p.tick_s / p.substeps, .iterations = p.iterations};
+  return {.method = p.method,
+          .step_s = p.tick_s / static_cast<double>(p.substeps),
+          .iterations = static_cast<int>(p.iterations)};
 }
 
 /// The whole mesh as one network, to ask whether any part of it could blow up.
@@ -97,7 +75,10 @@ SpringPatch::SpringPatch(PatchSurface surface, const SpringPatchParameters& para
 
 Result<std::unique_ptr<SpringPatch>> make_spring_patch(const contact::SurfaceView& surface,
                                                        const SpringPatchParameters& p) {
-  if (const char* wrong = parameter_error(p)) return Error{std::string("spring patch: ") + wrong};
+  if (auto wrong = check_meaning("spring patch", p)) return *wrong;
+  if (!is_positive(p.tick_s)) return Error{"spring patch: tick_s must be finite and above 0"};
+  if (p.spheres < 1 || p.spheres > contact::kMaxSpheres)
+    return Error{"spring patch: spheres must lie between 1 and 4"};
   if (surface.triangle.empty()) return Error{"spring patch: the surface has no triangles"};
   if (const auto vertex = crowded_vertex(surface))
     return Error{"spring patch: vertex " + std::to_string(*vertex) + " has " +
@@ -233,7 +214,7 @@ void SpringPatch::advance() RT_SAFE {
   const StepRule rule = rule_of(parameters_);
   double energy_J = 0.0;
   // Depth and place are held over all substeps: the tool moves once a tick.
-  for (int i = 0; i < parameters_.substeps; ++i) energy_J = stepper_.step(network, rule);
+  for (std::size_t i = 0; i < parameters_.substeps; ++i) energy_J = stepper_.step(network, rule);
   if (region_.relaxes()) {
     region_.flow();
     energy_J = region_.stored_energy_J();

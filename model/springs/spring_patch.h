@@ -30,6 +30,7 @@
 #include <memory>
 
 #include "model/contact/contact_law.h"
+#include "model/parameters.h"
 #include "model/result.h"
 #include "model/springs/integrators.h"
 #include "model/springs/patch_region.h"
@@ -45,10 +46,11 @@ struct SpringPatchParameters {
   std::size_t spheres = 1;  // of the tool, 1 .. kMaxSpheres
   std::size_t nodes = 500;  // 16 .. kMaxPatchNodes
   Method method{};
-  int iterations = 10;           // of implicit Euler, 1 .. 100
-  int substeps = 1;              // 1 .. 16
+  std::size_t iterations = 10;   // of implicit Euler, 1 .. 100
+  std::size_t substeps = 1;      // 1 .. 16
   law::Relaxation relaxation{};  // made for tick_s; of springs and anchors, not of the coupling
 };
+void visit(ParameterVisitor& v, SpringPatchParameters& p);
 
 class SpringPatch final : public contact::ContactLaw {
  public:

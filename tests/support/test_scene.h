@@ -2,6 +2,8 @@
 // test_scene.h - a small scene in memory: a plate, one or two spheres, a hand that waits above it.
 #pragma once
 
+#include "model/indent/disc_stack.h"
+#include "model/indent/rhombus_patch.h"
 #include "model/scene/scene.h"
 #include "model/units.h"
 #include "tests/support/shapes.h"
@@ -14,12 +16,12 @@ inline model::scene::Scene make_plate_scene() {
   scene.path = "plate.toml";
   scene.name = "plate";
   scene.rate_Hz = 1000.0;
-  scene.rhombus = {.rod_length_m = 0.005,
-                   .initial_angle_rad = 0.5236,
-                   .normal_stiffness_N_per_m = 150.0,
-                   .tangential_stiffness_N_per_m = 180.0,
-                   .growth = 2.0,
-                   .units = 10};
+  scene.laws.of<model::indent::RhombusParameters>().chain = {.rod_length_m = 0.005,
+                                                             .initial_angle_rad = 0.5236,
+                                                             .normal_stiffness_N_per_m = 150.0,
+                                                             .tangential_stiffness_N_per_m = 180.0,
+                                                             .growth = 2.0,
+                                                             .units = 10};
   scene.table_knots = 65;
   scene.contact.friction_ratio = 0.4;
   scene.contact.sliding_stiffness_N_per_m = 100.0;

@@ -133,11 +133,10 @@ TEST_F(Tactd, ARunOfAnAutomaticLawIsReplayedWithoutThePlan) {
   EXPECT_TRUE(has(unplanned, "run tact-lab plan " + kLiver + " --reference FILE"));
   const auto scene = tact::model::scene::load_scene(kLiver, {"law=\"auto\""});
   ASSERT_TRUE(scene) << scene.error().message;
-  ASSERT_TRUE(tact::model::scene::write_plan(
-      {.sizes = {.law = tact::model::scene::LawKind::kRhombus, .table_knots = 33},
-       .machine = tact::model::scene::machine_name(),
-       .scene_hash = scene->hash},
-      *tact::model::scene::plan_path(scene->hash)));
+  ASSERT_TRUE(tact::model::scene::write_plan({.sizes = {.law = "rhombus", .table_knots = 33},
+                                              .machine = tact::model::scene::machine_name(),
+                                              .scene_hash = scene->hash},
+                                             *tact::model::scene::plan_path(scene->hash)));
   const Outcome run = tactd(kLiver + " --set law=auto --free-run --ticks 900 --record " + log);
   EXPECT_EQ(run.status, 0) << run.output;
   EXPECT_TRUE(has(run, "--set law=rhombus --set table_knots=33")) << run.output;

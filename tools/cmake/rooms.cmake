@@ -126,9 +126,10 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   endforeach()
 endif()
 
-# tact_test(ROOM SOURCES a_test.cc... LINKS room... [PROGRAMS tactd...] [LABELS threads loop parse]
+# tact_test(ROOM [SOURCES a_test.cc...] LINKS room... [PROGRAMS tactd...] [LABELS threads loop parse]
 #           [REAL_CLOCK Suite...] [OPTIMISED a_test.cc...])
-# All tests of a room as one program: the SOURCES in tests/model/law/ as model_law_test. PROGRAMS are run by it, so
+# All tests of a room as one program: the SOURCES in tests/model/law/ as model_law_test; where they name no a_test.cc,
+# every one of that folder. PROGRAMS are run by it, so
 # they are built with it; tests/support/program.h runs no other. LABELS: what tools/check runs again
 # under the thread sanitizer (threads), the real-time sanitizer (loop: what a tick reaches) or that of
 # addresses (parse: what reads files and bytes of others): ctest -L '[+]loop' finds those, -L model_law
@@ -138,6 +139,11 @@ function(tact_test folder)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINKS;PROGRAMS;LABELS;REAL_CLOCK;OPTIMISED" ${ARGN})
   string(REPLACE "/" "_" room ${folder})
   set(test ${room}_test)
+  if(NOT ARG_SOURCES MATCHES "_test\\.cc")
+    file(GLOB tests RELATIVE ${PROJECT_SOURCE_DIR}/tests/${folder} CONFIGURE_DEPENDS
+      ${PROJECT_SOURCE_DIR}/tests/${folder}/*_test.cc)
+    list(APPEND ARG_SOURCES ${tests})
+  endif()
   list(TRANSFORM ARG_SOURCES PREPEND ${PROJECT_SOURCE_DIR}/tests/${folder}/)
   list(TRANSFORM ARG_OPTIMISED PREPEND ${PROJECT_SOURCE_DIR}/tests/${folder}/)
   add_executable(${test} ${ARG_SOURCES} $<TARGET_OBJECTS:tact_test_base>)

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 
+#include "model/scene/laws.h"
 #include "model/scene/tissue_law.h"
 
 namespace tact::tools::fit {
@@ -84,7 +85,7 @@ void read_shape(ContactLaw& law, const model::mesh::SurfaceMesh& surface, const 
   }
 }
 
-/// Chain or sheet, solved once for every depth.
+/// A closed form, solved once for every depth.
 Result<std::vector<FitAnswer>> solved_answers(const model::law::Law& press,
                                               const model::scene::Scene& scene,
                                               const FitData& data) {
@@ -114,37 +115,24 @@ Result<std::vector<FitAnswer>> solved_answers(const model::law::Law& press,
   return out;
 }
 
-Result<std::vector<FitAnswer>> solve(const model::scene::Scene& scene, model::scene::LawKind kind,
-                                     const FitData& data) {
-  if (kind == model::scene::LawKind::kRhombus) {
-    const auto chain = make_rhombus_chain(scene.rhombus);
-    return chain ? solved_answers(*chain, scene, data) : chain.error();
-  }
-  const auto sheet = make_hex_sheet(scene.hex_sheet);
-  return sheet ? solved_answers(*sheet, scene, data) : sheet.error();
-}
-
-/// Not a patch of chains nor what is in series with an organ: their tables take less time.
-bool is_solved(const model::scene::Scene& scene, model::scene::LawKind kind) {
-  if (scene.varies_by_place) return false;
-  return (kind == model::scene::LawKind::kRhombus && scene.rhombus_area_m2 == 0.0) ||
-         (kind == model::scene::LawKind::kHexSheet && scene.hex_sheet.rings > 0);
-}
-
 }  // namespace
 
 Result<std::vector<FitAnswer>> answers_of(const model::scene::Scene& scene,
-                                          model::scene::LawKind kind, const FitData& data,
+                                          std::string_view law_name, const FitData& data,
                                           AnswerBy by) {
-  if (by == AnswerBy::kSolving && is_solved(scene, kind)) return solve(scene, kind, data);
-  auto made = make_tissue_law(scene, kind);
+  const model::scene::LawRow* row = model::scene::find_law(law_name);
+  // Not in series with an organ: there tables take less time, and the place shows in the shape.
+  const bool is_one_curve = row && row->curve && !scene.varies_by_place;
+  if (by == AnswerBy::kSolving && is_one_curve) {
+    const auto curve = row->curve(scene);
+    return curve ? solved_answers(*curve->law, scene, data) : curve.error();
+  }
+  auto made = make_tissue_law(scene, law_name);
   if (!made) return made.error();
   ContactLaw& law = (*made)->contact_law();
   const bool is_stepped = (*made)->curve() == nullptr;
   // Springs in a row are drawn as a half-space; their parameters show in their own displacements.
-  const model::law::Law* springs =
-      scene.varies_by_place || kind == model::scene::LawKind::kCompliance ? nullptr
-                                                                          : (*made)->curve();
+  const model::law::Law* springs = is_one_curve ? (*made)->curve() : nullptr;
   std::vector<FitAnswer> out;
   for (const FitSite& site : data.sites) {
     for (const FitSample& sample : site.samples) {

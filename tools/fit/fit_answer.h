@@ -6,6 +6,7 @@
 // the last; of a stepped law it is the mean of the vertices near each radius.
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 #include "model/result.h"
@@ -20,12 +21,12 @@ struct FitAnswer {
 };
 
 /// As the loop feels it, from its tables; or, where a search asks thousands of times for a few
-/// depths, the chain and the sheet solved at these depths alone (the same within 1e-6).
+/// depths, the closed form solved at these depths alone (the same within 1e-6).
 enum class AnswerBy { kLoop, kSolving };
 
 /// One answer a sample, in the order of sites and samples. An error says why there is no such law.
 model::Result<std::vector<FitAnswer>> answers_of(const model::scene::Scene& scene,
-                                                 model::scene::LawKind kind, const FitData& data,
+                                                 std::string_view law_name, const FitData& data,
                                                  AnswerBy by = AnswerBy::kLoop);
 
 }  // namespace tact::tools::fit

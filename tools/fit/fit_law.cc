@@ -4,172 +4,143 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/indent/disc_stack.h"
+#include "model/reader/scene_text.h"
+#include "model/scene/laws.h"
+#include "model/springs/spring_patch.h"
+
 namespace tact::tools::fit {
 namespace {
 
 using model::indent::DiscForm;
-using model::scene::LawKind;
+using model::indent::DiscStackParameters;
+using model::scene::LawRow;
 using model::scene::Scene;
+using model::springs::SpringPatchParameters;
 
-constexpr double kMin_N_per_m = 1e-3;  // stands for no spring
-constexpr double kMax_N_per_m = 1e5;
-constexpr double kSteepestCone = 0.4;  // eta: beyond, layers can be felt one by one
+constexpr double kNothing_ratio = 1e-8;  // of a range: stands for 0, which has no logarithm
+constexpr double kSteepestCone = 0.4;    // eta: beyond, layers can be felt one by one
 constexpr double kFlattestCone = 0.02;
 constexpr double kTableReach = 0.95;  // share of the working depth that is felt (tabulated_law.h)
 
-FitParameter spring(const char* section, const char* key, std::function<double&(Scene&)> in) {
-  return {.section = section,
-          .key = key,
-          .low = kMin_N_per_m,
-          .high = kMax_N_per_m,
+/// With the range of the scene. A quantity with the newton in its unit multiplies the force.
+FitParameter fitted(std::string_view section, const model::Parameter& p,
+                    std::function<double&(Scene&)> in) {
+  const std::string_view unit = model::reader::unit_of_key(p.key);
+  return {.section = std::string(section),
+          .key = std::string(p.key),
+          .low = p.range.low > 0.0 ? p.range.low : kNothing_ratio * p.range.high,
+          .high = p.range.high,
           .in = std::move(in),
-          .is_stiffness = true};
+          .is_stiffness = unit == "N" || unit == "N/m" || unit == "Pa"};
 }
 
-FitLaw rhombus() {
-  const auto p = [](Scene& s) -> model::indent::RhombusChainParameters& { return s.rhombus; };
-  FitLaw law{.name = "rhombus", .kind = LawKind::kRhombus};
-  law.parameters = {
-      {"rhombus", "rod_length_m", 1e-4, 0.1,
-       [p](Scene& s) -> double& { return p(s).rod_length_m; }},
-      {"rhombus", "initial_angle_rad", 0.05, 1.5,
-       [p](Scene& s) -> double& { return p(s).initial_angle_rad; }},
-      spring("rhombus", "normal_stiffness_N_per_m",
-             [p](Scene& s) -> double& { return p(s).normal_stiffness_N_per_m; }),
-      spring("rhombus", "tangential_stiffness_N_per_m",
-             [p](Scene& s) -> double& { return p(s).tangential_stiffness_N_per_m; }),
-      {"rhombus", "growth", 0.1, 100.0, [p](Scene& s) -> double& { return p(s).growth; }}};
-  // Without its normal springs the chain would carry nothing at rest.
-  law.parameters[2].low = 0.01;
-  // Chosen: as the scene, steeper, and with the tangential springs strong or nearly away.
-  law.starts = {{1, 1, 1, 1, 1}, {1, 1.8, 1, 1, 1}, {0.5, 2.4, 1, 5, 3}, {2, 1, 1, 0.1, 1}};
+FitParameter fitted(const LawRow& row, std::string_view key) {
+  Scene any;
+  return fitted(row.name, parameters_of(row, any).find(key), [&row, key](Scene& s) -> double& {
+    return *parameters_of(row, s).find(key).number;
+  });
+}
+
+FitLaw law_of(const LawRow& row) {
+  FitLaw law{.name = std::string(row.name),
+             .law = std::string(row.name),
+             .by_place = row.curve == nullptr,
+             .starts = row.fit_starts};
+  for (const std::string_view key : row.fit_keys) law.parameters.push_back(fitted(row, key));
+  if (law.starts.empty()) law.starts.emplace_back(law.parameters.size(), 1.0);
   return law;
 }
 
-FitLaw disc_stack(DiscForm form) {
-  const bool is_linear = form == DiscForm::kLinear;
-  FitLaw law{.name = is_linear ? "disc_stack_linear" : "disc_stack_almen_laszlo",
-             .kind = LawKind::kDiscStack,
-             .choice = is_linear ? "form = \"linear\"" : "form = \"almen-laszlo\""};
-  law.parameters = {{"disc_stack", "youngs_modulus_Pa", 1.0, 1e13,
-                     [](Scene& s) -> double& { return s.disc_stack.disc.youngs_modulus_Pa; },
-                     true}};
-  law.starts = {{1}};
-  law.follow = [form](Scene& s) { s.disc_stack.form = form; };
+FitLaw disc_stack(const LawRow& row, DiscForm form) {
+  FitLaw law = law_of(row);
+  law.name += form == DiscForm::kLinear ? "_linear" : "_almen_laszlo";
+  law.choice = "form = \"" + std::string(name_of(form)) + "\"";
+  law.follow = [form](Scene& s) { s.laws.of<DiscStackParameters>().form = form; };
   return law;
 }
 
 /// Travel is fitted too, as the height that the scene writes.
-FitLaw coned_disc_stack(const Scene& scene) {
-  FitLaw law = disc_stack(DiscForm::kAlmenLaszlo);
-  const double thickness_m = scene.disc_stack.disc.thickness_m;
-  law.parameters.push_back({"disc_stack", "free_height_m", (1.0 + kFlattestCone) * thickness_m,
-                            (1.0 + kSteepestCone) * thickness_m,
-                            [](Scene& s) -> double& { return s.disc_stack.disc.free_height_m; }});
+FitLaw coned_disc_stack(const LawRow& row, const Scene& scene) {
+  FitLaw law = disc_stack(row, DiscForm::kAlmenLaszlo);
+  const auto& disc = scene.laws.of<DiscStackParameters>().disc;
+  FitParameter height = fitted(row, "free_height_m");
+  height.low = (1.0 + kFlattestCone) * disc.thickness_m;
+  height.high = (1.0 + kSteepestCone) * disc.thickness_m;
+  law.parameters.push_back(std::move(height));
   // each height has its own texture and its own local minimum: begin at many
   constexpr int kHeights = 12;
-  const double now_m = scene.disc_stack.disc.free_height_m;
   law.starts.clear();
   for (int i = 0; i < kHeights; ++i) {
     const double cone = kFlattestCone + (kSteepestCone - kFlattestCone) * (i + 0.5) / kHeights;
-    law.starts.push_back({1, (1.0 + cone) * thickness_m / now_m});
+    law.starts.push_back({1, (1.0 + cone) * disc.thickness_m / disc.free_height_m});
   }
   return law;
 }
 
-FitLaw hex_sheet() {
-  const auto p = [](Scene& s) -> model::indent::HexSheetParameters& { return s.hex_sheet; };
-  FitLaw law{.name = "hex_sheet", .kind = LawKind::kHexSheet};
-  law.parameters = {{"hex_sheet", "ring_pitch_m", 1e-4, 0.05,
-                     [p](Scene& s) -> double& { return p(s).ring_pitch_m; }},
-                    spring("hex_sheet", "body_stiffness_N_per_m",
-                           [p](Scene& s) -> double& { return p(s).body_stiffness_N_per_m; })};
-  law.parameters[1].low = 0.01;
-  law.parameters.push_back(
-      spring("hex_sheet", "contact_stiffness_N_per_m",
-             [p](Scene& s) -> double& { return p(s).contact_stiffness_N_per_m; }));
-  law.parameters.push_back(
-      spring("hex_sheet", "surface_stiffness_N_per_m",
-             [p](Scene& s) -> double& { return p(s).surface_stiffness_N_per_m; }));
-  law.parameters.push_back({"hex_sheet", "tension_N", 1e-6, 100.0,
-                            [p](Scene& s) -> double& { return p(s).tension_N; }, true});
-  law.starts = {{1, 1, 1, 1, 1}, {2, 1, 1, 1, 3}, {1, 0.1, 1, 3, 1}, {0.5, 1, 10, 10, 0.3}};
-  return law;
-}
-
-/// The dissipation stays: data of a slow press does not tell it.
-FitLaw hunt_crossley() {
-  FitLaw law{.name = "hunt_crossley", .kind = LawKind::kHuntCrossley};
-  law.parameters = {{"hunt_crossley", "force_N", 1e-4, 100.0,
-                     [](Scene& s) -> double& { return s.hunt_crossley.force_N; }, true},
-                    {"hunt_crossley", "exponent", 1.0, 4.0,
-                     [](Scene& s) -> double& { return s.hunt_crossley.exponent; }}};
-  law.starts = {{1, 1}, {1, 1.3}};
-  return law;
-}
-
-FitLaw compliance() {
-  FitLaw law{.name = "compliance", .kind = LawKind::kCompliance, .by_place = true};
-  law.parameters = {{"elastic", "youngs_modulus_Pa", 1.0, 1e9,
-                     [](Scene& s) -> double& { return s.elastic->youngs_modulus_Pa; }, true}};
+FitLaw compliance(const LawRow& row) {
+  FitLaw law = law_of(row);
+  model::scene::ElasticSettings any;
+  law.parameters = {fitted("elastic", model::parameters_of(any).find("youngs_modulus_Pa"),
+                           [](Scene& s) -> double& { return s.elastic->youngs_modulus_Pa; })};
   law.starts = {{1}};
   return law;
 }
 
 // Settled by stepping, so a slope needs a longer step than a closed form does.
-FitLaw spring_patch(const Scene& scene) {
-  const auto p = [](Scene& s) -> model::springs::SpringPatchParameters& { return s.spring_patch; };
-  FitLaw law{.name = "spring_patch",
-             .kind = LawKind::kSpringPatch,
-             .by_place = true,
-             .difference = 0.02,
-             .most_evaluations = 60,
-             .is_slow = true};
-  law.parameters = {
-      spring("spring_patch", "surface_stiffness_N_per_m",
-             [p](Scene& s) -> double& { return p(s).tissue.surface_stiffness_N_per_m; }),
-      spring("spring_patch", "body_stiffness_N_per_m",
-             [p](Scene& s) -> double& { return p(s).tissue.body_stiffness_N_per_m; }),
-      spring("spring_patch", "coupling_stiffness_N_per_m",
-             [p](Scene& s) -> double& { return p(s).coupling_stiffness_N_per_m; })};
-  for (FitParameter& parameter : law.parameters) parameter.low = 0.01;
-  law.starts = {{1, 1, 1}};
-  law.followers = {{"spring_patch", "node_mass_kg", 1e-7, 1.0,
-                    [p](Scene& s) -> double& { return p(s).node_mass_kg; }}};
-  const auto stiffest = [](const Scene& s) {
-    const model::springs::SpringPatchParameters& q = s.spring_patch;
-    return q.tissue.surface_stiffness_N_per_m + q.tissue.body_stiffness_N_per_m +
-           q.coupling_stiffness_N_per_m;
+FitLaw spring_patch(const LawRow& row, const Scene& scene) {
+  FitLaw law = law_of(row);
+  law.difference = 0.02;
+  law.most_evaluations = 60;
+  law.is_slow = true;
+  law.followers = {fitted(row, "node_mass_kg")};
+  const auto stiffest = [](const SpringPatchParameters& p) {
+    return p.tissue.surface_stiffness_N_per_m + p.tissue.body_stiffness_N_per_m +
+           p.coupling_stiffness_N_per_m;
   };
-  law.follow = [mass_kg = scene.spring_patch.node_mass_kg, before = stiffest(scene),
+  const auto& own = scene.laws.of<SpringPatchParameters>();
+  law.follow = [mass = law.followers[0], mass_kg = own.node_mass_kg, before = stiffest(own),
                 stiffest](Scene& s) {
     // Mass in proportion to the springs: the ticks to rest, and the step's stability, stay as they
     // are.
-    s.spring_patch.node_mass_kg = std::clamp(mass_kg * stiffest(s) / before, 1e-7, 1.0);
+    const double wanted_kg = mass_kg * stiffest(s.laws.of<SpringPatchParameters>()) / before;
+    mass.in(s) = std::clamp(wanted_kg, mass.low, mass.high);
   };
   return law;
+}
+
+/// Not of the press, whose stiffnesses are scaled together.
+FitParameter pull() {
+  model::law::LinearPullParameters any;
+  FitParameter out = fitted("pull", model::parameters_of(any).find("stiffness_N_per_m"),
+                            [](Scene& s) -> double& { return s.pull->stiffness_N_per_m; });
+  out.is_stiffness = false;
+  return out;
+}
+
+/// Nothing where the scene does not describe the law, or its row has no keys to fit.
+std::vector<FitLaw> laws_of(const LawRow& row, const Scene& scene) {
+  if (!scene.describes(row.name)) return {};
+  if (row.name == "disc_stack")
+    return {disc_stack(row, DiscForm::kLinear), coned_disc_stack(row, scene)};
+  if (row.name == "compliance") return {compliance(row)};
+  if (row.name == "spring_patch") return {spring_patch(row, scene)};
+  if (row.fit_keys.empty()) return {};
+  return {law_of(row)};
 }
 
 }  // namespace
 
 std::vector<FitLaw> fit_laws_of(const Scene& scene, const FitData& data) {
   std::vector<FitLaw> laws;
-  if (scene.describes(LawKind::kRhombus)) laws.push_back(rhombus());
-  if (scene.describes(LawKind::kDiscStack)) {
-    laws.push_back(disc_stack(DiscForm::kLinear));
-    laws.push_back(coned_disc_stack(scene));
-  }
-  if (scene.describes(LawKind::kHexSheet)) laws.push_back(hex_sheet());
-  if (scene.describes(LawKind::kHuntCrossley)) laws.push_back(hunt_crossley());
-  if (data.farthest_pull_m() > 0.0) {
-    for (FitLaw& law : laws) {
-      law.parameters.push_back({"pull", "stiffness_N_per_m", 0.01, 1e5,
-                                [](Scene& s) -> double& { return s.pull->stiffness_N_per_m; }});
-      for (std::vector<double>& start : law.starts) start.push_back(1.0);
+  for (const LawRow& row : model::scene::all_laws())
+    for (FitLaw& law : laws_of(row, scene)) {
+      if (!law.by_place && data.farthest_pull_m() > 0.0) {
+        law.parameters.push_back(pull());
+        for (std::vector<double>& start : law.starts) start.push_back(1.0);
+      }
+      laws.push_back(std::move(law));
     }
-  }
-  if (scene.describes(LawKind::kCompliance)) laws.push_back(compliance());
-  if (scene.describes(LawKind::kSpringPatch)) laws.push_back(spring_patch(scene));
   return laws;
 }
 
@@ -192,13 +163,11 @@ std::size_t keep_parameters(FitLaw& law, const std::vector<std::string>& names) 
 
 void reach(Scene& scene, const FitData& data) {
   const double deepest_m = std::max(data.deepest_m(), data.farthest_pull_m());
-  for (double* working_depth_m :
-       {&scene.hex_sheet.working_depth_m, &scene.hunt_crossley.working_depth_m,
-        &scene.compliance.working_depth_m, &scene.spring_patch.working_depth_m}) {
-    // Up to a tenth of a millimetre: a number that reads well in a scene.
-    const double needed_m = std::ceil(deepest_m / kTableReach * 1e4) * 1e-4;
-    *working_depth_m = std::max(*working_depth_m, needed_m);
-  }
+  // Up to a tenth of a millimetre: a number that reads well in a scene.
+  const double needed_m = std::ceil(deepest_m / kTableReach * 1e4) * 1e-4;
+  for (const LawRow& row : model::scene::all_laws())
+    if (double* working_depth_m = parameters_of(row, scene).find("working_depth_m").number)
+      *working_depth_m = std::max(*working_depth_m, needed_m);
   if (!(data.farthest_pull_m() > 0.0)) return;
   if (scene.pull) {
     scene.pull->limit_m = std::max(scene.pull->limit_m, data.farthest_pull_m());
@@ -209,8 +178,8 @@ void reach(Scene& scene, const FitData& data) {
   for (const FitSite& site : data.sites)
     for (const FitSample& s : site.samples)
       if (s.depth_m < 0.0) sum_fd += s.force_N * s.depth_m, sum_dd += s.depth_m * s.depth_m;
-  scene.pull = {.stiffness_N_per_m = std::clamp(sum_fd / sum_dd, 0.01, 1e5),
-                .limit_m = std::max(1e-4, data.farthest_pull_m())};
+  scene.pull = {.stiffness_N_per_m = std::clamp(sum_fd / sum_dd, pull().low, pull().high),
+                .limit_m = std::max(model::kDepth_m.low, data.farthest_pull_m())};
 }
 
 }  // namespace tact::tools::fit

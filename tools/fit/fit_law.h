@@ -2,17 +2,13 @@
 // fit_law.h - which numbers of a scene make a law, so that a fit can turn them.
 //
 // A fit changes the numbers in a Scene and lets make_tissue_law build the law from it, as tactd
-// does; a law therefore needs no code here but its list of parameters:
+// does. Which numbers, and where the search starts, stands in the row of the law
+// (model/scene/laws.cc); bounds are the scene's ranges, from the least above 0. What no row says:
 //
-//     rhombus      rod_length_m a, initial_angle_rad, normal_ and tangential_stiffness, growth
-//     disc_stack   linear: youngs_modulus_Pa;  almen-laszlo: also free_height_m, up to eta = 0.4
-//     hex_sheet    ring_pitch_m, contact_, body_ and surface_stiffness, tension_N
-//     hunt_crossley  force_N, exponent: a slow press does not tell the dissipation
+//     disc_stack   in two forms; almen-laszlo: also free_height_m, up to eta = 0.4
 //     compliance   elastic.youngs_modulus_Pa: the shape of the organ is known
-//     spring_patch surface_, body_ and coupling_stiffness; the mass keeps its ratio to the springs
-//     pull         stiffness, beside every law of the first four kinds, when the data pulls
-//
-// Bounds are the scene's ranges (model/scene/scene_laws.cc), from the least stiffness above 0.
+//     spring_patch the mass keeps its ratio to the springs
+//     pull         stiffness, beside every law that has one curve, when the data pulls
 #pragma once
 
 #include <functional>
@@ -33,8 +29,8 @@ struct FitParameter {
 };
 
 struct FitLaw {
-  std::string name;  // as --law takes it
-  model::scene::LawKind kind = model::scene::LawKind::kRhombus;
+  std::string name;             // as --law takes it
+  std::string law{};            // as a scene names it
   bool by_place = false;        // differs from place to place
   std::string choice{};         // key = "word" of its section that makes this law, or empty
   double difference = 1e-4;     // of a slope, in the logarithm

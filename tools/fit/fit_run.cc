@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/scene/laws.h"
 #include "model/scene/tissue_law.h"
 #include "tools/fit/fit_search.h"
 
@@ -71,7 +72,7 @@ class Fit {
     }
     out.residual = [this](std::span<const double> x, std::span<double> r) {
       set(x);
-      const auto answers = answers_of(scene_, law_.kind, data_, AnswerBy::kSolving);
+      const auto answers = answers_of(scene_, law_.law, data_, AnswerBy::kSolving);
       if (answers) fill(*answers, r);
       return answers.has_value();
     };
@@ -86,7 +87,7 @@ class Fit {
       x.push_back(std::log(std::clamp(scene_value_[i] * ratios[i], p.low, p.high)));
     }
     set(x);
-    const auto answers = answers_of(scene_, law_.kind, data_, AnswerBy::kSolving);
+    const auto answers = answers_of(scene_, law_.law, data_, AnswerBy::kSolving);
     // A start that makes no law: the search finds its own way, or another start wins.
     if (!answers) return x;
     const double factor = press_factor(*answers);
@@ -180,24 +181,14 @@ FittedKey key_of(const FitParameter& p, Scene& scene) {
 }
 
 /// Working depths that reach() had to raise belong into the scene too.
-void add_raised(const FitLaw& law, const Scene& before, const Scene& after,
-                std::vector<FittedKey>& keys) {
-  const auto add = [&keys](const char* section, const char* key, double was, double is) {
+void add_raised(const FitLaw& law, Scene before, Scene& after, std::vector<FittedKey>& keys) {
+  const auto add = [&keys](const std::string& section, const char* key, double was, double is) {
     if (is != was) keys.push_back({section, key, is, false});
   };
-  using enum model::scene::LawKind;
-  if (law.kind == kHexSheet)
-    add("hex_sheet", "working_depth_m", before.hex_sheet.working_depth_m,
-        after.hex_sheet.working_depth_m);
-  if (law.kind == kHuntCrossley)
-    add("hunt_crossley", "working_depth_m", before.hunt_crossley.working_depth_m,
-        after.hunt_crossley.working_depth_m);
-  if (law.kind == kCompliance)
-    add("compliance", "working_depth_m", before.compliance.working_depth_m,
-        after.compliance.working_depth_m);
-  if (law.kind == kSpringPatch)
-    add("spring_patch", "working_depth_m", before.spring_patch.working_depth_m,
-        after.spring_patch.working_depth_m);
+  const model::scene::LawRow& row = *model::scene::find_law(law.law);
+  if (const double* is_m = parameters_of(row, after).find("working_depth_m").number)
+    add(law.law, "working_depth_m", *parameters_of(row, before).find("working_depth_m").number,
+        *is_m);
   const bool has_pull =
       std::any_of(keys.begin(), keys.end(), [](const FittedKey& k) { return k.section == "pull"; });
   if (has_pull)
@@ -213,15 +204,15 @@ Result<FittedLaw> fit_law(const FitLaw& law, const Scene& scene, const FitData& 
         "{} differs from place to place: write the vertex of the organ into a column site of {}{}",
         law.name, data.source, law.by_place ? "" : ", or --set varies_by_place=false")};
   if (law.by_place)  // what such a law stands on may be missing
-    if (const auto possible = make_tissue_law(scene, law.kind); !possible) return possible.error();
+    if (const auto possible = make_tissue_law(scene, law.law); !possible) return possible.error();
   Fit fit(law, scene, data, options);
   FittedLaw out{.name = law.name, .choice = law.choice};
   const SearchResult best = search_from_all(law, fit, out.evaluations);
   fit.set(best.x);
-  const auto made = make_tissue_law(fit.scene(), law.kind);
+  const auto made = make_tissue_law(fit.scene(), law.law);
   if (!made) return made.error();
   // By the loop's tables, with all samples: what is judged is what a hand would feel.
-  auto answers = answers_of(fit.scene(), law.kind, data);
+  auto answers = answers_of(fit.scene(), law.law, data);
   if (!answers) return answers.error();
   out.title = (*made)->title();
   out.answers = std::move(*answers);

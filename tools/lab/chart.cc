@@ -82,12 +82,8 @@ Result<int> check_whole_tool(const program::Program& program, const Options& o,
   const auto reference = ground_truth::read_tool_reference(o.tool_reference);
   if (!reference) return reference.error();
   std::vector<ToolRow> rows;
-  for (const auto& name : model::scene::kLawNames) {
-    const auto& laws = o.chart.request.laws;
-    // Laws without a section of their own would be measured with numbers that nobody wrote.
-    if (!scene.describes(name.kind)) continue;
-    if (!laws.empty() && std::find(laws.begin(), laws.end(), name.name) == laws.end()) continue;
-    auto row = check_tool(scene, name.kind, *reference, o.chart.timing);
+  for (const std::string& law : wanted_laws(scene, o.chart.request)) {
+    auto row = check_tool(scene, law, *reference, o.chart.timing);
     if (!row) return row.error();
     rows.push_back(std::move(*row));
   }

@@ -35,9 +35,9 @@ struct Options {
 
 void add_options(CLI::App& app, Options& o) {
   o.scene.add_to(app, "the laws to fit");
-  app.add_option("--law", o.laws,
-                 "which laws, by name: rhombus, disc_stack (both forms), disc_stack_linear, "
-                 "disc_stack_almen_laszlo, hex_sheet, hunt_crossley, compliance, spring_patch")
+  app.add_option(
+         "--law", o.laws,
+         "which laws, by the name in a scene, or disc_stack_linear, disc_stack_almen_laszlo")
       ->delimiter(',')
       ->capture_default_str();
   app.add_option("--reference", o.reference,
@@ -94,7 +94,7 @@ Result<FitData> read_data(const Options& o, const Scene& scene) {
 }
 
 bool answers_to(const FitLaw& law, const std::string& name) {
-  return name == "all" || name == law.name || name == name_of(law.kind);
+  return name == "all" || name == law.name || name == law.law;
 }
 
 /// The laws of the scene that --law names, without the parameters that --keep names.

@@ -86,7 +86,7 @@ Result<std::vector<Candidate>> find_candidates(const Options& o, const Scene& sc
 }
 
 nlohmann::json to_json(const Candidate& c) {
-  return {{"law", name_of(c.sizes.law)},
+  return {{"law", c.sizes.law},
           {"name", text_of(c.sizes)},
           {"judged", c.own_error_ratio ? "whole tool" : "one sphere"},
           {"force_error_ratio", c.force_error_ratio},

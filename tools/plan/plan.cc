@@ -24,20 +24,13 @@ std::vector<Candidate> candidates_of(const report::Table& table) {
   for (const report::Row& row : table.rows()) {
     // Peers of a chart are measured for comparison; tactd has none of them.
     if (word(row, "kind") != "tact" || word(row, "failure") != "-") continue;
-    const auto count = [&](const char* column) {
+    const auto count = [&](const std::string& column) {
       return static_cast<std::size_t>(number(row, column));
     };
-    model::scene::LawSizes sizes{.table_knots = count("table_knots"),
-                                 .layers = count("layers"),
-                                 .rings = count("rings"),
-                                 .nodes = count("nodes"),
-                                 .curves = count("curves")};
-    for (const model::scene::LawName& name : model::scene::kLawNames)
-      if (name.name == word(row, "family")) sizes.law = name.kind;
-    const std::string& form = word(row, "form");
-    if (form != "-")
-      sizes.disc_form = form == "linear" ? model::indent::DiscForm::kLinear
-                                         : model::indent::DiscForm::kAlmenLaszlo;
+    model::scene::LawSizes sizes{.law = word(row, "family"), .table_knots = count("table_knots")};
+    const model::scene::LawRow* law = model::scene::find_law(sizes.law);
+    if (law != nullptr && !law->size_key.empty()) sizes.size = count(std::string(law->size_key));
+    if (word(row, "form") != "-") sizes.disc_form = word(row, "form");
     // A chart made without --tool-reference has no numbers of the whole tool.
     const bool whole_tool = std::isfinite(number(row, "tool_rms_ratio"));
     out.push_back(
@@ -54,9 +47,7 @@ std::vector<Candidate> candidates_of(const report::Table& table) {
 }
 
 void keep_what_cuts(std::vector<Candidate>& candidates) {
-  std::erase_if(candidates, [](const Candidate& c) {
-    return c.sizes.law != model::scene::LawKind::kSpringPatch;
-  });
+  std::erase_if(candidates, [](const Candidate& c) { return c.sizes.law != "spring_patch"; });
 }
 
 std::optional<Error> check_chart_fits(const report::Table& table, const model::scene::Scene& scene,

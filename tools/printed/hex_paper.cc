@@ -2,7 +2,6 @@
 #include "tools/printed/hex_paper.h"
 
 #include <cmath>
-#include <string>
 
 #include "model/ranges.h"
 
@@ -17,15 +16,6 @@ using model::law::HermiteTable;
 
 constexpr int kMaxIterations = 60;
 constexpr std::size_t kKnots = 129;
-
-const char* parameter_error(const HexPaperParameters& p) {
-  if (!is_positive(p.ring_pitch_m)) return "ring_pitch_m must be finite and above 0";
-  if (!is_positive(p.body_stiffness_N_per_m))
-    return "body_stiffness_N_per_m must be finite and above 0";
-  if (p.rings < 1 || p.rings > kMaxHexRings) return "rings must lie between 1 and 31";
-  if (!is_positive(p.working_depth_m)) return "working_depth_m must be finite and above 0";
-  return nullptr;
-}
 
 double alpha_of(std::size_t ring) RT_SAFE { return 2.0 * static_cast<double>(ring) - 1.0; }
 
@@ -139,8 +129,9 @@ PaperRings paper_rings(double first_strain, double boundary_slope) RT_SAFE {
 }
 
 Result<HexPaper> make_hex_paper(const HexPaperParameters& p) {
-  if (const char* wrong = parameter_error(p))
-    return Error{std::string("hexagonal sheet as printed: ") + wrong};
+  if (!is_positive(p.ring_pitch_m) || !is_positive(p.body_stiffness_N_per_m) ||
+      !is_positive(p.working_depth_m) || p.rings < 1 || p.rings > kMaxHexRings)
+    return Error{"hexagonal sheet as printed: every number must be above 0, rings at most 31"};
   return HexPaper(p);
 }
 

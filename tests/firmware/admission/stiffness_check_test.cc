@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/indent/hunt_crossley.h"
 #include "tests/support/test_scene.h"
 
 namespace tact::firmware::admission::stiffness_check_test {
@@ -110,19 +111,20 @@ TEST(StiffnessCheck, RefusesADeviceThatDoesNotTellItsDamping) {
 
 TEST(StiffnessCheck, RefusesADampingThatLeavesTheDeviceTooLittle) {
   model::scene::Scene scene = tests::make_plate_scene();
-  scene.law = model::scene::LawKind::kHuntCrossley;
+  scene.law = "hunt_crossley";
   scene.contact.sliding_stiffness_N_per_m = 50.0;
   scene.tool.spheres.push_back({{}, 0.004});
   // 2 x 50 N/m need 0.1 of 0.2 N s/m, and the law takes 2 x 0.5 N x lambda
-  scene.hunt_crossley = {.force_N = 0.5, .working_depth_m = 0.02, .exponent = 1.0};
+  auto& law = scene.laws.of<model::indent::HuntCrossleyParameters>();
+  law = {.force_N = 0.5, .working_depth_m = 0.02, .exponent = 1.0};
   for (const double dissipation_s_per_m : {0.0, 0.09}) {
-    scene.hunt_crossley.dissipation_s_per_m = dissipation_s_per_m;
+    law.dissipation_s_per_m = dissipation_s_per_m;
     const auto tissue = std::move(*model::scene::make_tissue(scene));
     const auto fits = check_renderable(scene, *tissue, device_with(0.2));
     ASSERT_TRUE(fits) << fits.error().message;
     EXPECT_NEAR(fits->limit_N_per_m, 200.0 - 950.0 * dissipation_s_per_m, 1e-6) << "0.95 of d_w";
   }
-  scene.hunt_crossley.dissipation_s_per_m = 0.12;
+  law.dissipation_s_per_m = 0.12;
   const auto tissue = std::move(*model::scene::make_tissue(scene));
   const auto refused = check_renderable(scene, *tissue, device_with(0.2));
   ASSERT_FALSE(refused);

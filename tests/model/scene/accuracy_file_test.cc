@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "model/indent/rhombus_patch.h"
 #include "tests/support/message.h"
 #include "tests/support/test_scene.h"
 
@@ -91,7 +92,7 @@ TEST_F(AccuracyFile, ASmallRmsKeepsNoToleranceThatTheOwnForceMisses) {
 TEST_F(AccuracyFile, AnotherLawOrganOrToolHasNoFigure) {
   write(accuracy_text({figure()}));
   const Scene measured = scene;
-  scene.rhombus.growth = 1.9;
+  scene.laws.of<indent::RhombusParameters>().chain.growth = 1.9;
   expect_unknown("is of another law, organ or tool; tact-lab reference");
   scene = measured;
   scene.tool.spheres.push_back({{0, 0.008, 0}, 0.004});

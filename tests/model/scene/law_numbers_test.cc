@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "model/scene/laws.h"
 #include "model/scene/scene.h"
 
 namespace tact::model::scene::law_numbers_test {
@@ -14,41 +15,47 @@ Result<Scene> load(std::string_view name, const Overrides& overrides) {
   return load_scene(fmt::format("{}/model/scenes/{}.toml", TACT_SOURCE_DIR, name), overrides);
 }
 
-std::vector<reader::SceneNumber> numbers_of(std::string_view name, const Overrides& overrides) {
-  const auto scene = load(name, overrides);
+/// Its law, and the numbers of that.
+struct LawInUse {
+  Scene scene;
+  std::vector<Parameter> numbers = parameters_of(*find_law(scene.law), scene).all;
+
+  std::string key(const Parameter& number) const {
+    return fmt::format("{}.{}", scene.law, number.key);
+  }
+};
+
+LawInUse law_in_use(std::string_view name, const Overrides& overrides) {
+  auto scene = load(name, overrides);
   EXPECT_TRUE(scene) << scene.error().message;
-  const auto numbers = law_numbers(*scene, overrides);
-  EXPECT_TRUE(numbers);
-  return *numbers;
+  return {std::move(*scene)};
 }
 
 TEST(LawNumbers, AreThoseOfTheLawThatIsFelt) {
   for (const auto& [law, count] : {std::pair{"rhombus", 7u}, {"disc_stack", 10u}}) {
-    const auto numbers = numbers_of("liver", {fmt::format("law={}", law)});
-    EXPECT_EQ(numbers.size(), count);
-    for (const reader::SceneNumber& number : numbers)
-      EXPECT_TRUE(number.key.starts_with(fmt::format("{}.", law))) << number.key;
+    const LawInUse used = law_in_use("liver", {fmt::format("law={}", law)});
+    EXPECT_EQ(used.scene.law, law);
+    EXPECT_EQ(used.numbers.size(), count);
   }
 }
 
-TEST(LawNumbers, HaveTheValueOfTheRunWithUnitAndRange) {
-  const auto numbers = numbers_of("liver", {"rhombus.normal_stiffness_N_per_m=2.5"});
-  const auto found =
-      std::ranges::find(numbers, "rhombus.normal_stiffness_N_per_m", &reader::SceneNumber::key);
-  ASSERT_NE(found, numbers.end());
-  EXPECT_EQ(found->value, 2.5);
-  EXPECT_EQ(found->unit, "N/m");
-  EXPECT_EQ(found->low, 0.01);
-  EXPECT_EQ(found->high, 1e5);
-  EXPECT_FALSE(found->is_whole);
+TEST(LawNumbers, HaveTheValueOfTheRunWithItsRange) {
+  const LawInUse used = law_in_use("liver", {"rhombus.normal_stiffness_N_per_m=2.5"});
+  const auto found = std::ranges::find(used.numbers, "normal_stiffness_N_per_m", &Parameter::key);
+  ASSERT_NE(found, used.numbers.end());
+  EXPECT_EQ(found->value(), 2.5);
+  EXPECT_EQ(found->range.low, 0.01);
+  EXPECT_EQ(found->range.high, 1e5);
+  EXPECT_EQ(found->count, nullptr);
   EXPECT_FALSE(found->meaning.empty());
 }
 
 TEST(LawNumbers, NothingBeyondTheToldRangeIsTaken) {
   for (const char* name : {"liver", "heart", "skin", "gum"}) {
-    for (const reader::SceneNumber& number : numbers_of(name, {})) {
-      const double beyond = number.is_whole ? number.high + 1.0 : number.high * 1.001;
-      EXPECT_FALSE(load(name, {fmt::format("{}={}", number.key, beyond)})) << number.key;
+    const LawInUse used = law_in_use(name, {});
+    for (const Parameter& number : used.numbers) {
+      const double beyond = number.count ? number.range.high + 1.0 : number.range.high * 1.001;
+      EXPECT_FALSE(load(name, {fmt::format("{}={}", used.key(number), beyond)})) << number.key;
     }
   }
 }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "model/indent/rhombus_patch.h"
 #include "model/scene/tissue.h"
 #include "model/units.h"
 #include "tests/support/message.h"
@@ -199,7 +200,7 @@ TEST(PressSweep, ErrorWhereItWasStoppedOrTheLawHasNoMeaning) {
   const auto stopped =
       sweep_presses(scene, places, {}, [](std::size_t, std::size_t) { return false; });
   EXPECT_EQ(tests::message_of(stopped), "the sweep was stopped");
-  scene.rhombus.units = 0;
+  scene.laws.of<indent::RhombusParameters>().chain.units = 0;
   EXPECT_NE(tests::message_of(sweep_presses(scene, places, {})), "");
 }
 

@@ -13,6 +13,7 @@
 #include <set>
 
 #include "model/reader/scene_text.h"
+#include "model/scene/laws.h"
 #include "model/scene/tissue.h"
 #include "tests/support/device_scene.h"
 #include "tests/support/example_delta.h"
@@ -56,19 +57,18 @@ std::set<std::string> keys_of_shipped_scenes() {
   return keys;
 }
 
-std::string joined(const std::set<std::string>& keys) {
-  std::string text;
-  for (const std::string& key : keys) text += key + "\n";
-  return text;
-}
-
 TEST(SceneReference, HasEveryKeyOfTheShippedScenesAndTheyHaveEveryKey) {
+  const std::set<std::string> shipped = keys_of_shipped_scenes();
   std::set<std::string> reference;
   for (const reader::ReferenceRow& row : reference_rows()) {
-    if (row.key.empty()) continue;
-    reference.insert(row.section.empty() ? row.key : row.section + "." + row.key);
+    const std::string section = row.section.empty() ? "" : row.section + ".";
+    // laws_test.cc reads the section of a law that no shipped scene describes.
+    const auto first = shipped.lower_bound(section);
+    const bool is_shipped = first != shipped.end() && first->starts_with(section);
+    if (!row.key.empty() && (is_shipped || !find_law(row.section)))
+      reference.insert(section + row.key);
   }
-  EXPECT_EQ(joined(reference), joined(keys_of_shipped_scenes()));
+  EXPECT_EQ(reference, shipped);
   EXPECT_GT(reference.size(), 45u);
 }
 

@@ -12,6 +12,7 @@
 #include <iterator>
 #include <regex>
 
+#include "model/indent/rhombus_patch.h"
 #include "model/scene/compliance_file.h"
 
 namespace tact::model::scene::scene_test {
@@ -58,13 +59,14 @@ TEST(Scene, HasWhatItsFileSays) {
   EXPECT_EQ(scene->path, kPlain);
   EXPECT_EQ(scene->name, "plain");
   EXPECT_EQ(scene->rate_Hz, 1000.0);
-  EXPECT_EQ(scene->law, LawKind::kRhombus);
-  EXPECT_EQ(scene->rhombus.rod_length_m, 0.005);
-  EXPECT_EQ(scene->rhombus.initial_angle_rad, 0.5236);
-  EXPECT_EQ(scene->rhombus.normal_stiffness_N_per_m, 150.0);
-  EXPECT_EQ(scene->rhombus.tangential_stiffness_N_per_m, 180.0);
-  EXPECT_EQ(scene->rhombus.growth, 2.0);
-  EXPECT_EQ(scene->rhombus.units, 10u);
+  EXPECT_EQ(scene->law, "rhombus");
+  auto& chain = scene->laws.of<indent::RhombusParameters>().chain;
+  EXPECT_EQ(chain.rod_length_m, 0.005);
+  EXPECT_EQ(chain.initial_angle_rad, 0.5236);
+  EXPECT_EQ(chain.normal_stiffness_N_per_m, 150.0);
+  EXPECT_EQ(chain.tangential_stiffness_N_per_m, 180.0);
+  EXPECT_EQ(chain.growth, 2.0);
+  EXPECT_EQ(chain.units, 10u);
   ASSERT_EQ(scene->tool.spheres.size(), 1u);
   EXPECT_EQ(scene->tool.spheres[0].offset_m, (Vec3{0, 0, 0.001}));
   EXPECT_EQ(scene->tool.spheres[0].radius_m, 0.004);

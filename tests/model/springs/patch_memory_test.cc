@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "model/scene/tissue_law.h"
+#include "model/springs/spring_patch.h"
 #include "tests/model/springs/patch_fixture.h"
 #include "tests/model/springs/spring_mesh.h"
 #include "tests/support/no_alloc.h"
@@ -210,11 +211,11 @@ TEST(PatchMemory, WhoLeavesForgetsAndTheToolGainsNothing) {
 TEST(PatchMemory, ASceneThatFadesMakesAPatchThatFades) {
   scene::Scene scene;
   scene.rate_Hz = 1000.0;
-  scene.spring_patch = stiffly_coupled({});
+  scene.laws.of<springs::SpringPatchParameters>() = stiffly_coupled({});
   scene.organ_mesh = tests::make_plate(0.1, 20);
   scene.tool.spheres = {{{}, 0.004}};
   scene.relaxation = {{0.5, 0.01}};
-  const auto made = make_tissue_law(scene, scene::LawKind::kSpringPatch);
+  const auto made = make_tissue_law(scene, "spring_patch");
   ASSERT_TRUE(made) << made.error().message;
   contact::ContactLaw& law = (*made)->contact_law();
   std::vector<double> force_N;
@@ -225,7 +226,7 @@ TEST(PatchMemory, ASceneThatFadesMakesAPatchThatFades) {
     law.advance();
   }
   scene.relaxation.clear();
-  const auto elastic = make_tissue_law(scene, scene::LawKind::kSpringPatch);
+  const auto elastic = make_tissue_law(scene, "spring_patch");
   double elastic_N = 0.0;
   for (int i = 0; i < 300; ++i) {
     elastic_N = (*elastic)
@@ -236,7 +237,7 @@ TEST(PatchMemory, ASceneThatFadesMakesAPatchThatFades) {
   }
   EXPECT_NEAR(force_N.back() / elastic_N, 0.5, 0.01);
   scene.relaxation = {{1.5, 0.01}};
-  EXPECT_FALSE(make_tissue_law(scene, scene::LawKind::kSpringPatch));
+  EXPECT_FALSE(make_tissue_law(scene, "spring_patch"));
 }
 
 TEST(PatchMemory, WithoutTermsNothingIsKept) {

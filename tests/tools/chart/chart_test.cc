@@ -11,12 +11,13 @@
 #include <sstream>
 
 #include "model/indent/disc_stack.h"
+#include "model/indent/hex_sheet.h"
+#include "model/indent/hunt_crossley.h"
+#include "model/springs/spring_patch.h"
 #include "tests/support/test_scene.h"
 #include "tools/chart/report/report.h"
 
 namespace tact::tools::chart::chart_test {
-
-using model::scene::LawKind;
 
 constexpr TimingSettings kShort{.ticks = 100, .rounds = 1, .limit_s = 0.05, .instructions = false};
 constexpr std::uint32_t kMiddle = 220;  // vertex of the plate, 20 x 20 cells
@@ -31,25 +32,26 @@ std::string scratch_folder(const std::string& name) {
 /// A plate with every law that needs no file.
 model::scene::Scene make_scene() {
   model::scene::Scene scene = tests::make_plate_scene();
-  scene.described = {LawKind::kRhombus, LawKind::kDiscStack, LawKind::kHexSheet,
-                     LawKind::kSpringPatch, LawKind::kHuntCrossley};
-  scene.hunt_crossley = {.force_N = 0.3, .working_depth_m = 0.01};
-  scene.disc_stack = tests::make_linear_discs();
-  scene.hex_sheet = {.ring_pitch_m = 0.004,
-                     .contact_stiffness_N_per_m = 5.0,
-                     .body_stiffness_N_per_m = 1.0,
-                     .surface_stiffness_N_per_m = 20.0,
-                     .tension_N = 0.02,
-                     .rings = 5,
-                     .working_depth_m = 0.01};
-  scene.spring_patch.tissue = {.surface_stiffness_N_per_m = 20.0,
-                               .body_stiffness_N_per_m = 5.0,
-                               .damping_time_s = 0.005,
-                               .body_damping_time_s = 0.01};
-  scene.spring_patch.coupling_stiffness_N_per_m = 100.0;
-  scene.spring_patch.node_mass_kg = 0.001;
-  scene.spring_patch.working_depth_m = 0.01;
-  scene.spring_patch.method.integrator = model::springs::Integrator::kImplicitEuler;
+  scene.described = {"rhombus", "disc_stack", "hex_sheet", "spring_patch", "hunt_crossley"};
+  scene.laws.of<model::indent::HuntCrossleyParameters>() = {.force_N = 0.3,
+                                                            .working_depth_m = 0.01};
+  scene.laws.of<model::indent::DiscStackParameters>() = tests::make_linear_discs();
+  scene.laws.of<model::indent::HexSheetParameters>() = {.ring_pitch_m = 0.004,
+                                                        .contact_stiffness_N_per_m = 5.0,
+                                                        .body_stiffness_N_per_m = 1.0,
+                                                        .surface_stiffness_N_per_m = 20.0,
+                                                        .tension_N = 0.02,
+                                                        .rings = 5,
+                                                        .working_depth_m = 0.01};
+  auto& patch = scene.laws.of<model::springs::SpringPatchParameters>();
+  patch.tissue = {.surface_stiffness_N_per_m = 20.0,
+                  .body_stiffness_N_per_m = 5.0,
+                  .damping_time_s = 0.005,
+                  .body_damping_time_s = 0.01};
+  patch.coupling_stiffness_N_per_m = 100.0;
+  patch.node_mass_kg = 0.001;
+  patch.working_depth_m = 0.01;
+  patch.method.integrator = model::springs::Integrator::kImplicitEuler;
   scene.reference_sites = {{.vertex = kMiddle, .held_out = false}};
   scene.hand_inward = {0, 0, -1};
   scene.contact.tear_force_N = 0.3;  // reached by every law, else the scene is refused
@@ -164,7 +166,8 @@ TEST(Chart, GivesEveryLawARowWithTheErrorWorkedByHand) {
   const model::scene::Scene scene = make_scene();
   // The linear disc stack is F = k d. Against 1.25 k: errors 0.25 k d, peak 2.5 k mm, so
   // 0.1 sqrt((1 + 4) / 2) = 0.158114.
-  const auto stack = model::indent::make_disc_stack(scene.disc_stack);
+  const auto stack =
+      model::indent::make_disc_stack(scene.laws.of<model::indent::DiscStackParameters>());
   ASSERT_TRUE(stack);
   const double k = stack->respond(0.001).force_N / 0.001;
   const report::Table table = chart_of(scene, linear_truth(1.25 * k), quick());
@@ -203,7 +206,7 @@ TEST(Chart, ALinearReferenceJudgesTheComplianceLawAtSmallStrain) {
 TEST(Chart, SaysWhenAPeerIsAhead) {
   const auto row = [](bool peer, double tick_us, double error) {
     ChartRow r;
-    r.variant.sizes.law = LawKind::kRhombus;
+    r.variant.sizes.law = "rhombus";
     r.timing.median_us = tick_us;
     r.errors.force_rms_ratio = error;
     report::Row out = table_row(r, {"s", "t", "r", "m"});

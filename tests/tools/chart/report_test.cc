@@ -10,8 +10,6 @@
 
 namespace tact::tools::chart::report_test {
 
-using model::scene::LawKind;
-
 TEST(ChartReport, ShowsThePeersThatWereMeasuredBefore) {
   const std::string file = TACT_SOURCE_DIR "/tools/results/peers.json";
   const auto peers = read_chart(file);
@@ -43,8 +41,7 @@ TEST(ChartReport, IsReadBackAsItWasWritten) {
   const Provenance provenance{"scene", "truth", "r1", "here, now"};
   report::Table table("chart");
   ChartRow row;
-  row.variant.sizes = {
-      .law = LawKind::kDiscStack, .layers = 7, .disc_form = model::indent::DiscForm::kLinear};
+  row.variant.sizes = {.law = "disc_stack", .size = 7, .disc_form = "linear"};
   row.errors.force_rms_ratio = 0.125;
   table.add(table_row(row, provenance));
   ASSERT_TRUE(write_chart(table, "tact-lab chart x", provenance, folder));

@@ -15,15 +15,14 @@
 namespace tact::tools::chart::tool_check_test {
 
 using ground_truth::ToolReference;
-using model::scene::LawKind;
 
 constexpr TimingSettings kShort{.ticks = 100, .rounds = 1, .limit_s = 0.05, .instructions = false};
 
 /// A plate under a linear disc stack, one sphere.
 model::scene::Scene make_scene() {
   model::scene::Scene scene = tests::make_plate_scene();
-  scene.described = {LawKind::kDiscStack};
-  scene.disc_stack = tests::make_linear_discs();
+  scene.described = {"disc_stack"};
+  scene.laws.of<model::indent::DiscStackParameters>() = tests::make_linear_discs();
   scene.hand_inward = {0, 0, -1};
   scene.elastic = model::scene::ElasticSettings{.youngs_modulus_Pa = 5000.0, .poisson_ratio = 0.45};
   return scene;
@@ -77,10 +76,11 @@ TEST(ToolErrors, CountWhatAHandCannotTell) {
 
 TEST(CheckTool, FindsTheErrorOfOneSphereAsWorkedByHand) {
   const model::scene::Scene scene = make_scene();
-  const auto stack = model::indent::make_disc_stack(scene.disc_stack);
+  const auto stack =
+      model::indent::make_disc_stack(scene.laws.of<model::indent::DiscStackParameters>());
   ASSERT_TRUE(stack);
   const double k = stack->respond(0.001).force_N / 0.001;
-  const auto row = check_tool(scene, LawKind::kDiscStack, linear_truth(scene, 1.25 * k), kShort);
+  const auto row = check_tool(scene, "disc_stack", linear_truth(scene, 1.25 * k), kShort);
   ASSERT_TRUE(row) << row.error().message;
   EXPECT_EQ(row->failure, "");
   ASSERT_EQ(row->samples.size(), 4U) << "two places, two depths";
@@ -90,11 +90,12 @@ TEST(CheckTool, FindsTheErrorOfOneSphereAsWorkedByHand) {
 
 TEST(CheckTool, FeelsEverySphereOfTheTool) {
   model::scene::Scene scene = make_scene();
-  const auto stack = model::indent::make_disc_stack(scene.disc_stack);
+  const auto stack =
+      model::indent::make_disc_stack(scene.laws.of<model::indent::DiscStackParameters>());
   ASSERT_TRUE(stack);
   const double k = stack->respond(0.001).force_N / 0.001;
   scene.tool.spheres = {{{0, -0.03, 0}, 0.004}, {{0, 0.03, 0}, 0.004}};  // far from each other
-  const auto row = check_tool(scene, LawKind::kDiscStack, linear_truth(scene, k), kShort);
+  const auto row = check_tool(scene, "disc_stack", linear_truth(scene, k), kShort);
   ASSERT_TRUE(row) << row.error().message;
   for (const ToolSample& s : row->samples) {
     EXPECT_GT(s.own_ratio(), 0.5);
@@ -106,9 +107,9 @@ TEST(CheckTool, IsWithoutFrictionAsTheReferenceIs) {
   model::scene::Scene scene = make_scene();
   ToolReference truth = linear_truth(scene, 20.0);
   for (auto& place : truth.places) place.direction = normalized(model::Vec3{0.3, 0.0, -1.0});
-  const auto rough = check_tool(scene, LawKind::kDiscStack, truth, kShort);
+  const auto rough = check_tool(scene, "disc_stack", truth, kShort);
   scene.contact.friction_ratio = 0.0;
-  const auto smooth = check_tool(scene, LawKind::kDiscStack, truth, kShort);
+  const auto smooth = check_tool(scene, "disc_stack", truth, kShort);
   ASSERT_TRUE(rough && smooth);
   EXPECT_EQ(rough->samples.back().force_N, smooth->samples.back().force_N);
 }
@@ -125,14 +126,15 @@ TEST(CheckTool, RefusesAReferenceOfAnotherTool) {
   model::scene::Scene scene = make_scene();
   const ToolReference truth = linear_truth(scene, 20.0);
   scene.tool.spheres[0].radius_m = 0.005;
-  const auto row = check_tool(scene, LawKind::kDiscStack, truth, kShort);
+  const auto row = check_tool(scene, "disc_stack", truth, kShort);
   ASSERT_FALSE(row);
   EXPECT_NE(row.error().message.find("spheres"), std::string::npos);
 }
 
 TEST(Chart, JudgesEverySizeByTheWholeToolWhereItIsKnown) {
   const model::scene::Scene scene = make_scene();
-  const auto stack = model::indent::make_disc_stack(scene.disc_stack);
+  const auto stack =
+      model::indent::make_disc_stack(scene.laws.of<model::indent::DiscStackParameters>());
   ASSERT_TRUE(stack);
   const double k = stack->respond(0.001).force_N / 0.001;
   ground_truth::ReferenceData one_sphere;
@@ -150,7 +152,7 @@ TEST(Chart, JudgesEverySizeByTheWholeToolWhereItIsKnown) {
   ASSERT_TRUE(rows) << rows.error().message;
   std::size_t linear = 0;
   for (const ChartRow& row : *rows) {
-    if (row.variant.sizes.disc_form != model::indent::DiscForm::kLinear) continue;
+    if (row.variant.sizes.disc_form != "linear") continue;
     ++linear;
     ASSERT_EQ(row.failure, "");
     ASSERT_TRUE(row.tool);
@@ -166,7 +168,7 @@ TEST(Chart, JudgesEverySizeByTheWholeToolWhereItIsKnown) {
 TEST(ToolReport, HasARowForEachLawPlaceAndDepthAndASummary) {
   const model::scene::Scene scene = make_scene();
   const ToolReference truth = linear_truth(scene, 20.0);
-  const auto row = check_tool(scene, LawKind::kDiscStack, truth, kShort);
+  const auto row = check_tool(scene, "disc_stack", truth, kShort);
   ASSERT_TRUE(row) << row.error().message;
   const auto j = nlohmann::json::parse(tool_json({*row}, truth, "tact-lab chart x", {}));
   EXPECT_EQ(j.at("format"), "tact-tool-chart");

@@ -5,6 +5,8 @@
 
 #include <filesystem>
 
+#include "model/indent/hex_sheet.h"
+#include "model/indent/rhombus_patch.h"
 #include "model/scene/compliance_file.h"
 #include "tests/tools/fit/fit_fixture.h"
 #include "tools/fit/fit_run.h"
@@ -53,7 +55,7 @@ class FitOfAnOrgan : public testing::Test {
 };
 
 TEST_F(FitOfAnOrgan, FindsTheModulus) {
-  answer(truth_, LawKind::kCompliance, data_, true);
+  answer(truth_, "compliance", data_, true);
   Scene start = truth_;
   start.elastic->youngs_modulus_Pa = 900.0;
   const FittedLaw fitted = fit("compliance", start, data_);
@@ -66,7 +68,7 @@ TEST_F(FitOfAnOrgan, FindsTheModulus) {
 }
 
 TEST_F(FitOfAnOrgan, AReferenceIsFittedAtItsOwnStrainWhateverTheSceneSays) {
-  answer(truth_, LawKind::kCompliance, data_, true);
+  answer(truth_, "compliance", data_, true);
   data_.large_strain = false;
   Scene start = truth_;
   start.compliance.large_strain = true;
@@ -78,12 +80,11 @@ TEST_F(FitOfAnOrgan, AReferenceIsFittedAtItsOwnStrainWhateverTheSceneSays) {
 TEST_F(FitOfAnOrgan, FindsALawInSeriesWithItsPlaces) {
   truth_.varies_by_place = true;
   truth_.pull = {.stiffness_N_per_m = 45.0, .limit_m = 8_mm};
-  for (const auto& [name, kind] :
-       {std::pair{"rhombus", LawKind::kRhombus}, std::pair{"hex_sheet", LawKind::kHexSheet}}) {
-    answer(truth_, kind, data_, false);
+  for (const char* name : {"rhombus", "hex_sheet"}) {
+    answer(truth_, name, data_, false);
     Scene start = truth_;
-    start.rhombus.normal_stiffness_N_per_m *= 2.0;
-    start.hex_sheet.body_stiffness_N_per_m *= 2.0;
+    start.laws.of<model::indent::RhombusParameters>().chain.normal_stiffness_N_per_m *= 2.0;
+    start.laws.of<model::indent::HexSheetParameters>().body_stiffness_N_per_m *= 2.0;
     FitLaw law = law_named(start, data_, name);
     keep_parameters(law, {"rod_length_m", "initial_angle_rad", "growth", "ring_pitch_m"});
     law.starts.resize(1);
@@ -97,7 +98,7 @@ TEST_F(FitOfAnOrgan, FindsALawInSeriesWithItsPlaces) {
 }
 
 TEST_F(FitOfAnOrgan, NeedsThePlacesOfTheSites) {
-  answer(truth_, LawKind::kCompliance, data_, true);
+  answer(truth_, "compliance", data_, true);
   data_.sites[0].at.reset();
   const auto without_place =
       fit_law(law_named(truth_, data_, "compliance"), truth_, data_, FitOptions{});

@@ -75,7 +75,7 @@ TEST(FitCheck, AFactorForEachSiteTakesTheirDifferenceAway) {
 TEST(FitCheck, ARhombusChainCannotFollowARoundTip) {
   // Hertz: F grows like d^1.5; the chain softens in press (RC-5).
   model::scene::Scene scene = tests::make_plate_scene();
-  scene.described = {model::scene::LawKind::kRhombus};
+  scene.described = {"rhombus"};
   const FitData data{.sites = {power_site("a", 0.5, 1.5)}};
   FitLaw law = fit_laws_of(scene, data)[0];
   law.most_evaluations = 300;

@@ -7,13 +7,15 @@
 
 #include <string>
 
+#include "model/indent/disc_stack.h"
+#include "model/indent/hex_sheet.h"
+#include "model/indent/hunt_crossley.h"
 #include "model/units.h"
 #include "tests/support/test_scene.h"
 #include "tools/fit/fit_run.h"
 
 namespace tact::tools::fit {
 
-using model::scene::LawKind;
 using model::scene::Scene;
 using model::operator""_mm;
 
@@ -21,10 +23,10 @@ using model::operator""_mm;
 inline Scene make_scene() {
   Scene scene = tests::make_plate_scene();
   scene.organ_mesh = tests::make_plate(0.08, 16);
-  scene.described = {LawKind::kRhombus,     LawKind::kDiscStack,  LawKind::kHexSheet,
-                     LawKind::kSpringPatch, LawKind::kCompliance, LawKind::kHuntCrossley};
+  scene.described = {"rhombus",      "disc_stack", "hex_sheet",
+                     "spring_patch", "compliance", "hunt_crossley"};
   scene.table_knots = 33;
-  scene.disc_stack = {
+  scene.laws.of<model::indent::DiscStackParameters>() = {
       .disc = {.outer_diameter_m = 8_mm,
                .inner_diameter_m = 4_mm,
                .thickness_m = 2_mm,
@@ -34,15 +36,16 @@ inline Scene make_scene() {
       .form = model::indent::DiscForm::kLinear,
       .delays = {
           .first_delay_s = 1e-5, .delay_ratio = 1.1, .refresh_rate_Hz = 1000.0, .layers = 20}};
-  scene.hex_sheet = {.ring_pitch_m = 2_mm,
-                     .contact_stiffness_N_per_m = 8.0,
-                     .body_stiffness_N_per_m = 4.0,
-                     .surface_stiffness_N_per_m = 60.0,
-                     .tension_N = 0.02,
-                     .rings = 10,
-                     .weight = model::indent::HexWeight::kNode,
-                     .working_depth_m = 12_mm};
-  scene.hunt_crossley = {.force_N = 0.6, .working_depth_m = 12_mm, .exponent = 1.4};
+  scene.laws.of<model::indent::HexSheetParameters>() = {.ring_pitch_m = 2_mm,
+                                                        .contact_stiffness_N_per_m = 8.0,
+                                                        .body_stiffness_N_per_m = 4.0,
+                                                        .surface_stiffness_N_per_m = 60.0,
+                                                        .tension_N = 0.02,
+                                                        .rings = 10,
+                                                        .weight = model::indent::HexWeight::kNode,
+                                                        .working_depth_m = 12_mm};
+  scene.laws.of<model::indent::HuntCrossleyParameters>() = {
+      .force_N = 0.6, .working_depth_m = 12_mm, .exponent = 1.4};
   return scene;
 }
 
@@ -63,7 +66,7 @@ inline FitSite make_contact_point(const Scene& scene, std::size_t vertex, double
   return site;
 }
 
-inline void answer(const Scene& scene, LawKind kind, FitData& data, bool with_shapes) {
+inline void answer(const Scene& scene, const std::string& kind, FitData& data, bool with_shapes) {
   data.ring_radius_m.clear();
   for (std::size_t k = 0; k < 8; ++k) data.ring_radius_m.push_back(4_mm * static_cast<double>(k));
   for (FitSite& site : data.sites)

@@ -6,6 +6,7 @@
 
 #include <set>
 
+#include "model/indent/hex_sheet.h"
 #include "model/units.h"
 
 namespace tact::tools::fit::fit_law_test {
@@ -75,7 +76,8 @@ TEST(FitLaw, ReachesWhereTheDataGoes) {
   Scene scene = liver();
   scene.pull.reset();
   reach(scene, press_and_pull());
-  EXPECT_GE(0.95 * scene.hex_sheet.working_depth_m, 20_mm);  // what its table reaches
+  EXPECT_GE(0.95 * scene.laws.of<model::indent::HexSheetParameters>().working_depth_m,
+            20_mm);  // what its table reaches
   EXPECT_GE(0.95 * scene.compliance.working_depth_m, 20_mm);
   ASSERT_TRUE(scene.pull);
   EXPECT_NEAR(scene.pull->stiffness_N_per_m, 50.0, 1e-9);  // 0.4 N at 8 mm

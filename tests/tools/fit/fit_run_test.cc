@@ -5,6 +5,11 @@
 
 #include <algorithm>
 
+#include "model/indent/disc_stack.h"
+#include "model/indent/hex_sheet.h"
+#include "model/indent/hunt_crossley.h"
+#include "model/indent/rhombus_patch.h"
+#include "model/springs/spring_patch.h"
 #include "tests/tools/fit/fit_fixture.h"
 
 namespace tact::tools::fit::fit_run_test {
@@ -22,17 +27,19 @@ void spoil(FitData& data) {
 
 TEST(FitRun, FindsTheRhombusChainThatMadeTheData) {
   Scene truth = make_scene();
-  truth.rhombus.units = 4;  // 10 mm go nearly to the end: deep enough to tell the springs apart
+  truth.laws.of<model::indent::RhombusParameters>().chain.units =
+      4;  // 10 mm go nearly to the end: deep enough to tell the springs apart
   truth.pull = {.stiffness_N_per_m = 45.0, .limit_m = 8_mm};
   FitData data{.sites = {make_contact_point(truth, 100, 8_mm)}};
-  answer(truth, LawKind::kRhombus, data, true);
+  answer(truth, "rhombus", data, true);
   Scene start = truth;
   start.pull.reset();
-  start.rhombus.rod_length_m *= 1.2;
-  start.rhombus.initial_angle_rad = 0.6;
-  start.rhombus.normal_stiffness_N_per_m = 300.0;
-  start.rhombus.tangential_stiffness_N_per_m = 90.0;
-  start.rhombus.growth = 4.0;
+  auto& from = start.laws.of<model::indent::RhombusParameters>().chain;
+  from.rod_length_m *= 1.2;
+  from.initial_angle_rad = 0.6;
+  from.normal_stiffness_N_per_m = 300.0;
+  from.tangential_stiffness_N_per_m = 90.0;
+  from.growth = 4.0;
   const FittedLaw fitted = fit("rhombus", start, data);
   EXPECT_TRUE(fitted.checked.follows);
   EXPECT_LT(fitted.checked.fitted.rms_ratio(), 1e-4);
@@ -55,9 +62,9 @@ TEST(FitRun, FindsTheRhombusChainThatMadeTheData) {
 TEST(FitRun, FindsTheDiscStackThatMadeTheData) {
   const Scene truth = make_scene();
   FitData data{.sites = {make_contact_point(truth, 100, 0.0)}};
-  answer(truth, LawKind::kDiscStack, data, true);
+  answer(truth, "disc_stack", data, true);
   Scene start = make_scene();
-  start.disc_stack.disc.youngs_modulus_Pa = 1e5;
+  start.laws.of<model::indent::DiscStackParameters>().disc.youngs_modulus_Pa = 1e5;
   EXPECT_NEAR(value_of(fit("disc_stack_linear", start, data), "youngs_modulus_Pa"), 5200.0, 1.0);
   spoil(data);
   EXPECT_NEAR(value_of(fit("disc_stack_linear", start, data), "youngs_modulus_Pa"), 5200.0, 52.0);
@@ -66,7 +73,7 @@ TEST(FitRun, FindsTheDiscStackThatMadeTheData) {
 TEST(FitRun, DoesNotDependOnTheOrderOfTheRows) {
   const Scene scene = make_scene();
   FitData data{.sites = {make_contact_point(scene, 100, 0.0)}};
-  answer(scene, LawKind::kDiscStack, data, false);
+  answer(scene, "disc_stack", data, false);
   for (FitSample& s : data.sites[0].samples) s.force_N *= 1.0 + 100.0 * s.depth_m;  // no law's
   const auto modulus_Pa = [&] {
     return value_of(fit("disc_stack_linear", scene, data), "youngs_modulus_Pa");
@@ -78,12 +85,13 @@ TEST(FitRun, DoesNotDependOnTheOrderOfTheRows) {
 
 TEST(FitRun, FindsTheConedDiscsThatMadeTheData) {
   Scene truth = make_scene();
-  truth.disc_stack.form = model::indent::DiscForm::kAlmenLaszlo;
+  truth.laws.of<model::indent::DiscStackParameters>().form = model::indent::DiscForm::kAlmenLaszlo;
   FitData data{.sites = {make_contact_point(truth, 100, 0.0)}};
-  answer(truth, LawKind::kDiscStack, data, false);
+  answer(truth, "disc_stack", data, false);
   Scene start = make_scene();
-  start.disc_stack.disc.youngs_modulus_Pa = 2000.0;
-  start.disc_stack.disc.free_height_m = 2.6_mm;
+  auto& from = start.laws.of<model::indent::DiscStackParameters>();
+  from.disc.youngs_modulus_Pa = 2000.0;
+  from.disc.free_height_m = 2.6_mm;
   const FittedLaw fitted = fit("disc_stack_almen_laszlo", start, data);
   EXPECT_NEAR(value_of(fitted, "youngs_modulus_Pa"), 5200.0, 10.0);
   EXPECT_NEAR(value_of(fitted, "free_height_m"), 2.7_mm, 0.01_mm);
@@ -96,10 +104,11 @@ TEST(FitRun, FindsTheConedDiscsThatMadeTheData) {
 TEST(FitRun, FindsThePowerLawThatMadeTheData) {
   const Scene truth = make_scene();
   FitData data{.sites = {make_contact_point(truth, 100, 0.0)}};
-  answer(truth, LawKind::kHuntCrossley, data, true);
+  answer(truth, "hunt_crossley", data, true);
   Scene start = make_scene();
-  start.hunt_crossley.force_N = 3.0;
-  start.hunt_crossley.exponent = 2.0;
+  auto& from = start.laws.of<model::indent::HuntCrossleyParameters>();
+  from.force_N = 3.0;
+  from.exponent = 2.0;
   const FittedLaw fitted = fit("hunt_crossley", start, data);
   EXPECT_NEAR(value_of(fitted, "force_N"), 0.6, 0.006);
   EXPECT_NEAR(value_of(fitted, "exponent"), 1.4, 0.01);
@@ -110,13 +119,14 @@ TEST(FitRun, FindsThePowerLawThatMadeTheData) {
 TEST(FitRun, FindsTheHexagonalSheetThatMadeTheData) {
   const Scene truth = make_scene();
   FitData data{.sites = {make_contact_point(truth, 100, 0.0)}};
-  answer(truth, LawKind::kHexSheet, data, true);
+  answer(truth, "hex_sheet", data, true);
   Scene start = make_scene();
-  start.hex_sheet.ring_pitch_m = 3_mm;
-  start.hex_sheet.contact_stiffness_N_per_m = 1.0;
-  start.hex_sheet.body_stiffness_N_per_m = 1.0;
-  start.hex_sheet.surface_stiffness_N_per_m = 10.0;
-  start.hex_sheet.tension_N = 0.1;
+  auto& from = start.laws.of<model::indent::HexSheetParameters>();
+  from.ring_pitch_m = 3_mm;
+  from.contact_stiffness_N_per_m = 1.0;
+  from.body_stiffness_N_per_m = 1.0;
+  from.surface_stiffness_N_per_m = 10.0;
+  from.tension_N = 0.1;
   const FittedLaw fitted = fit("hex_sheet", start, data);
   EXPECT_LT(fitted.checked.fitted.rms_ratio(), 1e-3);
   EXPECT_NEAR(value_of(fitted, "ring_pitch_m"), 2_mm, 0.1_mm);
@@ -128,7 +138,7 @@ TEST(FitRun, FindsTheHexagonalSheetThatMadeTheData) {
 TEST(FitRun, FactorsOfTheSitesHaveTheMeanOne) {
   const Scene truth = make_scene();
   FitData data{.sites = {make_contact_point(truth, 100, 0.0), make_contact_point(truth, 60, 0.0)}};
-  answer(truth, LawKind::kDiscStack, data, false);
+  answer(truth, "disc_stack", data, false);
   for (FitSample& s : data.sites[1].samples) s.force_N *= 4.0;
   const FittedLaw fitted =
       fit("disc_stack_linear", truth, data, {.shape_weight = 0.0, .scale_by_site = true});
@@ -141,20 +151,22 @@ TEST(FitRun, FactorsOfTheSitesHaveTheMeanOne) {
 TEST(FitRun, KeepsThePatchAsSoftAsTheDataAndItsMassInProportion) {
   Scene truth = make_scene();
   truth.organ_mesh = tests::make_plate(0.06, 8);
-  truth.spring_patch = {.tissue = {.surface_stiffness_N_per_m = 40.0,
-                                   .body_stiffness_N_per_m = 10.0,
-                                   .damping_time_s = 0.004,
-                                   .body_damping_time_s = 0.004},
-                        .coupling_stiffness_N_per_m = 120.0,
-                        .node_mass_kg = 0.008,
-                        .working_depth_m = 12_mm,
-                        .nodes = 40};
+  truth.laws.of<model::springs::SpringPatchParameters>() = {
+      .tissue = {.surface_stiffness_N_per_m = 40.0,
+                 .body_stiffness_N_per_m = 10.0,
+                 .damping_time_s = 0.004,
+                 .body_damping_time_s = 0.004},
+      .coupling_stiffness_N_per_m = 120.0,
+      .node_mass_kg = 0.008,
+      .working_depth_m = 12_mm,
+      .nodes = 40};
   FitData data{.sites = {make_contact_point(truth, 40, 0.0)}};
   data.sites[0].samples = {{.depth_m = 10_mm}};
-  answer(truth, LawKind::kSpringPatch, data, true);
+  answer(truth, "spring_patch", data, true);
   Scene start = truth;
-  start.spring_patch.tissue.surface_stiffness_N_per_m = 80.0;
-  start.spring_patch.tissue.body_stiffness_N_per_m = 10.0;
+  auto& from = start.laws.of<model::springs::SpringPatchParameters>().tissue;
+  from.surface_stiffness_N_per_m = 80.0;
+  from.body_stiffness_N_per_m = 10.0;
   FitLaw patient = law_named(start, data, "spring_patch");
   patient.most_evaluations = 150;
   const auto result = fit_law(patient, start, data, {});

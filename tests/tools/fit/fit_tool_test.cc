@@ -8,6 +8,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "model/indent/disc_stack.h"
 #include "model/scene/scene.h"
 #include "tests/support/program.h"
 
@@ -54,7 +55,7 @@ TEST_F(FitTool, WritesKeysThatTheSceneTakes) {
       kScene, {"disc_stack.form=\"linear\"",
                "disc_stack.youngs_modulus_Pa=" + value.substr(0, value.find('\n'))});
   ASSERT_TRUE(scene) << scene.error().message;
-  const auto stack = make_disc_stack(scene->disc_stack);
+  const auto stack = make_disc_stack(scene->laws.of<model::indent::DiscStackParameters>());
   ASSERT_TRUE(stack);
   EXPECT_NEAR(stack->respond(0.01).force_N, 0.5, 0.001);
 }

@@ -16,12 +16,11 @@
 
 namespace tact::tools::plan::plan_test {
 
-using model::scene::LawKind;
-
 constexpr model::scene::ToleranceSettings kTolerance{
     .force_error_ratio = 0.07, .shape_error_ratio = 0.25, .tick_budget_us = 10.0};
 
-Candidate candidate(LawKind law, double force, double shape, double tick_us, double memory_bytes) {
+Candidate candidate(const std::string& law, double force, double shape, double tick_us,
+                    double memory_bytes) {
   return {.sizes = {.law = law},
           .force_error_ratio = force,
           .shape_error_ratio = shape,
@@ -36,10 +35,9 @@ bool has(const std::string& text, const std::string& part) {
 
 TEST(Choose, TakesTheFastestThatIsEnoughAndNamesTheRunnerUp) {
   const std::vector<Candidate> laws{
-      candidate(LawKind::kRhombus, 0.20, 0.10, 0.05, 1e4),     // too far off
-      candidate(LawKind::kSpringPatch, 0.02, 0.10, 8.0, 1e4),  // p99.9 16 us: too slow
-      candidate(LawKind::kCompliance, 0.01, 0.05, 0.4, 1e6),
-      candidate(LawKind::kHexSheet, 0.06, 0.20, 0.1, 1e4)};
+      candidate("rhombus", 0.20, 0.10, 0.05, 1e4),      // too far off
+      candidate("spring_patch", 0.02, 0.10, 8.0, 1e4),  // p99.9 16 us: too slow
+      candidate("compliance", 0.01, 0.05, 0.4, 1e6), candidate("hex_sheet", 0.06, 0.20, 0.1, 1e4)};
   const Choice choice = choose(laws, kTolerance);
   EXPECT_TRUE(choice.meets);
   EXPECT_EQ(choice.chosen, 3U);
@@ -50,9 +48,9 @@ TEST(Choose, TakesTheFastestThatIsEnoughAndNamesTheRunnerUp) {
 }
 
 TEST(Choose, LetsMemoryDecideWhereTimesCannotBeToldApart) {
-  const std::vector<Candidate> laws{candidate(LawKind::kCompliance, 0.01, 0.05, 0.100, 4e5),
-                                    candidate(LawKind::kCompliance, 0.02, 0.06, 0.108, 1e5),
-                                    candidate(LawKind::kCompliance, 0.03, 0.06, 0.120, 1e3)};
+  const std::vector<Candidate> laws{candidate("compliance", 0.01, 0.05, 0.100, 4e5),
+                                    candidate("compliance", 0.02, 0.06, 0.108, 1e5),
+                                    candidate("compliance", 0.03, 0.06, 0.120, 1e3)};
   const Choice choice = choose(laws, kTolerance);
   EXPECT_EQ(choice.chosen, 1U);  // 8 % slower counts as equal, 20 % does not
   ASSERT_TRUE(choice.runner_up);
@@ -60,9 +58,9 @@ TEST(Choose, LetsMemoryDecideWhereTimesCannotBeToldApart) {
 }
 
 TEST(Choose, TellsTheNearestAndWhatToChangeWhenNoneIsEnough) {
-  const std::vector<Candidate> laws{candidate(LawKind::kRhombus, 0.21, 0.10, 0.05, 1e4),
-                                    candidate(LawKind::kHexSheet, 0.08, 0.20, 0.05, 1e4),
-                                    candidate(LawKind::kSpringPatch, 0.01, 0.20, 50.0, 1e4)};
+  const std::vector<Candidate> laws{candidate("rhombus", 0.21, 0.10, 0.05, 1e4),
+                                    candidate("hex_sheet", 0.08, 0.20, 0.05, 1e4),
+                                    candidate("spring_patch", 0.01, 0.20, 50.0, 1e4)};
   const Choice choice = choose(laws, kTolerance);
   EXPECT_FALSE(choice.meets);
   EXPECT_EQ(choice.chosen, 1U);
@@ -74,8 +72,8 @@ TEST(Choose, TellsTheNearestAndWhatToChangeWhenNoneIsEnough) {
 }
 
 TEST(Choose, PrefersWhatKeepsTheOwnForceOfTheWholeToolToo) {
-  std::vector<Candidate> laws{candidate(LawKind::kRhombus, 0.01, 0.10, 0.1, 1e4),
-                              candidate(LawKind::kCompliance, 0.01, 0.10, 0.4, 1e6)};
+  std::vector<Candidate> laws{candidate("rhombus", 0.01, 0.10, 0.1, 1e4),
+                              candidate("compliance", 0.01, 0.10, 0.4, 1e6)};
   laws[0].own_error_ratio = 0.14;  // faster, but light touch is 14 % off
   laws[1].own_error_ratio = 0.06;
   const Choice both = choose(laws, kTolerance);
@@ -94,10 +92,9 @@ TEST(Choose, PrefersWhatKeepsTheOwnForceOfTheWholeToolToo) {
 
 TEST(Choose, NeverTakesWhatWasNotMeasured) {
   const double nan = std::nan("");
-  const std::vector<Candidate> laws{candidate(LawKind::kRhombus, nan, 0.1, 0.05, 1e4),
-                                    candidate(LawKind::kHexSheet, 0.01, nan, 0.05, 1e4),
-                                    candidate(LawKind::kDiscStack, 0.01, 0.1, nan, 1e4),
-                                    candidate(LawKind::kSpringPatch, 0.5, 0.1, 0.05, 1e4)};
+  const std::vector<Candidate> laws{
+      candidate("rhombus", nan, 0.1, 0.05, 1e4), candidate("hex_sheet", 0.01, nan, 0.05, 1e4),
+      candidate("disc_stack", 0.01, 0.1, nan, 1e4), candidate("spring_patch", 0.5, 0.1, 0.05, 1e4)};
   const Choice choice = choose(laws, kTolerance);
   EXPECT_FALSE(choice.meets);
   EXPECT_EQ(choice.chosen, 3U);  // the nearest that was
@@ -106,18 +103,18 @@ TEST(Choose, NeverTakesWhatWasNotMeasured) {
 
 TEST(Plan, OfABladeTakesWhatCanBeCutAlone) {
   std::vector<Candidate> candidates(3);
-  candidates[0].sizes.law = LawKind::kCompliance;
-  candidates[1].sizes.law = LawKind::kSpringPatch;
-  candidates[2].sizes.law = LawKind::kRhombus;
+  candidates[0].sizes.law = "compliance";
+  candidates[1].sizes.law = "spring_patch";
+  candidates[2].sizes.law = "rhombus";
   keep_what_cuts(candidates);
   ASSERT_EQ(candidates.size(), 1U);
-  EXPECT_EQ(candidates[0].sizes.law, LawKind::kSpringPatch);
+  EXPECT_EQ(candidates[0].sizes.law, "spring_patch");
 }
 
 TEST(Plan, GoesByTheWholeToolWhereTheChartHasIt) {
   report::Table table("chart");
   chart::ChartRow one, whole;
-  one.variant.sizes.law = whole.variant.sizes.law = LawKind::kRhombus;
+  one.variant.sizes.law = whole.variant.sizes.law = "rhombus";
   one.errors.force_rms_ratio = whole.errors.force_rms_ratio = 0.003;  // one sphere
   whole.tool.emplace();
   whole.tool->rms_ratio = 0.48;
@@ -135,10 +132,9 @@ TEST(Plan, ReadsTactsRowsOfAChart) {
   report::Table table("chart");
   const chart::Provenance here{"0123456789abcdef", "truth", "r1", model::scene::machine_name()};
   chart::ChartRow law, failed;
-  law.variant.sizes = {
-      .law = LawKind::kDiscStack, .layers = 7, .disc_form = model::indent::DiscForm::kLinear};
+  law.variant.sizes = {.law = "disc_stack", .size = 7, .disc_form = "linear"};
   law.errors.force_rms_ratio = 0.125;
-  failed.variant.sizes.law = LawKind::kRhombus;
+  failed.variant.sizes.law = "rhombus";
   failed.failure = "no meaning";
   report::Row peer = table_row(law, {here.scene_hash, here.reference_hash, "r1", "another"});
   peer.front().second = "peer";  // the kind
@@ -147,9 +143,9 @@ TEST(Plan, ReadsTactsRowsOfAChart) {
   table.add(table_row(failed, here));
   const auto candidates = candidates_of(table);
   ASSERT_EQ(candidates.size(), 1U);
-  EXPECT_EQ(candidates[0].sizes.law, LawKind::kDiscStack);
-  EXPECT_EQ(candidates[0].sizes.layers, 7U);
-  EXPECT_EQ(candidates[0].sizes.disc_form, model::indent::DiscForm::kLinear);
+  EXPECT_EQ(candidates[0].sizes.law, "disc_stack");
+  EXPECT_EQ(candidates[0].sizes.size, 7U);
+  EXPECT_EQ(candidates[0].sizes.disc_form, "linear");
   EXPECT_EQ(candidates[0].force_error_ratio, 0.125);
 
   model::scene::Scene scene = tests::make_plate_scene();
@@ -163,8 +159,8 @@ TEST(Plan, ReadsTactsRowsOfAChart) {
 class PlanFile : public testing::Test {
  protected:
   PlanFile() {
-    scene_.described = {LawKind::kCompliance};
-    plan_ = {.sizes = {.law = LawKind::kCompliance, .table_knots = 33, .curves = 9},
+    scene_.described = {"compliance"};
+    plan_ = {.sizes = {.law = "compliance", .table_knots = 33, .size = 9},
              .tick_p999_us = 0.25,
              .force_error_ratio = 0.0123,
              .shape_error_ratio = 0.05,
@@ -205,8 +201,8 @@ TEST_F(PlanFile, IsFoundAgainByTheSceneAndSetsItsLawAndSizes) {
   unsetenv("XDG_CACHE_HOME");
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(model::scene::plan_text(*read), model::scene::plan_text(plan_));
-  model::scene::use_sizes(read->sizes, scene_);
-  EXPECT_EQ(scene_.law, LawKind::kCompliance);
+  scene_ = sized(scene_, read->sizes);
+  EXPECT_EQ(scene_.law, "compliance");
   EXPECT_EQ(scene_.table_knots, 33U);
   EXPECT_EQ(scene_.compliance.curves, 9U);
 }
@@ -224,7 +220,7 @@ TEST_F(PlanFile, OfAShippedSceneIsFoundWhenAutoIsSetForOneRun) {
   const auto missing = model::scene::find_plan(*slower, {"law=auto"});
   unsetenv("XDG_CACHE_HOME");
   ASSERT_TRUE(found) << found.error().message;
-  EXPECT_EQ(found->sizes.law, LawKind::kCompliance);
+  EXPECT_EQ(found->sizes.law, "compliance");
   ASSERT_FALSE(missing) << "the plan of another rate";
   EXPECT_TRUE(has(missing.error().message, "run tact-lab plan " + liver + " --reference"))
       << missing.error().message;
@@ -254,7 +250,7 @@ TEST_F(PlanFile, RefusesWhatIsMissingDamagedOrStale) {
   other.scene_hash = "fedcba9876543210";
   expect_remedy(model::scene::read_plan(write(plan_text(other)), scene_, kSet), "another scene");
   other = plan_;
-  other.sizes.law = LawKind::kHexSheet;
+  other.sizes.law = "hex_sheet";
   expect_remedy(model::scene::read_plan(write(plan_text(other)), scene_, kSet), "no law hex_sheet");
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "model/scene/laws.h"
 #include "tools/ground_truth/reference_fits.h"
 #include "tools/program/run_program.h"
 
@@ -22,12 +23,6 @@ std::string without_commas(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](char c) { return c == ',' || c == '"' || c == '\n'; }, ';');
   return text;
-}
-
-Scene sized(const Scene& scene, const Variant& variant) {
-  Scene own = scene;
-  use_sizes(variant.sizes, own);
-  return own;
 }
 
 /// Judged without relaxation and at small strain, as the reference is linear elastic; the memory is
@@ -49,7 +44,7 @@ ChartRow check_errors_of(const Scene& scene, const Scene& elastic, const Variant
   }
   row.memory_bytes = (*subject)->memory_bytes();
   if (tool_reference == nullptr) return row;
-  const auto checked = check_errors(sized(scene, variant), *tool_reference);
+  const auto checked = check_errors(sized(scene, variant.sizes), *tool_reference);
   row.failure = checked ? checked->failure : checked.error().message;
   if (row.failure.empty()) row.tool = checked->errors;
   return row;
@@ -102,15 +97,13 @@ Result<std::vector<ChartRow>> measure_chart(const Scene& scene,
   const program::SweepOptions one_by_one{.label = options.label + ", time", .threads = 1};
   const bool timed = run_jobs(variants.size(), one_by_one, [&](std::size_t job) {
     if (!all[job].failure.empty()) return;
-    if (const auto timing = time_tool(sized(scene, variants[job]), options.timing))
+    if (const auto timing = time_tool(sized(scene, variants[job].sizes), options.timing))
       all[job].timing = *timing;
     else
       all[job].failure = timing.error().message;
   });
   if (!timed) return program::interruption();
-  std::vector<ChartRow> rows;
-  for (ChartRow& one : all) rows.push_back(std::move(one));
-  return rows;
+  return all;
 }
 
 // NOLINTNEXTLINE(readability-function-size): a table of columns
@@ -121,21 +114,22 @@ report::Row table_row(const ChartRow& row, const Provenance& provenance) {
     return row.failure.empty() ? static_cast<double>(value) : kNotMeasured;
   };
   const ErrorSummary& e = row.errors;
-  const char* form = !sizes.disc_form                                       ? "-"
-                     : *sizes.disc_form == model::indent::DiscForm::kLinear ? "linear"
-                                                                            : "almen-laszlo";
+  const auto size_of = [&](std::string_view key) {
+    const model::scene::LawRow* law = model::scene::find_law(sizes.law);
+    return law != nullptr && law->size_key == key ? sizes.size : 0;
+  };
   const auto or_dash = [](const std::string& text) {
     return text.empty() ? "-" : without_commas(text);
   };
   return {{"kind", "tact"},
-          {"family", row.variant.family()},
+          {"family", sizes.law},
           {"size", row.variant.size()},
-          {"form", form},
+          {"form", or_dash(sizes.disc_form)},
           {"table_knots", sizes.table_knots},
-          {"layers", sizes.layers},
-          {"rings", sizes.rings},
-          {"nodes", sizes.nodes},
-          {"curves", sizes.curves},
+          {"layers", size_of("layers")},
+          {"rings", size_of("rings")},
+          {"nodes", size_of("nodes")},
+          {"curves", size_of("curves")},
           {"force_rms_ratio", measured(e.force_rms_ratio)},
           {"force_worst_ratio", measured(e.force_worst_ratio)},
           {"press_rms_ratio", measured(e.press_rms_ratio)},

@@ -24,8 +24,7 @@ namespace tact::tools::chart {
 struct Variant {
   model::scene::LawSizes sizes{};
 
-  std::string family() const;  // "rhombus"
-  std::string size() const;    // "65 knots"
+  std::string size() const;  // "65 knots"
 };
 
 struct VariantRequest {
@@ -35,6 +34,9 @@ struct VariantRequest {
 
 /// In the order of the table. Laws that the scene does not describe are left out.
 std::vector<Variant> variants_of(const model::scene::Scene& scene, const VariantRequest& request);
+/// Those that the scene describes: others would be measured with numbers that nobody wrote.
+std::vector<std::string> wanted_laws(const model::scene::Scene& scene,
+                                     const VariantRequest& request);
 /// Every family there is, for --laws.
 std::vector<std::string> all_families();
 

@@ -190,7 +190,7 @@ Result<ToolRow> check_errors(const Scene& scene, const ToolReference& reference)
   return row;
 }
 
-Result<ToolRow> check_tool(const Scene& scene, model::scene::LawKind law,
+Result<ToolRow> check_tool(const Scene& scene, const std::string& law,
                            const ToolReference& reference, const TimingSettings& timing) {
   Scene own = scene;
   own.law = law;

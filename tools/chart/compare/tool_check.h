@@ -41,7 +41,7 @@ struct ToolErrors {
 ToolErrors summarize_tool(const std::vector<ToolSample>& samples, const std::vector<bool>& unseen);
 
 struct ToolRow {
-  model::scene::LawKind law{};
+  std::string law{};
   std::string failure{};            // empty: it was measured
   std::vector<ToolSample> samples;  // by place, then by depth
   ToolErrors errors{};
@@ -56,7 +56,7 @@ model::Result<ToolRow> check_errors(const model::scene::Scene& scene,
 model::Result<Timing> time_tool(const model::scene::Scene& scene, const TimingSettings& settings);
 
 /// Both, of one law of the scene.
-model::Result<ToolRow> check_tool(const model::scene::Scene& scene, model::scene::LawKind law,
+model::Result<ToolRow> check_tool(const model::scene::Scene& scene, const std::string& law,
                                   const ground_truth::ToolReference& reference,
                                   const TimingSettings& timing);
 

@@ -119,8 +119,7 @@ void Subject::wait_for_rest() {
 
 Result<std::unique_ptr<Subject>> make_subject(const model::scene::Scene& scene,
                                               const model::scene::LawSizes& sizes) {
-  auto own = std::make_unique<model::scene::Scene>(scene);
-  use_sizes(sizes, *own);
+  auto own = std::make_unique<model::scene::Scene>(sized(scene, sizes));
   auto law = make_tissue_law(*own, sizes.law);
   if (!law) return law.error();
   return std::make_unique<Subject>(std::move(own), std::move(*law));

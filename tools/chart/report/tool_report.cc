@@ -19,7 +19,7 @@ using nlohmann::ordered_json;
 std::string mm_text(double depth_m) { return fmt::format("{:g}", depth_m * 1e3); }
 
 ordered_json summary_of(const ToolRow& row, const ToolReference& reference) {
-  ordered_json out{{"law", std::string(name_of(row.law))}};
+  ordered_json out{{"law", row.law}};
   if (!row.failure.empty()) {
     out["failure"] = row.failure;
     return out;
@@ -47,7 +47,7 @@ report::Table tool_table(const std::vector<ToolRow>& rows, const ToolReference& 
   for (const ToolRow& row : rows)
     for (const ToolSample& s : row.samples) {
       const auto& place = reference.places[s.place];
-      table.add({{"law", std::string(name_of(row.law))},
+      table.add({{"law", row.law},
                  {"place", name_of(place)},
                  {"depth_m", place.cases[s.depth].depth_m},
                  {"force_N", s.force_N},
@@ -81,7 +81,7 @@ std::string tool_text(const std::vector<ToolRow>& rows, const ToolReference& ref
   out += fmt::format(" {:>10} {:>9} {:>8}\n", "median us", "p99.9 us", "instr.");
   const auto percent = [](double ratio) { return fmt::format(" {:>+8.1f}", 100.0 * ratio); };
   for (const ToolRow& row : rows) {
-    out += fmt::format("{:<14}", name_of(row.law));
+    out += fmt::format("{:<14}", row.law);
     if (!row.failure.empty()) {
       out += fmt::format(" not measured: {}\n", row.failure);
       continue;
@@ -123,15 +123,14 @@ model::Result<std::vector<model::scene::Accuracy>> accuracy_of(
     const auto hash = model::scene::hash_of_linear_forces(scene, row.law);
     if (!hash) return hash.error();
     model::scene::Accuracy a{
-        .law = std::string(model::scene::name_of(row.law)),
+        .law = row.law,
         // By its forces, not by the file: tactd knows the law again whatever else of the scene
         // changes.
         .law_hash = *hash,
         .reference = fmt::format("linear finite elements at {} places", reference.places.size()),
         .date = fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr))),
-        .large_strain_off =
-            scene.compliance.large_strain &&
-            ((*law)->organ() != nullptr || row.law == model::scene::LawKind::kCompliance),
+        .large_strain_off = scene.compliance.large_strain &&
+                            ((*law)->organ() != nullptr || row.law == "compliance"),
         .rms_ratio = row.errors.rms_ratio,
         .within_noticeable_ratio = row.errors.within_jnd_ratio,
         .depth_m = {},

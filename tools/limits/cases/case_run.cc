@@ -9,6 +9,7 @@
 #include <cstdlib>
 
 #include "hal/sim/sim_delta.h"
+#include "model/indent/rhombus_patch.h"
 #include "model/time_ns.h"
 #include "tools/program/interrupt.h"
 
@@ -31,14 +32,12 @@ model::scene::Scene plate_scene(const Case& c, const LimitsBench& bench,
   model::scene::Scene scene;
   scene.path = "limits";
   scene.rate_Hz = bench.scene.rate_Hz;
-  scene.law = model::scene::LawKind::kRhombus;
-  scene.described = {model::scene::LawKind::kRhombus};
-  scene.rhombus = {.rod_length_m = 0.1,
-                   .initial_angle_rad = 0.5,
-                   .normal_stiffness_N_per_m = 1.0,
-                   .tangential_stiffness_N_per_m = 0.0,
-                   .growth = 1.0,
-                   .units = 1};
+  scene.laws.of<model::indent::RhombusParameters>().chain = {.rod_length_m = 0.1,
+                                                             .initial_angle_rad = 0.5,
+                                                             .normal_stiffness_N_per_m = 1.0,
+                                                             .tangential_stiffness_N_per_m = 0.0,
+                                                             .growth = 1.0,
+                                                             .units = 1};
   scene.contact.tear_force_N = 0.01;
   // on a lever of twice torque over force the torque is the first to pass its limit
   const bool turns = limits.force_N > 0.0 && limits.torque_Nm > 0.0;

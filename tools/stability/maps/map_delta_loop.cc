@@ -16,6 +16,7 @@
 #include "hal/registry/open_device.h"
 #include "hal/sim/sim_delta.h"
 #include "hal/sim/sim_delta_model.h"
+#include "model/indent/rhombus_patch.h"
 #include "model/law/haptic_limit.h"
 #include "model/scene/tissue.h"
 #include "tools/program/simulated_loop.h"
@@ -73,14 +74,13 @@ model::scene::Scene wall_scene(double stiffness_N_per_m, double rate_Hz,
   model::scene::Scene scene;
   scene.path = "wall";
   scene.rate_Hz = rate_Hz;
-  scene.law = model::scene::LawKind::kRhombus;
-  scene.described = {model::scene::LawKind::kRhombus};
-  scene.rhombus = {.rod_length_m = 0.1,
-                   .initial_angle_rad = 0.5,
-                   .normal_stiffness_N_per_m = stiffness_N_per_m,
-                   .tangential_stiffness_N_per_m = 0.0,
-                   .growth = 1.0,
-                   .units = 1};
+  scene.laws.of<model::indent::RhombusParameters>().chain = {
+      .rod_length_m = 0.1,
+      .initial_angle_rad = 0.5,
+      .normal_stiffness_N_per_m = stiffness_N_per_m,
+      .tangential_stiffness_N_per_m = 0.0,
+      .growth = 1.0,
+      .units = 1};
   scene.contact.tear_force_N = 1.0;
   scene.tool.spheres = {{{}, kRadius_m}};
   scene.device.kind = "sim-delta";
