@@ -107,8 +107,8 @@ Result<std::string> write_black_box(const BlackBoxRun& run, const Kept& kept) {
   const std::string path = free_path(run, kept.fault);
   auto file = protocol::RunWriter::create(
       path, protocol::start_of_run(run.header, run.meshes,
-                                   {protocol::type_of_record<protocol::LoggedTick>(),
-                                    protocol::type_of_record<protocol::Frame>()}));
+                                   {protocol::schema_of<protocol::LoggedTick>(),
+                                    protocol::schema_of<protocol::Frame>()}));
   if (!file) return file.error();
   // Ticks before frames: a truncated file then still has the ticks.
   for (const protocol::LoggedTick& tick : kept.ticks) file->add(chunk_of(tick));

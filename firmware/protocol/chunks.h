@@ -3,7 +3,8 @@
 // chunk, a header of 16 bytes and its content. Each has two CRC-32 (polynomial 0x04C11DB7, as in
 // zlib).
 //
-// Damage to a content loses this chunk. Damage to a header loses what lies before the next header.
+// A damaged content loses its chunk. After a damaged header the reader skips to the next valid
+// header; all chunks between are lost.
 #pragma once
 
 #include <cstdint>

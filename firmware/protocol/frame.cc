@@ -9,21 +9,21 @@
 namespace tact::firmware::protocol {
 namespace {
 
-const char* site_state(std::uint64_t number) {
+const char* contact_state(std::uint64_t number) {
   static constexpr std::array kNames{"free", "touching", "held", "inside"};
   return number < kNames.size() ? kNames[number] : "unknown";
 }
 
-#define FIELD(member, meaning) TACT_FIELD(FrameSite, member, #member, meaning)
-constexpr std::array kSite{
+#define FIELD(member, meaning) TACT_FIELD(FrameContact, member, #member, meaning)
+constexpr std::array kContact{
     FIELD(surface_point_m, "touched or held point of the undeformed surface"),
     FIELD(normal, "outward unit normal there"),
     FIELD(shift_m, "tangential displacement of the tissue"),
     FIELD(depth_m, "press positive, pull negative"),
     FIELD(profile_m,
-          "displacement into the tissue at radius j ring_pitch_m; ring_count are in use"),
+          "displacement into the tissue at radius j profile_pitch_m; profile_points are in use"),
     FIELD(tilt, "m/m; added to the profile at x: tilt . (x - surface_point_m)"),
-    FIELD(state, "inside: no force until it has once been outside").labelled(site_state)};
+    FIELD(state, "inside: no force until it has once been outside").labelled(contact_state)};
 #undef FIELD
 
 #define FIELD(member, meaning) TACT_FIELD(FramePatch, member, #member, meaning)
@@ -40,9 +40,9 @@ constexpr std::array kPatch{FIELD(vertex_count, "displaced vertices in this fram
 constexpr std::array kFrame{
     FIELD(tick, "number of the newest tick"),
     FIELD(time_ns, "since the loop started"),
-    FIELD(late_ticks, "so far"),
-    FIELD(skipped_ticks, "so far"),
-    FIELD(dropped_records, "so far"),
+    FIELD(late_ticks, "count since start"),
+    FIELD(skipped_ticks, "count since start"),
+    FIELD(dropped_records, "count since start"),
     FIELD(tool_position_m, ""),
     FIELD(tool_orientation, "unit quaternion from the tool frame to W").with_components(kWxyz),
     FIELD(tool_velocity_mps, ""),
@@ -61,14 +61,15 @@ constexpr std::array kFrame{
         .labelled(fault_name),
     FIELD(state, "").labelled(state_name),
     FIELD(non_rt, "the PC has no hard real time, the force is capped"),
-    FIELD(contact_losses, "so far: the tool moved unseen, farther than its speed limit allows"),
-    FIELD(site, "probe spheres of the tool; as many as the head has spheres are in use"),
+    FIELD(contact_losses,
+          "count since start: contact was lost as the tool moved too far between samples"),
+    FIELD(contact, "probe spheres of the tool; as many as the head has spheres are in use"),
     FIELD(patch, "of a mass-spring law")};
 #undef FIELD
 
 }  // namespace
 
-FieldTable FrameSite::fields() { return kSite; }
+FieldTable FrameContact::fields() { return kContact; }
 FieldTable FramePatch::fields() { return kPatch; }
 FieldTable Frame::fields() { return kFrame; }
 

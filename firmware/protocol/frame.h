@@ -11,23 +11,23 @@
 
 namespace tact::firmware::protocol {
 
-inline constexpr std::size_t kMaxSites = 4;            // probe spheres on the tool
-inline constexpr std::size_t kMaxRings = 32;           // profile points of one site
+inline constexpr std::size_t kMaxContacts = 4;         // probe spheres on the tool
+inline constexpr std::size_t kMaxProfilePoints = 32;   // of one contact
 inline constexpr std::size_t kMaxPatchVertices = 180;  // in one frame
 inline constexpr std::size_t kMaxCutsReported = 32;    // in one frame
 inline constexpr std::size_t kMaxPieces = 4;           // pieces of the organ's mesh with a colour
 
 // kInside: the sphere is inside the organ and gives no force until it has once been outside.
-enum class SiteState : std::uint8_t { kFree = 0, kTouching = 1, kHeld = 2, kInside = 3 };
+enum class ContactState : std::uint8_t { kFree = 0, kTouching = 1, kHeld = 2, kInside = 3 };
 
-struct FrameSite {
+struct FrameContact {
   float surface_point_m[3] = {};
   float normal[3] = {};
   float shift_m[3] = {};
   float depth_m = 0.0f;
-  float profile_m[kMaxRings] = {};
+  float profile_m[kMaxProfilePoints] = {};
   float tilt[3] = {};
-  SiteState state = SiteState::kFree;
+  ContactState state = ContactState::kFree;
 
   static FieldTable fields();
 };
@@ -70,7 +70,7 @@ struct Frame {
   loop::State state = loop::State::kOff;
   bool non_rt = false;
   std::uint32_t contact_losses = 0;
-  FrameSite site[kMaxSites] = {};
+  FrameContact contact[kMaxContacts] = {};
   FramePatch patch;
 
   static FieldTable fields();

@@ -10,6 +10,11 @@
 namespace tact::firmware::protocol {
 namespace {
 
+const char* clutch_name(std::uint64_t number) {
+  static constexpr std::array kNames{"coupled", "yields", "open"};
+  return number < kNames.size() ? kNames[number] : "unknown";
+}
+
 #define FIELD(member, name, meaning) TACT_FIELD(LoggedTick, member, name, meaning)
 #define INPUT(member, name, meaning) FIELD(input.member, name, meaning)
 #define OUTPUT(member, name, meaning) FIELD(output.member, name, meaning)
@@ -36,9 +41,9 @@ constexpr std::array kTick{
     INPUT(commands.reset, "command_reset", ""),
     INPUT(commands.disarm, "command_disarm", ""),
     INPUT(ready, "ready", "safety lines and device would let a force through"),
-    INPUT(clutch, "clutch", "0 coupled, 1 yields, 2 open"),
+    INPUT(clutch, "clutch", "").labelled(clutch_name),
     INPUT(skipped_periods, "skipped_periods", "before this tick"),
-    INPUT(clutches, "clutches", "so far: how often the clutch has opened"),
+    INPUT(clutches, "clutches", "count since start: how often the clutch has opened"),
     INPUT(clutch_shift_m, "clutch_shift_m", "of the tool from the handle"),
     OUTPUT(wanted.force_N, "wanted_force_N", "of the law, before the gate"),
     OUTPUT(wanted.torque_Nm, "wanted_torque_Nm", "of the law, before the gate"),
@@ -51,7 +56,7 @@ constexpr std::array kTick{
     OUTPUT(given_energy_J, "given_energy_J", "net energy given since arming"),
     OUTPUT(rms_force_N, "rms_force_N", "written, over limits.thermal_time_s"),
     OUTPUT(contact_losses, "contact_losses",
-           "so far: the tool moved unseen, farther than its speed limit allows"),
+           "count since start: contact was lost as the tool moved too far between samples"),
     OUTPUT(wanted_grip_N, "wanted_grip_force_N", "of the law on the fingers, opening positive"),
     OUTPUT(written_grip_N, "grip_force_N", "written to the fingers, opening positive")};
 #undef FIELD

@@ -76,12 +76,15 @@ std::size_t size_bytes_of(FieldType type) {
 }
 
 std::string_view unit_of(std::string_view name) {
-  static constexpr std::array<std::string_view, 14> kUnits{
-      "m", "mps", "rad", "radps", "N", "Nm", "J", "s", "ns", "us", "um", "Hz", "px", "ratio"};
-  const std::size_t at = name.rfind('_');
-  if (at == name.npos) return {};
-  const std::string_view unit = name.substr(at + 1);
-  return std::ranges::find(kUnits, unit) != kUnits.end() ? unit : std::string_view{};
+  // Longer ones before those that they end with.
+  static constexpr std::array<std::string_view, 19> kUnits{
+      "N_per_m", "Ns_per_m", "N_per_s", "m",  "mps", "rad", "radps", "N",  "Nm",   "J",
+      "W",       "s",        "ns",      "us", "um",  "Hz",  "px",    "Pa", "ratio"};
+  for (const std::string_view unit : kUnits)
+    if (name.size() > unit.size() && name.ends_with(unit) &&
+        name[name.size() - unit.size() - 1] == '_')
+      return unit;
+  return {};
 }
 
 std::size_t packed_bytes(FieldTable fields) {
@@ -172,7 +175,7 @@ model::Result<Unpacker> Unpacker::make(const json& stored, FieldTable fields) {
 bool Unpacker::unpack(std::string_view bytes, void* record) const {
   if (bytes.size() != stored_bytes_) return false;
   char* const to = static_cast<char*>(record);
-  for (const Step& step : steps_) {
+  for (const CopyStep& step : steps_) {
     std::memcpy(to + step.to_bytes, bytes.data() + step.from_bytes, step.size_bytes);
     if (!step.is_bool) continue;
     // A byte of a file may be neither 0 nor 1, which no bool may be.

@@ -3,8 +3,8 @@
 // JSON, the page's types and the reader in Python are made.
 //
 // A record is packed field by field in the order of its table, little-endian, without padding. The
-// table of the program that wrote a file stands in the file (run_file.h), so a reader finds fields
-// by name: an earlier file lacks some, a later one has more.
+// table of the program that wrote a file stands in the file (run_file.h), so a reader matches
+// fields by name: missing fields keep their defaults, unknown fields are skipped.
 #pragma once
 
 #include <array>
@@ -72,32 +72,32 @@ inline constexpr std::array<const char*, 4> kWxyz{"w", "x", "y", "z"};
 
 /// Of a C++ type: its elements and how many there are.
 template <typename T>
-struct Elements {
+struct ArrayTraits {
   using type = T;
   static constexpr std::array<std::size_t, 2> kShape{};
 };
 template <typename T, std::size_t n>
-struct Elements<T[n]> {
+struct ArrayTraits<T[n]> {
   using type = T;
   static constexpr std::array<std::size_t, 2> kShape{n, 0};
 };
 template <typename T, std::size_t n, std::size_t m>
-struct Elements<T[n][m]> {
+struct ArrayTraits<T[n][m]> {
   using type = T;
   static constexpr std::array<std::size_t, 2> kShape{n, m};
 };
 template <typename T, std::size_t n>
-struct Elements<std::array<T, n>> : Elements<T[n]> {};
+struct ArrayTraits<std::array<T, n>> : ArrayTraits<T[n]> {};
 template <>
-struct Elements<model::Vec3> : Elements<double[3]> {};
+struct ArrayTraits<model::Vec3> : ArrayTraits<double[3]> {};
 template <>
-struct Elements<model::Quat> : Elements<double[4]> {};
+struct ArrayTraits<model::Quat> : ArrayTraits<double[4]> {};
 static_assert(sizeof(model::Vec3) == sizeof(double[3]) && sizeof(model::Quat) == sizeof(double[4]));
 
 template <typename T>
-constexpr FieldType type_of() {
+constexpr FieldType field_type() {
   if constexpr (std::is_enum_v<T>) {
-    return type_of<std::underlying_type_t<T>>();
+    return field_type<std::underlying_type_t<T>>();
   } else if constexpr (std::is_same_v<T, bool>) {
     return FieldType::kBool;
   } else if constexpr (std::is_floating_point_v<T>) {
@@ -117,10 +117,10 @@ constexpr FieldType type_of() {
 /// Called by TACT_FIELD.
 template <typename T>
 constexpr Field make_field(const char* name, std::size_t offset_bytes, const char* meaning) {
-  using Element = typename Elements<T>::type;
+  using Element = typename ArrayTraits<T>::type;
   Field out{.name = name,
-            .type = type_of<Element>(),
-            .shape = Elements<T>::kShape,
+            .type = field_type<Element>(),
+            .shape = ArrayTraits<T>::kShape,
             .offset_bytes = offset_bytes,
             .meaning = meaning};
   if constexpr (std::is_class_v<Element>) {
@@ -138,7 +138,7 @@ constexpr Field make_field(const char* name, std::size_t offset_bytes, const cha
       name, offsetof(Struct, path), meaning)
 
 std::size_t size_bytes_of(FieldType type);  // of one element; 0 for kRecord
-/// SI unit at the end of a name, as "m"; empty if it has none.
+/// Unit at the end of a name, as "m" or "N_per_m"; empty if it has none.
 std::string_view unit_of(std::string_view name);
 
 /// Bytes of a packed record.
@@ -160,7 +160,7 @@ class Unpacker {
   bool unpack(std::string_view bytes, void* record) const;
 
  private:
-  struct Step {
+  struct CopyStep {
     std::size_t from_bytes, to_bytes, size_bytes;
     bool is_bool;
   };
@@ -168,7 +168,7 @@ class Unpacker {
   std::optional<model::Error> add(const nlohmann::json& stored, FieldTable fields,
                                   std::size_t to_bytes, int depth);
 
-  std::vector<Step> steps_;
+  std::vector<CopyStep> steps_;
   std::vector<std::string> missing_;
   std::size_t stored_bytes_ = 0;
 };

@@ -13,8 +13,8 @@ namespace {
 // Finer than view and plots; the tool's position is exact to 1 um at 1 m.
 constexpr int kJsonDigits = 6;
 
-std::size_t count_in(const Field& field, const CountOf& count_of) {
-  const auto most = count_of ? count_of(field) : std::nullopt;
+std::size_t count_in(const Field& field, const ElementLimit& limit_of) {
+  const auto most = limit_of ? limit_of(field) : std::nullopt;
   return std::min(field.count(), most.value_or(field.count()));
 }
 
@@ -60,12 +60,12 @@ std::uint64_t number_at(const Field& field, const char* from) {
 }
 
 void add_columns(std::string& out, const Field& field, const std::string& prefix,
-                 const CountOf& count_of) {
-  const std::size_t count = count_in(field, count_of);
+                 const ElementLimit& limit_of) {
+  const std::size_t count = count_in(field, limit_of);
   if (field.record != nullptr) {
     for (std::size_t i = 0; i < count; ++i)
       for (const Field& inner : field.record())
-        add_columns(out, inner, fmt::format("{}{}{}_", prefix, field.name, i + 1), count_of);
+        add_columns(out, inner, fmt::format("{}{}{}_", prefix, field.name, i + 1), limit_of);
     return;
   }
   const std::string name = prefix + field.name;
@@ -86,12 +86,13 @@ void add_columns(std::string& out, const Field& field, const std::string& prefix
   }
 }
 
-void add_cells(std::string& out, const Field& field, const char* from, const CountOf& count_of) {
-  const std::size_t count = count_in(field, count_of);
+void add_cells(std::string& out, const Field& field, const char* from,
+               const ElementLimit& limit_of) {
+  const std::size_t count = count_in(field, limit_of);
   if (field.record != nullptr) {
     for (std::size_t i = 0; i < count; ++i)
       for (const Field& inner : field.record())
-        add_cells(out, inner, from + i * field.record_bytes + inner.offset_bytes, count_of);
+        add_cells(out, inner, from + i * field.record_bytes + inner.offset_bytes, limit_of);
     return;
   }
   for (std::size_t i = 0; i < count; ++i)
@@ -102,20 +103,22 @@ void add_cells(std::string& out, const Field& field, const char* from, const Cou
 
 }  // namespace
 
-std::string csv_columns(FieldTable fields, const CountOf& count_of) {
+std::string csv_columns(FieldTable fields, const ElementLimit& limit_of) {
   std::string out;
-  for (const Field& field : fields) add_columns(out, field, "", count_of);
+  for (const Field& field : fields) add_columns(out, field, "", limit_of);
   return out.substr(1);
 }
 
-void append_csv(std::string& out, FieldTable fields, const void* record, const CountOf& count_of) {
+void append_csv(std::string& out, FieldTable fields, const void* record,
+                const ElementLimit& limit_of) {
   const std::size_t start = out.size();
   const char* const bytes = static_cast<const char*>(record);
-  for (const Field& field : fields) add_cells(out, field, bytes + field.offset_bytes, count_of);
+  for (const Field& field : fields) add_cells(out, field, bytes + field.offset_bytes, limit_of);
   out.erase(start, 1);  // the first comma
 }
 
-void append_json(std::string& out, FieldTable fields, const void* record, const CountOf& count_of) {
+void append_json(std::string& out, FieldTable fields, const void* record,
+                 const ElementLimit& limit_of) {
   const auto put = [&out](auto value) {
     if constexpr (!std::is_floating_point_v<decltype(value)>)
       fmt::format_to(std::back_inserter(out), "{}", value);
@@ -137,7 +140,7 @@ void append_json(std::string& out, FieldTable fields, const void* record, const 
       continue;
     }
     out += '[';
-    for (std::size_t i = 0; i < count_in(field, count_of); ++i) {
+    for (std::size_t i = 0; i < count_in(field, limit_of); ++i) {
       if (i > 0) out += ',';
       visit(field.type, from + i * size_bytes_of(field.type), put);
     }

@@ -14,17 +14,17 @@
 
 namespace tact::firmware::protocol {
 
-/// How many elements of a field are written; nothing: all.
-using CountOf = std::function<std::optional<std::size_t>(const Field&)>;
+/// Maximum number of elements of a field to write; empty: all.
+using ElementLimit = std::function<std::optional<std::size_t>(const Field&)>;
 
 /// Names with commas between them. A record in a record has its name and number before its fields,
-/// from 1 on: site1_depth_m.
-std::string csv_columns(FieldTable fields, const CountOf& count_of = {});
+/// from 1 on: contact1_depth_m.
+std::string csv_columns(FieldTable fields, const ElementLimit& limit_of = {});
 void append_csv(std::string& out, FieldTable fields, const void* record,
-                const CountOf& count_of = {});
+                const ElementLimit& limit_of = {});
 
 /// "name":value,... without records in records. Floats have six digits; what is not finite is null.
 void append_json(std::string& out, FieldTable fields, const void* record,
-                 const CountOf& count_of = {});
+                 const ElementLimit& limit_of = {});
 
 }  // namespace tact::firmware::protocol

@@ -30,9 +30,9 @@ std::optional<Error> check_magic(std::string_view magic) {
 }  // namespace
 
 std::string start_of_run(const RunHeader& header, std::span<const std::byte> meshes,
-                         std::initializer_list<RecordType> records) {
+                         std::initializer_list<RecordSchema> records) {
   json head{{"version", kVersion}, {"run", json_of(header)}, {"records", json::object()}};
-  for (const RecordType& type : records)
+  for (const RecordSchema& type : records)
     head["records"][type.name] = {{"kind", type.kind}, {"fields", json_of(type.fields)}};
   std::string out(kMagic);
   out += chunk_of(ChunkKind::kHead, model::io::text_of(head));
@@ -113,7 +113,7 @@ std::optional<Error> RunReader::read_head() {
   return std::nullopt;
 }
 
-Result<Unpacker> RunReader::make_unpacker(const RecordType& type) const {
+Result<Unpacker> RunReader::make_unpacker(const RecordSchema& type) const {
   const json record = records_->is_object() ? records_->value(type.name, json()) : json();
   return Unpacker::make(record.is_object() ? record.value("fields", json::array()) : json::array(),
                         type.fields);

@@ -7,8 +7,8 @@
 //     black box  head, meshes, ticks, frames        tactd, at a fault
 //
 // The head is JSON: {"version": 1, "run": a RunHeader, "records": {name: {"kind", "fields"}}}. The
-// memory file of the telemetry socket has the same letters, head and meshes, and each message is
-// one chunk: what follows one another is a recording.
+// memory file of the telemetry socket has the same letters, head and meshes. Each message is one
+// chunk. The memory file followed by the messages has the format of a recording.
 #pragma once
 
 #include <cstddef>
@@ -32,19 +32,19 @@ inline constexpr std::string_view kMagic = "tactrun\n";
 inline constexpr int kVersion = 1;  // of the format; a field more or less does not change it
 
 /// A kind of record in a file.
-struct RecordType {
+struct RecordSchema {
   ChunkKind kind;
   const char* name;
   FieldTable fields;
 };
 template <typename Record>
-RecordType type_of_record() {
+RecordSchema schema_of() {
   return {Record::kKind, Record::kName, Record::fields()};
 }
 
 /// The bytes before the first record; without meshes a tick log's.
 std::string start_of_run(const RunHeader& header, std::span<const std::byte> meshes,
-                         std::initializer_list<RecordType> records);
+                         std::initializer_list<RecordSchema> records);
 
 template <typename Record>
 std::string chunk_of(const Record& record) {
@@ -84,7 +84,7 @@ class RunReader {
   /// Without fields where no record of that kind can be in the file.
   template <typename Record>
   model::Result<Unpacker> unpacker() const {
-    return make_unpacker(type_of_record<Record>());
+    return make_unpacker(schema_of<Record>());
   }
   /// The next good chunk; false at the end. Those that are damaged are skipped.
   bool next(Chunk& chunk) { return chunks_.next(chunk); }
@@ -96,7 +96,7 @@ class RunReader {
   RunReader(ChunkReader::Source source, std::unique_ptr<model::io::SealedFile> file)
       : file_(std::move(file)), chunks_(std::move(source), kMagic.size()) {}
   std::optional<model::Error> read_head();
-  model::Result<Unpacker> make_unpacker(const RecordType& type) const;
+  model::Result<Unpacker> make_unpacker(const RecordSchema& type) const;
 
   std::unique_ptr<model::io::SealedFile> file_;  // null: of_bytes
   ChunkReader chunks_;

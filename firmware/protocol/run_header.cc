@@ -22,7 +22,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(
     began_utc, rate_Hz, frame_rate_Hz, limits, force_share, force_limit_N, torque_limit_Nm,
     continuous_force_N, energy_budget_J, limits_checksum, non_rt, simulated, cannot_grip,
     hand_socket, organ_vertices, organ_triangles, tool_vertices, tool_triangles, spheres,
-    ring_count, ring_pitch_m, organ_material, tool_material, piece_color_ratio)
+    profile_points, profile_pitch_m, organ_material, tool_material, piece_color_ratio)
 
 nlohmann::json json_of(const RunHeader& header) { return header; }
 

@@ -29,8 +29,8 @@ struct RunHeader {
   double rate_Hz = 0.0;
   double frame_rate_Hz = 0.0;
   model::Limits limits{};        // of scene and device together
-  double force_share = 1.0;      // of those; below 1 without hard real time
-  double force_limit_N = 0.0;    // in use, as the next four
+  double force_share = 1.0;      // factor on limits; below 1 without hard real time
+  double force_limit_N = 0.0;    // effective: force_share * limits.force_N; so the next three
   double torque_limit_Nm = 0.0;  // 0: the device has no torque
   double continuous_force_N = 0.0;
   double energy_budget_J = 0.0;
@@ -41,9 +41,9 @@ struct RunHeader {
   std::string hand_socket;      // where a simulated device takes hand targets; empty for hardware
   std::uint32_t organ_vertices = 0, organ_triangles = 0;
   std::uint32_t tool_vertices = 0, tool_triangles = 0;
-  std::vector<Sphere> spheres;   // probe spheres of the tool
-  std::uint32_t ring_count = 0;  // profile points in use, u_0 .. u_N
-  double ring_pitch_m = 0.0;     // profile point j is at radius j * pitch around the site
+  std::vector<Sphere> spheres;       // probe spheres of the tool
+  std::uint32_t profile_points = 0;  // profile points in use, u_0 .. u_N
+  double profile_pitch_m = 0.0;  // profile point j is at radius j * pitch around the contact point
   std::string organ_material, tool_material;  // appearance: [look] of the scene
   std::vector<std::array<float, 3>>
       piece_color_ratio;  // connected pieces of the organ with a colour:

@@ -14,10 +14,6 @@ model::Result<TickLog> TickLog::open(const std::string& path) {
     return model::Error{path +
                         ": has no ticks, only frames for a viewer; name a file that tactd --record "
                         "wrote, or a black box"};
-  if (!unpacker->missing().empty())
-    return model::Error{
-        fmt::format("{}: its ticks have no {}; replay it with the build that recorded it", path,
-                    fmt::join(unpacker->missing(), ", "))};
   return TickLog(std::move(*reader), std::move(*unpacker));
 }
 

@@ -12,10 +12,11 @@ namespace tact::firmware::protocol {
 
 class TickLog {
  public:
-  /// An error if the file has no ticks, or its ticks lack a field of this program: what they
-  /// replay would not be the run.
+  /// An error if the file has no ticks.
   static model::Result<TickLog> open(const std::string& path);
   const RunHeader& header() const { return reader_.header(); }
+  /// Fields of this program that the file has not: what it replays would not be the run.
+  const std::vector<std::string>& missing() const { return unpacker_.missing(); }
   /// The next good tick; skips damaged ones. False at the end.
   bool next(LoggedTick& tick);
   /// True if the last tick comes after damage.

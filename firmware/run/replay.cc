@@ -34,6 +34,10 @@ model::Result<ReplayOutcome> replay(const std::string& path, const model::scene:
                                     const model::scene::Tissue& tissue) {
   auto log = protocol::TickLog::open(path);
   if (!log) return log.error();
+  if (!log->missing().empty())
+    return model::Error{
+        fmt::format("{}: its ticks have no {}; replay it with the build that recorded it", path,
+                    fmt::join(log->missing(), ", "))};
   const protocol::RunHeader& header = log->header();
   if (auto error = check_header(header, path, scene)) return *error;
   pc::flush_denormals();  // as in the loop's thread

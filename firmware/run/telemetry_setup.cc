@@ -66,7 +66,7 @@ std::optional<Error> open_sockets(const RunSetup& run, protocol::RunHeader heade
   const std::string hand_path = header.simulated ? *path + ".hand" : "";
   header.hand_socket = hand_path;
   const auto start = telemetry::make_memory_file(
-      start_of_run(header, meshes, {protocol::type_of_record<protocol::Frame>()}));
+      start_of_run(header, meshes, {protocol::schema_of<protocol::Frame>()}));
   if (!start) return start.error();
   auto opened = telemetry::TelemetrySocket::open(*path, *start, viewers);
   if (!opened) return opened.error();
@@ -89,7 +89,7 @@ Result<Sinks> open_sinks(const RunSetup& run) {
   if (!run.options.record_path.empty()) {
     auto log = protocol::RunWriter::create(
         run.options.record_path,
-        start_of_run(header, {}, {protocol::type_of_record<protocol::LoggedTick>()}));
+        start_of_run(header, {}, {protocol::schema_of<protocol::LoggedTick>()}));
     if (!log) return log.error();
     out.sinks.log.emplace(std::move(*log));
   }

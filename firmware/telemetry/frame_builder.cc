@@ -73,11 +73,11 @@ RunHeader header_of(const model::scene::Scene& scene, const model::scene::Tissue
   for (const auto& sphere : scene.tool.spheres)
     header.spheres.push_back(
         {sphere.radius_m, {sphere.offset_m.x, sphere.offset_m.y, sphere.offset_m.z}});
-  std::array<double, protocol::kMaxRings> ring_m{};
+  std::array<double, protocol::kMaxProfilePoints> ring_m{};
   // Any point and no indentation: only the number of profile points is needed.
-  header.ring_count = static_cast<std::uint32_t>(tissue.law().contact_law().profile(
+  header.profile_points = static_cast<std::uint32_t>(tissue.law().contact_law().profile(
       {.surface_point = {.triangle = 0, .weight = {1, 0, 0}}}, ring_m));
-  header.ring_pitch_m = tissue.law().contact_law().ring_pitch_m();
+  header.profile_pitch_m = tissue.law().contact_law().ring_pitch_m();
   header.organ_material = scene.look.organ;
   header.tool_material = scene.look.tool;
   static_assert(model::scene::kMaxPieces <= protocol::kMaxPieces);
@@ -161,9 +161,9 @@ Frame FrameBuilder::take(std::uint64_t dropped_records) {
   frame.given_energy_J = given_energy_J_;
   frame.limit = static_cast<std::uint16_t>(limit_);
   frame.non_rt = non_rt_;
-  static_assert(protocol::kMaxSites == model::contact::kMaxSpheres);
+  static_assert(protocol::kMaxContacts == model::contact::kMaxSpheres);
   const auto contacts = r.contacts.all();
-  for (std::size_t i = 0; i < contacts.size(); ++i) add_site(contacts[i], frame.site[i]);
+  for (std::size_t i = 0; i < contacts.size(); ++i) add_contact(contacts[i], frame.contact[i]);
   add_patch(frame.patch);
   tick_us_.clear();
   peak_force_N_ = 0.0f;
@@ -191,26 +191,28 @@ void FrameBuilder::add_patch(FramePatch& patch) {
     }
 }
 
-void FrameBuilder::add_site(const model::contact::SphereContact& sphere_contact,
-                            FrameSite& site) const {
-  put(site.surface_point_m, sphere_contact.surface_point_m);
-  put(site.normal, sphere_contact.normal);
-  put(site.shift_m, sphere_contact.shift_m);
-  site.depth_m = static_cast<float>(sphere_contact.depth_m);
-  site.state = static_cast<protocol::SiteState>(sphere_contact.state);
+void FrameBuilder::add_contact(const model::contact::SphereContact& sphere_contact,
+                               FrameContact& contact) const {
+  put(contact.surface_point_m, sphere_contact.surface_point_m);
+  put(contact.normal, sphere_contact.normal);
+  put(contact.shift_m, sphere_contact.shift_m);
+  contact.depth_m = static_cast<float>(sphere_contact.depth_m);
+  static_assert(static_cast<int>(protocol::ContactState::kInside) ==
+                static_cast<int>(model::contact::ContactState::kInside));
+  contact.state = static_cast<protocol::ContactState>(sphere_contact.state);
   // Only the sphere's own indentation, because the page adds up all indentations. A sphere within
   // the indentation of another has none.
   const bool is_held = sphere_contact.state == model::contact::ContactState::kHeld;
   const bool presses = sphere_contact.state == model::contact::ContactState::kTouching &&
                        sphere_contact.indentation_m > 0.0;
   if (!is_held && !presses) return;
-  std::array<double, protocol::kMaxRings> ring_m{};
+  std::array<double, protocol::kMaxProfilePoints> ring_m{};
   const model::contact::Indentation in{.surface_point = sphere_contact.surface_point,
                                        .normal = sphere_contact.normal,
                                        .indentation_m = sphere_contact.indentation_m};
   const std::size_t count = indentations_.profile(in, ring_m);
-  put(site.tilt, indentations_.tilt(in));
-  for (std::size_t j = 0; j < count; ++j) site.profile_m[j] = static_cast<float>(ring_m[j]);
+  put(contact.tilt, indentations_.tilt(in));
+  for (std::size_t j = 0; j < count; ++j) contact.profile_m[j] = static_cast<float>(ring_m[j]);
 }
 
 }  // namespace tact::firmware::telemetry

@@ -16,8 +16,8 @@
 namespace tact::firmware::telemetry {
 
 using protocol::Frame;
+using protocol::FrameContact;
 using protocol::FramePatch;
-using protocol::FrameSite;
 using protocol::LoggedTick;
 using protocol::RunHeader;
 
@@ -47,7 +47,8 @@ class FrameBuilder {
   Frame take(std::uint64_t dropped_records);
 
  private:
-  void add_site(const model::contact::SphereContact& sphere_contact, FrameSite& site) const;
+  void add_contact(const model::contact::SphereContact& sphere_contact,
+                   FrameContact& contact) const;
   void add_patch(FramePatch& patch);
 
   const model::contact::IndentationView& indentations_;

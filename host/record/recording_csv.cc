@@ -18,11 +18,11 @@ namespace tact::host::record {
 namespace {
 
 /// What of a frame has columns: spheres and profile points in use; of a patch the sums below.
-firmware::protocol::CountOf columns_of(const RunHeader& header) {
+firmware::protocol::ElementLimit columns_of(const RunHeader& header) {
   return [&header](const firmware::protocol::Field& field) -> std::optional<std::size_t> {
     const std::string_view name = field.name;
-    if (name == "site") return header.spheres.size();
-    if (name == "profile_m") return header.ring_count;
+    if (name == "contact") return header.spheres.size();
+    if (name == "profile_m") return header.profile_points;
     return name == "patch" ? std::optional<std::size_t>(0) : std::nullopt;
   };
 }

@@ -3,7 +3,7 @@
 //
 // The columns are the fields of firmware/protocol/frame.cc (record_text.h says how they are named),
 // then the patch's sums, then the raw pose of each tracked body in W. Every probe sphere has its
-// columns, in contact or not; site1_profile_0_m .. are the profile, into the tissue positive.
+// columns, in contact or not; contact1_profile_0_m .. are the profile, into the tissue positive.
 #pragma once
 
 #include <string>

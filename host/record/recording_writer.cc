@@ -16,9 +16,9 @@ using model::Error;
 }  // namespace
 
 std::string start_of_recording(const RunHeader& header, const MeshBytes& mesh) {
-  return start_of_run(header, mesh,
-                      {firmware::protocol::type_of_record<Frame>(),
-                       firmware::protocol::type_of_record<OperatorRecord>()});
+  return start_of_run(
+      header, mesh,
+      {firmware::protocol::schema_of<Frame>(), firmware::protocol::schema_of<OperatorRecord>()});
 }
 
 std::optional<Error> RecordingWriter::open(const std::string& path, const RunHeader& header,

@@ -71,9 +71,9 @@ std::optional<Error> check_header(const RunHeader& header) {
                                     header.tool_vertices, header.tool_triangles}) {
     if (count > kMaxElements) return Error{"a mesh is larger than 4 million elements"};
   }
-  if (header.spheres.size() > firmware::protocol::kMaxSites)
+  if (header.spheres.size() > firmware::protocol::kMaxContacts)
     return Error{"there are more probe spheres than fit"};
-  if (header.ring_count > firmware::protocol::kMaxRings)
+  if (header.profile_points > firmware::protocol::kMaxProfilePoints)
     return Error{"there are more profile rings than fit"};
   if (header.piece_color_ratio.size() > firmware::protocol::kMaxPieces)
     return Error{"there are more coloured pieces than fit"};
@@ -81,7 +81,7 @@ std::optional<Error> check_header(const RunHeader& header) {
     for (const float ratio : color)
       if (!std::isfinite(ratio) || ratio < 0.0f) return Error{"a colour is not sensible"};
   for (const double value :
-       {header.ring_pitch_m, header.rate_Hz, header.frame_rate_Hz, header.force_limit_N,
+       {header.profile_pitch_m, header.rate_Hz, header.frame_rate_Hz, header.force_limit_N,
         header.continuous_force_N, header.energy_budget_J}) {
     if (!std::isfinite(value) || value < 0.0) return Error{"a number of the scene is not sensible"};
   }
@@ -109,8 +109,8 @@ std::optional<Error> check_frame(const Frame& frame, const RunHeader& header) {
   // Enums are the only values of a frame on which code branches.
   if (frame.state > firmware::loop::State::kStopped)
     return Error{"a frame has a state that is none"};
-  for (const firmware::protocol::FrameSite& site : frame.site)
-    if (site.state > firmware::protocol::SiteState::kInside)
+  for (const firmware::protocol::FrameContact& contact : frame.contact)
+    if (contact.state > firmware::protocol::ContactState::kInside)
       return Error{"a frame has a site whose state is none"};
   return check_patch(frame.patch, header);
 }

@@ -22,7 +22,7 @@ namespace {
 
 using firmware::protocol::append_json;
 using firmware::protocol::Field;
-using firmware::protocol::FrameSite;
+using firmware::protocol::FrameContact;
 
 /// RFC 4648, with padding.
 void put_base64(std::string& out, std::span<const std::uint8_t> bytes) {
@@ -56,18 +56,20 @@ std::string frame_json(const record::Frame& frame, const record::RunHeader& head
   std::string out = "{\"kind\":\"frame\",";
   out.reserve(kMaxFrameJsonBytes);
   append_json(out, record::Frame::fields(), &frame);
-  out += ",\"sites\":[";
-  const std::size_t sites = std::min(header.spheres.size(), firmware::protocol::kMaxSites);
-  const std::size_t rings = std::min<std::size_t>(header.ring_count, firmware::protocol::kMaxRings);
-  const auto count_of = [rings](const Field& field) {
+  out += ",\"contacts\":[";
+  const std::size_t contacts = std::min(header.spheres.size(), firmware::protocol::kMaxContacts);
+  const std::size_t rings =
+      std::min<std::size_t>(header.profile_points, firmware::protocol::kMaxProfilePoints);
+  const auto limit_of = [rings](const Field& field) {
     return field.name == std::string_view("profile_m") ? std::optional(rings) : std::nullopt;
   };
   const char* separator = "";
-  for (std::size_t i = 0; i < sites; ++i) {
-    // Free sites are omitted to keep the frame short (kMaxFrameJsonBytes).
-    if (frame.site[i].state == firmware::protocol::SiteState::kFree) continue;
-    fmt::format_to(std::back_inserter(out), "{}{{\"site\":{},", std::exchange(separator, ","), i);
-    append_json(out, FrameSite::fields(), &frame.site[i], count_of);
+  for (std::size_t i = 0; i < contacts; ++i) {
+    // Free contacts are omitted to keep the frame short (kMaxFrameJsonBytes).
+    if (frame.contact[i].state == firmware::protocol::ContactState::kFree) continue;
+    fmt::format_to(std::back_inserter(out), "{}{{\"contact\":{},", std::exchange(separator, ","),
+                   i);
+    append_json(out, FrameContact::fields(), &frame.contact[i], limit_of);
     out += '}';
   }
   out += ']';

@@ -2,7 +2,7 @@
 // frame_json.h - telemetry as JSON text for the page.
 //
 // The keys are the fields' names (firmware/protocol/frame.cc). The JSON of a frame that passes
-// check_frame has at most kMaxFrameJsonBytes: numbers have six digits, and only sites in contact
+// check_frame has at most kMaxFrameJsonBytes: numbers have six digits, and only spheres in contact
 // are listed. A number that is not finite becomes null, because JSON has no NaN. A law
 // without profiles has displaced vertices instead, in base64: n vertex numbers (uint32), n
 // displacements (3 int16, um).
@@ -16,7 +16,7 @@ namespace tact::host::server {
 
 inline constexpr std::size_t kMaxFrameJsonBytes = 4608;
 
-/// {"kind":"frame","tick":..,"tool_position_m":[x,y,z],...,"sites":[{"site":0,"depth_m":..,...}]}
+/// {"kind":"frame","tick":..,"tool_position_m":[x,y,z],...,"contacts":[{"contact":0,"depth_m":..,...}]}
 std::string frame_json(const record::Frame& frame, const record::RunHeader& header);
 
 /// Constant while tactd runs: names, counts, limits, probe spheres.

@@ -32,9 +32,9 @@ class LawSettings {
   }
   template <typename Parameters>
   const Parameters& of() const {
-    static const Parameters kDefault{};
+    static const Parameters fallback{};
     const auto found = by_type_.find(typeid(Parameters));
-    return found == by_type_.end() ? kDefault : *std::any_cast<Parameters>(&found->second);
+    return found == by_type_.end() ? fallback : *std::any_cast<Parameters>(&found->second);
   }
 
  private:

@@ -91,7 +91,7 @@ void compliance_keys(ParameterVisitor& v, Scene& scene) {
 // Sizes: each about twice the one before, so that the chart shows where more buys nothing.
 // NOLINTNEXTLINE(readability-function-size): a table of laws
 std::span<const LawRow> all_laws() {
-  static const std::vector<LawRow> kLaws{
+  static const std::vector<LawRow> rows{
       {.name = "rhombus",
        .meaning = "energy-consistent chain of rhombus units",
        .visit = keys_of<indent::RhombusParameters>,
@@ -142,7 +142,7 @@ std::span<const LawRow> all_laws() {
        .sizes = {2, 3, 5, 9, 17, 33},
        .quick_sizes = {5, 17}},
   };
-  return kLaws;
+  return rows;
 }
 
 const LawRow* find_law(std::string_view name) {

@@ -30,8 +30,8 @@ inline RunHeader make_header(std::uint32_t organ_vertices, std::uint32_t organ_t
   header.organ_triangles = organ_triangles;
   header.tool_vertices = tool_vertices;
   header.tool_triangles = tool_triangles;
-  header.ring_count = 11;
-  header.ring_pitch_m = 0.004;
+  header.profile_points = 11;
+  header.profile_pitch_m = 0.004;
   header.rate_Hz = 4000.0;
   header.frame_rate_Hz = 60.0;
   header.force_limit_N = 5.0;
@@ -58,7 +58,7 @@ struct TinyMeshes {
 };
 
 /// Every number of a frame that has one, the same everywhere.
-inline Frame make_frame(float value, firmware::protocol::SiteState state) {
+inline Frame make_frame(float value, firmware::protocol::ContactState state) {
   Frame frame;
   for (float* array : {frame.tool_position_m, frame.tool_velocity_mps, frame.force_N,
                        frame.torque_Nm, frame.wanted_force_N}) {
@@ -66,12 +66,12 @@ inline Frame make_frame(float value, firmware::protocol::SiteState state) {
   }
   for (float& part : frame.tool_orientation) part = value;
   frame.grip_ratio = frame.worst_margin_us = frame.median_tick_us = frame.peak_force_N = value;
-  for (firmware::protocol::FrameSite& site : frame.site) {
-    for (float* array : {site.surface_point_m, site.normal, site.shift_m, site.tilt})
+  for (firmware::protocol::FrameContact& contact : frame.contact) {
+    for (float* array : {contact.surface_point_m, contact.normal, contact.shift_m, contact.tilt})
       for (int i = 0; i < 3; ++i) array[i] = value;
-    for (float& ring_m : site.profile_m) ring_m = value;
-    site.depth_m = value;
-    site.state = state;
+    for (float& ring_m : contact.profile_m) ring_m = value;
+    contact.depth_m = value;
+    contact.state = state;
   }
   return frame;
 }
@@ -126,7 +126,7 @@ class TelemetrySource {
  private:
   bool send_start(const RunHeader& header, const std::vector<std::byte>& meshes) {
     const std::string start =
-        start_of_run(header, meshes, {firmware::protocol::type_of_record<Frame>()});
+        start_of_run(header, meshes, {firmware::protocol::schema_of<Frame>()});
     const int memory = memfd_create("tact-run", MFD_CLOEXEC);
     const bool stored =
         ::write(memory, start.data(), start.size()) == static_cast<ssize_t>(start.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// own_law - a law of your own, F = k d + c d^3, on the organ of a scene, which its tool presses at
+// own_law - a custom law, F = k d + c d^3, on a scene's organ; the scene's tool presses it at
 // 10 mm/s. Prints depth, force of the law and force after the gate.
 #include <algorithm>
 #include <array>

@@ -83,12 +83,13 @@ int main(int count, char** arguments) {
        due += period) {
     std::this_thread::sleep_until(due);
     const auto now = Clock::now();
-    // Contact and gate follow the time of periods that a late loop skips.
+    // Tells the controller how many periods a late loop has skipped.
     input.skipped_periods = static_cast<std::uint32_t>((now - due) / period);
     due += input.skipped_periods * period;
     const hal::Fault read = device.read(input.sample, now.time_since_epoch().count());
     input.device_fault = model::latches(read) ? read : wrote;
-    input.commands.arm = out.state == firmware::loop::State::kReady;  // of yours a person
+    // Example only: in your program, arm only on a person's request.
+    input.commands.arm = out.state == firmware::loop::State::kReady;
     out = controller.tick(input);
     wrote = device.write(out.written);
   }

@@ -21,6 +21,7 @@ int main() {
       {.force_N = 4.0, .working_depth_m = 0.004, .exponent = 1.0, .dissipation_s_per_m = 0.0});
   const auto wall = mesh::make_surface_mesh(
       {{0, -0.1, -0.1}, {0, 0.1, -0.1}, {0, 0.1, 0.1}, {0, -0.1, 0.1}}, {{0, 1, 2}, {0, 2, 3}});
+  if (!law || !wall) return std::fputs("a number of the law or the wall is invalid\n", stderr), 2;
   const auto tree = contact::make_triangle_tree(wall->view());
   const std::array<const law::Law*, 1> curves{&*law};
   tissue::ElasticField tissue({.curves = curves, .surface = wall->view(), .relaxation = {}});

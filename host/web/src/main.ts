@@ -159,7 +159,7 @@ function draw(now_ms: number): void {
     first_drawn_ms ??= performance.timeOrigin + performance.now();
     shown = newest;
     newest = null;
-    organ.show(shown.sites, shown.patch);
+    organ.show(shown.contacts, shown.patch);
     tool.show(shown);
     hand.frame(shown, now_ms);
     hud.frame(shown, now_ms);

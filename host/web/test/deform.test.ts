@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Deformer } from "../src/organ/deform";
 import { Profile } from "../src/organ/profile";
-import type { Site } from "../src/link/protocol";
+import type { Contact } from "../src/link/protocol";
 
 const kPitch_m = 0.004;
 const kRings = [0.01, 0.006, 0.003, 0.001, 0];
@@ -32,9 +32,9 @@ function slab(): { rest_m: Float32Array; normal: Float32Array } {
   return { rest_m: new Float32Array(rest_m), normal: new Float32Array(normal) };
 }
 
-function site(changes: Partial<Site> = {}): Site {
+function contact(changes: Partial<Contact> = {}): Contact {
   return {
-    site: 0,
+    contact: 0,
     state: 1,
     surface_point_m: [0, 0, 0],
     normal: [0, 0, 1],
@@ -46,11 +46,11 @@ function site(changes: Partial<Site> = {}): Site {
   };
 }
 
-function pressed(sites: Site[]): { rest_m: Float32Array; out_m: Float32Array; moved: number; most_m: number } {
+function pressed(contacts: Contact[]): { rest_m: Float32Array; out_m: Float32Array; moved: number; most_m: number } {
   const { rest_m, normal } = slab();
   const out_m = rest_m.slice();
   const result = { moved: 0, most_m: 0 };
-  new Deformer(rest_m, normal, 32, kPitch_m, new Uint32Array(0)).apply(sites, null, out_m, result);
+  new Deformer(rest_m, normal, 32, kPitch_m, new Uint32Array(0)).apply(contacts, null, out_m, result);
   return { rest_m, out_m, ...result };
 }
 
@@ -81,27 +81,27 @@ test("The profile ends one ring after the last and stays zero", () => {
   assert.equal(open.at(Number.NaN), 0);
 });
 
-test("A press moves the site by its depth against the normal", () => {
-  const { most_m, out_m, rest_m } = pressed([site()]);
+test("A press moves the contact by its depth against the normal", () => {
+  const { most_m, out_m, rest_m } = pressed([contact()]);
   assert.ok(Math.abs(most_m - 0.01) < 1e-7);
   for (let i = 2; i < out_m.length; i += 3) assert.ok(out_m[i] <= rest_m[i]);
 });
 
 test("A pull moves the tissue outwards", () => {
-  const { out_m, rest_m } = pressed([site({ depth_m: -0.01, profile_m: kRings.map((u) => -u) })]);
+  const { out_m, rest_m } = pressed([contact({ depth_m: -0.01, profile_m: kRings.map((u) => -u) })]);
   for (let i = 2; i < out_m.length; i += 3) assert.ok(out_m[i] >= rest_m[i]);
 });
 
 test("The far side of the organ does not move", () => {
-  const { out_m, rest_m } = pressed([site()]);
+  const { out_m, rest_m } = pressed([contact()]);
   for (let i = out_m.length / 2; i < out_m.length; ++i) assert.equal(out_m[i], rest_m[i]);
 });
 
-test("The dents of two sites add up", () => {
-  const other = site({ site: 1, surface_point_m: [0.004, 0, 0], profile_m: kRings.map((u) => u / 2) });
-  const one = pressed([site()]);
+test("The dents of two contacts add up", () => {
+  const other = contact({ contact: 1, surface_point_m: [0.004, 0, 0], profile_m: kRings.map((u) => u / 2) });
+  const one = pressed([contact()]);
   const two = pressed([other]).out_m;
-  const both = pressed([site(), other]).out_m;
+  const both = pressed([contact(), other]).out_m;
   for (let i = 0; i < both.length; ++i) {
     const sum_m = one.out_m[i] + two[i] - one.rest_m[i];
     assert.ok(Math.abs(both[i] - sum_m) < 1e-8);
@@ -109,17 +109,17 @@ test("The dents of two sites add up", () => {
 });
 
 test("Of two sideways shifts the larger is shown", () => {
-  const shifted = pressed([site({ shift_m: [0.002, 0, 0], profile_m: kRings.map((u) => u / 2) })]);
+  const shifted = pressed([contact({ shift_m: [0.002, 0, 0], profile_m: kRings.map((u) => u / 2) })]);
   const both = pressed([
-    site({ shift_m: [0.002, 0, 0], profile_m: kRings.map((u) => u / 2) }),
-    site({ site: 1, shift_m: [0.001, 0, 0], profile_m: kRings.map((u) => u / 2) }),
+    contact({ shift_m: [0.002, 0, 0], profile_m: kRings.map((u) => u / 2) }),
+    contact({ contact: 1, shift_m: [0.001, 0, 0], profile_m: kRings.map((u) => u / 2) }),
   ]);
   for (let i = 0; i < both.out_m.length; i += 3) assert.ok(Math.abs(both.out_m[i] - shifted.out_m[i]) < 1e-8);
 });
 
 test("A dent that leans is deeper on one side by as much as it is shallower on the other", () => {
-  const { out_m, rest_m } = pressed([site({ tilt: [0.05, 0, 0] })]);
-  const straight = pressed([site()]).out_m;
+  const { out_m, rest_m } = pressed([contact({ tilt: [0.05, 0, 0] })]);
+  const straight = pressed([contact()]).out_m;
   const lean_m = (x_mm: number): number => {
     const i = 3 * ((x_mm + 20) * 41 + 20); // y = 0
     assert.ok(Math.abs(rest_m[i] - x_mm * 1e-3) < 1e-9);
@@ -131,12 +131,12 @@ test("A dent that leans is deeper on one side by as much as it is shallower on t
 });
 
 test("Skin that leans does not rise out of a dent", () => {
-  const { out_m, rest_m } = pressed([site({ tilt: [2, 0, 0] })]);
+  const { out_m, rest_m } = pressed([contact({ tilt: [2, 0, 0] })]);
   for (let i = 2; i < out_m.length; i += 3) assert.ok(out_m[i] <= rest_m[i]);
 });
 
 test("The tangential shift fades with the same shape", () => {
-  const { out_m, rest_m } = pressed([site({ shift_m: [0.002, 0, 0] })]);
+  const { out_m, rest_m } = pressed([contact({ shift_m: [0.002, 0, 0] })]);
   for (let i = 0; i < out_m.length; i += 3) {
     const sideways = out_m[i] - rest_m[i];
     const down = rest_m[i + 2] - out_m[i + 2];
@@ -149,7 +149,7 @@ test("Release brings every vertex back", () => {
   const out_m = rest_m.slice();
   const deformer = new Deformer(rest_m, normal, 32, kPitch_m, new Uint32Array(0));
   const result = { moved: 0, most_m: 0 };
-  assert.equal(deformer.apply([site()], null, out_m, result), true);
+  assert.equal(deformer.apply([contact()], null, out_m, result), true);
   assert.ok(result.moved > 100);
   assert.equal(deformer.apply([], null, out_m, result), true);
   assert.deepEqual(out_m, rest_m);
@@ -158,6 +158,6 @@ test("Release brings every vertex back", () => {
 
 test("Numbers that are missing leave the mesh whole", () => {
   const nothing = [null, null, null] as unknown as number[];
-  const { out_m, rest_m } = pressed([site({ profile_m: nothing, normal: [Number.NaN, 0, 0] })]);
+  const { out_m, rest_m } = pressed([contact({ profile_m: nothing, normal: [Number.NaN, 0, 0] })]);
   assert.deepEqual(out_m, rest_m);
 });

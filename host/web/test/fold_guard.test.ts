@@ -5,7 +5,7 @@ import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { Deformer } from "../src/organ/deform";
 import { FoldGuard } from "../src/organ/fold_guard";
-import type { Site, Vec } from "../src/link/protocol";
+import type { Contact, Vec } from "../src/link/protocol";
 
 const kPitch_m = 0.001;
 const kTip_m = 0.004;
@@ -77,9 +77,9 @@ function vector(from: Float32Array, v: number): Vec {
   return [from[3 * v], from[3 * v + 1], from[3 * v + 2]];
 }
 
-function site(skin: Skin, vertex: number, depth_m: number): Site {
+function contact(skin: Skin, vertex: number, depth_m: number): Contact {
   return {
-    site: 0,
+    contact: 0,
     state: 1,
     surface_point_m: vector(skin.vertex_m, vertex),
     normal: vector(skin.normal, vertex),
@@ -107,10 +107,10 @@ function other_jaw(skin: Skin, vertex: number): number {
 }
 
 /** Folded triangles, and by how far the deepest vertex went. */
-function pressed(skin: Skin, deformer: Deformer, sites: Site[]): { folded: number; most_m: number } {
+function pressed(skin: Skin, deformer: Deformer, contacts: Contact[]): { folded: number; most_m: number } {
   const out_m = skin.vertex_m.slice();
   const result = { moved: 0, most_m: 0 };
-  deformer.apply(sites, null, out_m, result);
+  deformer.apply(contacts, null, out_m, result);
   const guard = new FoldGuard(skin.vertex_m, skin.triangle);
   let folded = 0;
   for (let t = 0; t < skin.triangle.length / 3; ++t) if (guard.is_folded(t, out_m)) ++folded;
@@ -124,10 +124,10 @@ for (const [name, skin, step] of [
   test(`Pressed deeply, ${name} has no triangle that turned over`, () => {
     const deformer = new Deformer(skin.vertex_m, skin.normal, 32, kPitch_m, skin.triangle);
     for (let v = 0; v < skin.vertex_m.length / 3; v += step) {
-      const one = pressed(skin, deformer, [site(skin, v, kDeep_m)]);
+      const one = pressed(skin, deformer, [contact(skin, v, kDeep_m)]);
       assert.equal(one.folded, 0, `vertex ${v}`);
       assert.ok(one.most_m > 0.85 * kDeep_m, `vertex ${v} keeps its depth: ${one.most_m}`);
-      const jaws = [site(skin, v, 0.6 * kDeep_m), site(skin, other_jaw(skin, v), 0.6 * kDeep_m)];
+      const jaws = [contact(skin, v, 0.6 * kDeep_m), contact(skin, other_jaw(skin, v), 0.6 * kDeep_m)];
       assert.equal(pressed(skin, deformer, jaws).folded, 0, `two jaws at vertex ${v}`);
     }
   });

@@ -4,14 +4,14 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import type { Frame, Site } from "../src/link/protocol";
+import type { Frame, Contact } from "../src/link/protocol";
 import { LimitNews } from "../src/panels/limit_news";
 
 function frame(told: Partial<Frame>): Frame {
-  return { state: 2, fault: 0, limit: 0, contact_losses: 0, sites: [], ...told } as Frame;
+  return { state: 2, fault: 0, limit: 0, contact_losses: 0, contacts: [], ...told } as Frame;
 }
 
-const inside = [{ site: 0, state: 3 } as Site];
+const inside = [{ contact: 0, state: 3 } as Contact];
 
 test("a limit of one frame stays readable for 1.5 s", () => {
   const news = new LimitNews();
@@ -33,7 +33,7 @@ test("a fault stays until a reset", () => {
 test("while a sphere is inside the organ it is said, whatever the gate limits", () => {
   const news = new LimitNews();
   for (const limit of [0, 3, 10, 14]) {
-    news.frame(frame({ limit, sites: inside }), 1000);
+    news.frame(frame({ limit, contacts: inside }), 1000);
     assert.equal(news.shown(1000), 14);
     assert.match(news.name(1000), /^Inside the organ: take the tool out/);
   }
@@ -41,7 +41,7 @@ test("while a sphere is inside the organ it is said, whatever the gate limits", 
 
 test("a fault is shown before a tool inside", () => {
   const news = new LimitNews();
-  news.frame(frame({ state: 3, fault: 104, sites: inside }), 1000);
+  news.frame(frame({ state: 3, fault: 104, contacts: inside }), 1000);
   assert.equal(news.shown(1000), 104);
 });
 
@@ -58,7 +58,7 @@ test("contact lost is said for four seconds after the count has grown", () => {
 test("contact lost and inside are said together", () => {
   const news = new LimitNews();
   news.frame(frame({}), 1000);
-  news.frame(frame({ contact_losses: 1, limit: 15, sites: inside }), 2000);
+  news.frame(frame({ contact_losses: 1, limit: 15, contacts: inside }), 2000);
   assert.match(news.name(2000), /^contact lost · Inside the organ: take the tool out/);
 });
 

@@ -153,7 +153,7 @@ TEST_F(BlackBoxTest, TheViewerShowsItWithEveryTickOfTheLastHalfSecond) {
 TEST_F(BlackBoxTest, AnOrdinaryTickLogIsRefusedByTheViewerWithAReason) {
   const std::string path = folder + "/run.tactlog";
   auto log = std::move(*protocol::RunWriter::create(
-      path, protocol::start_of_run({}, {}, {protocol::type_of_record<protocol::LoggedTick>()})));
+      path, protocol::start_of_run({}, {}, {protocol::schema_of<protocol::LoggedTick>()})));
   log.add(chunk_of(protocol::LoggedTick{}));
   ASSERT_EQ(tests::message_of(log.close()), "");
   const host::record::ReadResult read = host::record::read_recording(path);
@@ -167,10 +167,9 @@ TEST_F(BlackBoxTest, ACutOffFileKeepsItsTicksAndSaysThatThePicturesAreMissing) {
   ticks(*box, 300, model::Fault::kDeviceLost);
   box->finish();
   const std::string path = box->files().at(0);
-  const std::string start =
-      start_of_run(protocol::TickLog::open(path)->header(), telemetry::mesh_bytes(scene),
-                   {protocol::type_of_record<protocol::LoggedTick>(),
-                    protocol::type_of_record<protocol::Frame>()});
+  const std::string start = start_of_run(
+      protocol::TickLog::open(path)->header(), telemetry::mesh_bytes(scene),
+      {protocol::schema_of<protocol::LoggedTick>(), protocol::schema_of<protocol::Frame>()});
   fs::resize_file(path, start.size() + 300 * chunk_of(protocol::LoggedTick{}).size() + 7);
   EXPECT_EQ(logged(path).size(), 300u);
   EXPECT_NE(host::record::read_recording(path).damage.find("cut off"), std::string::npos);

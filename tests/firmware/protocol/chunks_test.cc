@@ -89,7 +89,7 @@ TEST(Chunks, AMessageIsOneChunk) {
 
 TEST(Chunks, RandomBytesAreNoRun) {
   std::mt19937 random(2);
-  const std::string start = start_of_run({}, {}, {type_of_record<LoggedTick>()});
+  const std::string start = start_of_run({}, {}, {schema_of<LoggedTick>()});
   for (int i = 0; i < 2000; ++i) {
     std::string bytes = i % 2 == 0 ? start : std::string(kMagic);
     const std::size_t length = random() % 200;

@@ -135,7 +135,7 @@ TEST(Generated, ThePageHasTheTypesOfFrameAndHead) {
       "\n/** What runs: run_header.h says what each field is. */\nexport interface Scene ";
   text += type_of_value(scene, "") + "\n";
   text += interface_of("FrameFields", Frame::fields());
-  text += interface_of("SiteFields", FrameSite::fields());
+  text += interface_of("ContactFields", FrameContact::fields());
   expect_content("host/web/src/link/records.ts", text);
 }
 
@@ -168,8 +168,8 @@ TEST(Generated, TheSchemaHasTheFieldsOfAFrame) {
   ordered_json schema = ordered_json::parse(content_of(path));
   for (ordered_json& message : schema["oneOf"]) {
     if (message["properties"]["kind"]["const"] != "frame") continue;
-    put_fields(message["properties"]["sites"]["items"], FrameSite::fields(), {"site"});
-    put_fields(message, Frame::fields(), {"kind", "sites", "patch"});
+    put_fields(message["properties"]["contacts"]["items"], FrameContact::fields(), {"contact"});
+    put_fields(message, Frame::fields(), {"kind", "contacts", "patch"});
   }
   expect_content(path, schema.dump(1) + "\n");
 }

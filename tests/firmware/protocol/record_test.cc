@@ -77,7 +77,7 @@ TEST(Records, WhatIsPackedComesBackForAnyBytes) {
 TEST(Records, OfAnotherProgramFieldsAreFoundByName) {
   Frame frame;
   frame.tick = 7;
-  frame.site[1].depth_m = 0.25f;
+  frame.contact[1].depth_m = 0.25f;
   std::string bytes;
   json table = json_of(Frame::fields());
   // A later program: its tick comes last, and it has a field that this one does not know.
@@ -93,7 +93,7 @@ TEST(Records, OfAnotherProgramFieldsAreFoundByName) {
   Frame back;
   ASSERT_TRUE(unpacker->unpack(bytes, &back));
   EXPECT_EQ(back.tick, 7u);
-  EXPECT_EQ(back.site[1].depth_m, 0.25f);
+  EXPECT_EQ(back.contact[1].depth_m, 0.25f);
   // An earlier one: it had no contact losses.
   table.erase(table.size() - 1);
   unpacker = Unpacker::make(table, Frame::fields());
@@ -103,6 +103,14 @@ TEST(Records, OfAnotherProgramFieldsAreFoundByName) {
   // One that gave it another type: a force of another meaning must not be read.
   table[1]["type"] = "f64";
   EXPECT_FALSE(Unpacker::make(table, Frame::fields()));
+}
+
+TEST(Records, AUnitIsTheLongestThatANameEndsWith) {
+  EXPECT_EQ(unit_of("tool_position_m"), "m");
+  EXPECT_EQ(unit_of("stiffness_N_per_m"), "N_per_m");
+  EXPECT_EQ(unit_of("given_energy_J"), "J");
+  EXPECT_EQ(unit_of("tool_orientation"), "");
+  EXPECT_EQ(unit_of("m"), "");
 }
 
 TEST(Records, ADamagedTableIsAnError) {

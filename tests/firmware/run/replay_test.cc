@@ -33,7 +33,7 @@ struct ClutchLine final : hal::SafetyLines {
 };
 
 std::string start_of_log(const protocol::RunHeader& header) {
-  return start_of_run(header, {}, {protocol::type_of_record<protocol::LoggedTick>()});
+  return start_of_run(header, {}, {protocol::schema_of<protocol::LoggedTick>()});
 }
 
 class ReplayTest : public testing::Test {

@@ -41,10 +41,10 @@ TEST(FrameBuilder, CarriesHowTheDentOfATouchedSiteLeans) {
   record.contacts.assign(contacts);
   builder.add(record);
   const Frame frame = builder.take(0);
-  EXPECT_FLOAT_EQ(frame.site[0].tilt[0], 0.04F);
-  EXPECT_FLOAT_EQ(frame.site[0].tilt[1], -0.08F);
-  EXPECT_FLOAT_EQ(frame.site[0].tilt[2], 0.12F);
-  for (const float of_a_free_one : frame.site[1].tilt) EXPECT_EQ(of_a_free_one, 0.0F);
+  EXPECT_FLOAT_EQ(frame.contact[0].tilt[0], 0.04F);
+  EXPECT_FLOAT_EQ(frame.contact[0].tilt[1], -0.08F);
+  EXPECT_FLOAT_EQ(frame.contact[0].tilt[2], 0.12F);
+  for (const float of_a_free_one : frame.contact[1].tilt) EXPECT_EQ(of_a_free_one, 0.0F);
 }
 
 TEST(FrameBuilder, CarriesLossesOfContactAndASphereInsideWithoutADent) {
@@ -60,8 +60,8 @@ TEST(FrameBuilder, CarriesLossesOfContactAndASphereInsideWithoutADent) {
   builder.add(record);
   const Frame frame = builder.take(0);
   EXPECT_EQ(frame.contact_losses, 7u);
-  EXPECT_EQ(frame.site[0].state, protocol::SiteState::kInside);
-  EXPECT_EQ(frame.site[0].tilt[0], 0.0F);
+  EXPECT_EQ(frame.contact[0].state, protocol::ContactState::kInside);
+  EXPECT_EQ(frame.contact[0].tilt[0], 0.0F);
   record.output.contact_losses = 5'000'000'000;
   const LoggedTick tick = LoggedTick::of(record, false);
   EXPECT_EQ(frame_of_tick(frame, tick, 0).contact_losses, 4'294'967'295u);

@@ -105,7 +105,7 @@ class WholeController {
  private:
   std::optional<TelemetrySocket> open(const std::string& path) {
     const std::string start = start_of_run(header_of(scene_, *tissue_), mesh_bytes(scene_),
-                                           {protocol::type_of_record<Frame>()});
+                                           {protocol::schema_of<Frame>()});
     return std::move(*TelemetrySocket::open(path, *make_memory_file(start)));
   }
 
@@ -143,7 +143,7 @@ TEST(Telemetry, GreetsAViewerWithTheMeshesAndFramesFollow) {
   ASSERT_TRUE(start) << start.error().message;
   const RunHeader& header = start->header();
   EXPECT_EQ(header.organ_vertices, run.scene().organ_mesh.vertex_m.size());
-  EXPECT_EQ(header.ring_count, 24u);
+  EXPECT_EQ(header.profile_points, 24u);
   EXPECT_EQ(header.scene_name, "plate");
   EXPECT_EQ(header.organ_material, "skin");
   EXPECT_EQ(header.tool_material, "steel");
@@ -159,7 +159,7 @@ TEST(Telemetry, GreetsAViewerWithTheMeshesAndFramesFollow) {
   bool touched = false;
   while (viewer.receive(frame)) {
     ++frames;
-    touched = touched || frame.site[0].state == protocol::SiteState::kTouching;
+    touched = touched || frame.contact[0].state == protocol::ContactState::kTouching;
   }
   EXPECT_GT(frames, 20);
   EXPECT_TRUE(touched);
@@ -170,11 +170,11 @@ TEST(Telemetry, FramesCarryTheProfileOfTheTouchedSite) {
   WholeController run(path);
   run.ticks(1500);
   const Frame frame = run.telemetry().newest_frame();
-  ASSERT_EQ(frame.site[0].state, protocol::SiteState::kTouching);
-  EXPECT_GT(frame.site[0].depth_m, 0.001f);
-  EXPECT_NEAR(frame.site[0].profile_m[0], frame.site[0].depth_m, 1e-7f);
-  EXPECT_LT(frame.site[0].profile_m[5], frame.site[0].profile_m[0]);
-  EXPECT_EQ(frame.site[0].profile_m[23], 0.0f);
+  ASSERT_EQ(frame.contact[0].state, protocol::ContactState::kTouching);
+  EXPECT_GT(frame.contact[0].depth_m, 0.001f);
+  EXPECT_NEAR(frame.contact[0].profile_m[0], frame.contact[0].depth_m, 1e-7f);
+  EXPECT_LT(frame.contact[0].profile_m[5], frame.contact[0].profile_m[0]);
+  EXPECT_EQ(frame.contact[0].profile_m[23], 0.0f);
   EXPECT_GT(frame.peak_force_N, 0.05f);
   EXPECT_TRUE(frame.non_rt);
 }

@@ -87,7 +87,8 @@ class TrackedFile : public ::testing::Test {
   ~TrackedFile() override { std::filesystem::remove(path_); }
 
   static Frame frame(std::size_t i) {
-    Frame out = test::make_frame(static_cast<float>(i), firmware::protocol::SiteState::kTouching);
+    Frame out =
+        test::make_frame(static_cast<float>(i), firmware::protocol::ContactState::kTouching);
     out.tick = i;
     out.time_ns = static_cast<std::int64_t>(i) * 10'000'000;
     return out;

@@ -44,7 +44,8 @@ class RecordingFile : public ::testing::Test {
   ~RecordingFile() override { std::filesystem::remove(path_); }
 
   static Frame frame(std::size_t i) {
-    Frame frame = test::make_frame(static_cast<float>(i), firmware::protocol::SiteState::kTouching);
+    Frame frame =
+        test::make_frame(static_cast<float>(i), firmware::protocol::ContactState::kTouching);
     frame.tick = i;
     frame.time_ns = static_cast<std::int64_t>(i) * 10'000'000;
     return frame;
@@ -191,14 +192,14 @@ TEST(RecordingCsv, SaysWhichRunItWasAndWhatARowIs) {
 TEST(RecordingCsv, HasOneNameForEveryColumn) {
   const RunHeader header = test::make_header(3, 1, 3, 1);
   std::string row;
-  append_csv_row(row, test::make_frame(1.0f, firmware::protocol::SiteState::kHeld), header);
+  append_csv_row(row, test::make_frame(1.0f, firmware::protocol::ContactState::kHeld), header);
   EXPECT_EQ(columns(row), columns(csv_header(header)));
   EXPECT_EQ(columns(row), 42 + 2 * (12 + 11 + 3));
   EXPECT_EQ(std::count(row.begin(), row.end(), '\n'), 1);
 }
 
 TEST(RecordingCsv, TellsASphereInsideAndLossesOfContact) {
-  Frame frame = test::make_frame(0.5f, firmware::protocol::SiteState::kInside);
+  Frame frame = test::make_frame(0.5f, firmware::protocol::ContactState::kInside);
   frame.contact_losses = 21;
   std::string row;
   append_csv_row(row, frame, test::make_header(3, 1, 3, 1));
@@ -237,9 +238,11 @@ TEST(RecordingCsv, GivesEveryColumnAUnitOrNoneOnPurpose) {
   const std::string header = csv_header(test::make_header(3, 1, 3, 1));
   EXPECT_NE(header.find("force_x_N,"), std::string::npos);
   EXPECT_NE(header.find("worst_margin_us,"), std::string::npos);
-  EXPECT_NE(header.find("site2_profile_10_m,site2_tilt_x,site2_tilt_y,site2_tilt_z,site2_state,"
-                        "site2_state_name,"),
-            std::string::npos);
+  EXPECT_NE(
+      header.find(
+          "contact2_profile_10_m,contact2_tilt_x,contact2_tilt_y,contact2_tilt_z,contact2_state,"
+          "contact2_state_name,"),
+      std::string::npos);
 }
 
 }  // namespace tact::host::record::recording_test

@@ -16,15 +16,15 @@ using tests::message_of;
 
 record::RunHeader busiest_header() {
   record::RunHeader header = test::make_header(3, 1, 3, 1);
-  header.spheres.resize(firmware::protocol::kMaxSites);
-  header.ring_count = firmware::protocol::kMaxRings;
+  header.spheres.resize(firmware::protocol::kMaxContacts);
+  header.profile_points = firmware::protocol::kMaxProfilePoints;
   return header;
 }
 
 // Every site held, every number as long as it can be.
 record::Frame longest_frame() {
   const float longest = -std::numeric_limits<float>::min();  // -1.175e-38
-  record::Frame frame = test::make_frame(longest, firmware::protocol::SiteState::kHeld);
+  record::Frame frame = test::make_frame(longest, firmware::protocol::ContactState::kHeld);
   frame.tick = frame.late_ticks = frame.skipped_ticks = frame.dropped_records = UINT64_MAX;
   frame.time_ns = INT64_MIN;
   frame.fault = frame.limit = UINT16_MAX;
@@ -41,33 +41,33 @@ TEST(FrameJson, StaysInItsLengthWhateverItsNumbersAre) {
 
 TEST(FrameJson, SaysNullForNumbersThatAreNotFinite) {
   const record::Frame frame = test::make_frame(std::numeric_limits<float>::quiet_NaN(),
-                                               firmware::protocol::SiteState::kTouching);
+                                               firmware::protocol::ContactState::kTouching);
   const auto json = nlohmann::json::parse(frame_json(frame, busiest_header()), nullptr, false);
   ASSERT_FALSE(json.is_discarded());
   EXPECT_TRUE(json["force_N"][2].is_null());
-  EXPECT_TRUE(json["sites"][3]["profile_m"][31].is_null());
+  EXPECT_TRUE(json["contacts"][3]["profile_m"][31].is_null());
   EXPECT_TRUE(json["worst_margin_us"].is_null());
 }
 
 TEST(FrameJson, ListsOnlySitesInContactWithTheRingsInUse) {
-  record::Frame frame = test::make_frame(0.002f, firmware::protocol::SiteState::kFree);
-  frame.site[1].state = firmware::protocol::SiteState::kHeld;
-  const record::RunHeader header = test::make_header(3, 1, 3, 1);  // 2 sites, 11 rings
+  record::Frame frame = test::make_frame(0.002f, firmware::protocol::ContactState::kFree);
+  frame.contact[1].state = firmware::protocol::ContactState::kHeld;
+  const record::RunHeader header = test::make_header(3, 1, 3, 1);  // 2 contacts, 11 rings
   const auto json = nlohmann::json::parse(frame_json(frame, header), nullptr, false);
-  ASSERT_EQ(json["sites"].size(), 1u);
-  EXPECT_EQ(json["sites"][0]["site"], 1);
-  EXPECT_EQ(json["sites"][0]["state"], 2);
-  EXPECT_EQ(json["sites"][0]["profile_m"].size(), 11u);
+  ASSERT_EQ(json["contacts"].size(), 1u);
+  EXPECT_EQ(json["contacts"][0]["contact"], 1);
+  EXPECT_EQ(json["contacts"][0]["state"], 2);
+  EXPECT_EQ(json["contacts"][0]["profile_m"].size(), 11u);
 }
 
 TEST(FrameJson, ListsASphereInsideAndCountsLossesOfContact) {
-  record::Frame frame = test::make_frame(0.0f, firmware::protocol::SiteState::kFree);
-  frame.site[0].state = firmware::protocol::SiteState::kInside;
+  record::Frame frame = test::make_frame(0.0f, firmware::protocol::ContactState::kFree);
+  frame.contact[0].state = firmware::protocol::ContactState::kInside;
   frame.contact_losses = 4;
   const auto json =
       nlohmann::json::parse(frame_json(frame, test::make_header(3, 1, 3, 1)), nullptr, false);
-  ASSERT_EQ(json["sites"].size(), 1u);
-  EXPECT_EQ(json["sites"][0]["state"], 3);
+  ASSERT_EQ(json["contacts"].size(), 1u);
+  EXPECT_EQ(json["contacts"][0]["state"], 3);
   EXPECT_EQ(json["contact_losses"], 4);
 }
 
@@ -80,16 +80,16 @@ TEST(FrameJson, KeepsSixDigits) {
   EXPECT_NEAR(json["force_N"][2].get<double>(), 1.23456, 5e-6);
   EXPECT_NEAR(json["tool_position_m"][0].get<double>(), 0.123456, 5e-7);
   EXPECT_EQ(json["time_ns"], 1'500'000'000);
-  EXPECT_TRUE(json["sites"].empty());
+  EXPECT_TRUE(json["contacts"].empty());
 }
 
 TEST(FrameJson, DoesNotTrustCountsBeyondTheArrays) {
   record::RunHeader header = busiest_header();
   header.spheres.resize(9);
-  header.ring_count = UINT32_MAX;
-  const record::Frame frame = test::make_frame(1.0f, firmware::protocol::SiteState::kHeld);
+  header.profile_points = UINT32_MAX;
+  const record::Frame frame = test::make_frame(1.0f, firmware::protocol::ContactState::kHeld);
   const auto json = nlohmann::json::parse(frame_json(frame, header), nullptr, false);
-  EXPECT_EQ(json["sites"].size(), firmware::protocol::kMaxSites);
+  EXPECT_EQ(json["contacts"].size(), firmware::protocol::kMaxContacts);
 }
 
 TEST(SceneJson, SaysWhatTheHeadSays) {
@@ -116,7 +116,7 @@ TEST(CheckHeader, RefusesCountsAndNumbersWithoutSense) {
   EXPECT_TRUE(refuses([](record::RunHeader& h) { h.piece_color_ratio.resize(5); }));
   EXPECT_TRUE(refuses([](record::RunHeader& h) { h.piece_color_ratio = {{0, 0, -1.0f}}; }));
   EXPECT_TRUE(refuses([](record::RunHeader& h) { h.spheres.resize(5); }));
-  EXPECT_TRUE(refuses([](record::RunHeader& h) { h.ring_count = 33; }));
+  EXPECT_TRUE(refuses([](record::RunHeader& h) { h.profile_points = 33; }));
   EXPECT_TRUE(refuses([](record::RunHeader& h) { h.tool_vertices = 4'000'001; }));
   EXPECT_TRUE(refuses([](record::RunHeader& h) { h.rate_Hz = -1.0; }));
 }
@@ -139,14 +139,14 @@ TEST(FrameJson, TellsDisplacedVerticesAndCutsOfALawWithoutProfiles) {
   frame.patch.cut_triangle[0] = 11;
   frame.patch.cut_triangle[1] = 12;
   record::RunHeader header = test::make_header(3, 1, 3, 1);
-  header.ring_count = 0;
+  header.profile_points = 0;
   const auto patch = nlohmann::json::parse(frame_json(frame, header)).at("patch");
   EXPECT_EQ(patch.at("count"), 2);
   EXPECT_EQ(patch.at("moved"), "BwAAAHARAQABAP7/AwD/fwAA//8=")
       << "the same bytes as in the page's own test";
   EXPECT_EQ(patch.at("cut_total"), 40);
   EXPECT_EQ(patch.at("cut"), (std::vector<int>{11, 12}));
-  header.ring_count = 3;
+  header.profile_points = 3;
   EXPECT_FALSE(nlohmann::json::parse(frame_json(frame, header)).contains("patch"));
 }
 
@@ -157,7 +157,7 @@ TEST(FrameJson, StaysInItsLengthWithAFullPatchAndEverySiteHeld) {
   frame.patch.cut_count = firmware::protocol::kMaxCutsReported;
   for (auto& triangle : frame.patch.cut_triangle) triangle = 3'999'999;
   record::RunHeader header = busiest_header();
-  header.ring_count = 0;
+  header.profile_points = 0;
   header.organ_vertices = header.organ_triangles = 4'000'000;
   ASSERT_EQ(message_of(record::check_header(header)), "");
   ASSERT_EQ(message_of(record::check_frame(frame, header)), "");
@@ -190,7 +190,7 @@ TEST(CheckFrame, RefusesPatchesThatNameWhatIsNotThere) {
   EXPECT_TRUE(refuses([](record::Frame& f) { f.patch.cut_total = 3; }));
   EXPECT_TRUE(refuses([](record::Frame& f) { f.state = firmware::loop::State{4}; }));
   EXPECT_TRUE(
-      refuses([](record::Frame& f) { f.site[3].state = firmware::protocol::SiteState{4}; }));
+      refuses([](record::Frame& f) { f.contact[3].state = firmware::protocol::ContactState{4}; }));
 }
 
 }  // namespace tact::host::server::frame_json_test

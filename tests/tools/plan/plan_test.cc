@@ -236,10 +236,10 @@ TEST_F(PlanFile, RefusesWhatIsMissingDamagedOrStale) {
   expect_remedy(
       model::scene::read_plan(write(model::io::sealed_text("law = \"auto\"\n")), scene_, kSet),
       "no law");
-  expect_remedy(
-      model::scene::read_plan(write(model::io::sealed_text("law = \"rhombus\"\ncurves = -3\n")),
-                              scene_, kSet),
-      "out of range");
+  for (const char* text :
+       {"law = \"compliance\"\ncurves = -3\n", "law = \"rhombus\"\ntable_knots = 1000000\n"})
+    expect_remedy(model::scene::read_plan(write(model::io::sealed_text(text)), scene_, kSet),
+                  "out of range");
   expect_remedy(
       model::scene::read_plan(write(model::io::sealed_text("law = \"rhombus\"\n")), scene_, kSet),
       "tick_p999_us is missing");

@@ -37,7 +37,7 @@ std::vector<Variant> variants_of(const model::scene::Scene& scene, const Variant
     }
     // Two sizes, one after the other: curves over the organ, then knots of a curve.
     if (law == "compliance" && !request.quick)
-      for (const std::size_t knots : {17, 33, 129})
+      for (const std::size_t knots : {17U, 33U, 129U})
         add({.law = law, .table_knots = knots, .size = scene.compliance.curves});
   }
   return out;

@@ -2,17 +2,17 @@
 // protocol.ts - what tact-view sends, with its units in the names. Vectors are [x, y, z] in frame W:
 // +x towards the operator, +y to the right, +z up.
 
-import type { FrameFields, Scene, SiteFields, Vec } from "./records";
+import type { FrameFields, Scene, ContactFields, Vec } from "./records";
 
 export type { Scene, Vec } from "./records";
 
 export type Sphere = Scene["spheres"][number];
 
-export const kSiteInside = 3;
+export const kContactInside = 3;
 
 /** A probe sphere in contact, or inside the organ. */
-export interface Site extends SiteFields {
-  site: number;
+export interface Contact extends ContactFields {
+  contact: number;
 }
 
 /** Of a law without profiles: vertices that are not at rest, and cut triangles. */
@@ -25,7 +25,7 @@ export interface Patch {
 
 export interface Frame extends FrameFields {
   kind: "frame";
-  sites: Site[];
+  contacts: Contact[];
   patch?: Patch;
 }
 

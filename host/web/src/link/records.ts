@@ -39,10 +39,10 @@ export interface Scene {
   organ_vertices: number;
   overrides: string[];
   piece_color_ratio: Vec[];
+  profile_pitch_m: number;
+  profile_points: number;
   rate_Hz: number;
   revision: string;
-  ring_count: number;
-  ring_pitch_m: number;
   scene_hash: string;
   scene_name: string;
   simulated: boolean;
@@ -59,9 +59,9 @@ export interface Scene {
 export interface FrameFields {
   tick: number; // number of the newest tick
   time_ns: number; // since the loop started
-  late_ticks: number; // so far
-  skipped_ticks: number; // so far
-  dropped_records: number; // so far
+  late_ticks: number; // count since start
+  skipped_ticks: number; // count since start
+  dropped_records: number; // count since start
   tool_position_m: Vec;
   tool_orientation: [number, number, number, number]; // unit quaternion from the tool frame to W
   tool_velocity_mps: Vec;
@@ -79,15 +79,15 @@ export interface FrameFields {
   limit: number; // last one that acted since the last frame; number of tactd --faults, 0 none
   state: number;
   non_rt: boolean; // the PC has no hard real time, the force is capped
-  contact_losses: number; // so far: the tool moved unseen, farther than its speed limit allows
+  contact_losses: number; // count since start: contact was lost as the tool moved too far between samples
 }
 
-export interface SiteFields {
+export interface ContactFields {
   surface_point_m: Vec; // touched or held point of the undeformed surface
   normal: Vec; // outward unit normal there
   shift_m: Vec; // tangential displacement of the tissue
   depth_m: number; // press positive, pull negative
-  profile_m: number[]; // displacement into the tissue at radius j ring_pitch_m; ring_count are in use
+  profile_m: number[]; // displacement into the tissue at radius j profile_pitch_m; profile_points are in use
   tilt: Vec; // m/m; added to the profile at x: tilt . (x - surface_point_m)
   state: number; // inside: no force until it has once been outside
 }

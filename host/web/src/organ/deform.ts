@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// deform.ts - moves the vertices of the organ as the touched sites say. Only sites and profiles
+// deform.ts - moves the vertices of the organ as the touched contacts say. Only contacts and profiles
 // travel from tactd; the mesh stays here.
 //
 //     d(v) = fade(v) (-n (u(rho) + taper(rho) tilt . (v - p)) + s w(rho))
 //
-//     n, s   normal and tangential shift at the site     rho  distance from the site in its tangent plane
+//     n, s   normal and tangential shift at the contact     rho  distance from the contact in its tangent plane
 //     u      profile (profile.ts)                        w    u / u_0, the same shape
-//     tilt   the organ sinks more towards a free lobe (model/tissue/indentation_tilt.h); p  the site
-//     taper  1 near the site and 0 a reach away
+//     tilt   the organ sinks more towards a free lobe (model/tissue/indentation_tilt.h); p  the contact
+//     taper  1 near the contact and 0 a reach away
 //     fade   1 near the tangent plane and 0 a reach away or on skin that looks the other way, so that
 //            the far side of the organ stays where it is
 //
 // A mass-spring tissue names its displaced vertices itself (patch.ts).
-// Dents of several sites add up, as tactd sends each sphere's own: beside the others it is smaller
+// Dents of several contacts add up, as tactd sends each sphere's own: beside the others it is smaller
 // than its depth. Of their sideways shifts, which are not each its own, the larger is shown. Where
 // the sum would fold the skin over, its steepest parts are spread (fold_guard.ts).
 
@@ -20,7 +20,7 @@ import { FoldGuard } from "./fold_guard";
 import type { Moved } from "./patch";
 import { Profile } from "./profile";
 import { smoothstep } from "../scene/smoothstep";
-import type { Site } from "../link/protocol";
+import type { Contact } from "../link/protocol";
 
 export interface Deformed {
   moved: number; // vertices that moved by more than a micrometre
@@ -45,26 +45,26 @@ export class Deformer {
   constructor(
     private readonly rest_m: Float32Array,
     private readonly rest_normal: Float32Array,
-    ring_count: number,
-    ring_pitch_m: number,
+    profile_points: number,
+    profile_pitch_m: number,
     triangle: Uint32Array,
   ) {
     this.guard = new FoldGuard(rest_m, triangle);
-    this.profile = new Profile(ring_count, ring_pitch_m);
+    this.profile = new Profile(profile_points, profile_pitch_m);
     this.travel_m = new Float32Array(rest_m.length / 3);
     this.sideways_m = new Float32Array(rest_m.length);
   }
 
   /** Writes moved vertices to out_m. False when it left everything as it was. */
-  apply(sites: readonly Site[], moved: Moved | null, out_m: Float32Array, result: Deformed): boolean {
+  apply(contacts: readonly Contact[], moved: Moved | null, out_m: Float32Array, result: Deformed): boolean {
     result.moved = 0;
     result.most_m = 0;
-    const anything = sites.length > 0 || (moved !== null && moved.vertex.length > 0);
+    const anything = contacts.length > 0 || (moved !== null && moved.vertex.length > 0);
     if (!anything && !this.was_moved) return false;
     out_m.set(this.rest_m);
     this.travel_m.fill(0);
     if (moved) this.place(moved, out_m);
-    else this.press(sites, out_m);
+    else this.press(contacts, out_m);
     for (const travel_m of this.travel_m) {
       if (travel_m > 1e-6) ++result.moved;
       if (travel_m > result.most_m) result.most_m = travel_m;
@@ -85,9 +85,9 @@ export class Deformer {
     }
   }
 
-  private press(sites: readonly Site[], out_m: Float32Array): void {
+  private press(contacts: readonly Contact[], out_m: Float32Array): void {
     this.sideways_m.fill(0);
-    for (const site of sites) this.dent(site, out_m);
+    for (const contact of contacts) this.dent(contact, out_m);
     for (let i = 0; i < out_m.length; ++i) out_m[i] += this.sideways_m[i];
     this.guard.hold(out_m);
     for (let i = 0; i < out_m.length; i += 3) {
@@ -99,13 +99,13 @@ export class Deformer {
   }
 
   /** d = -n u, added; s w, where it is the largest. */
-  private dent(site: Site, out_m: Float32Array): void {
-    this.profile.set(site.profile_m);
+  private dent(contact: Contact, out_m: Float32Array): void {
+    this.profile.set(contact.profile_m);
     const reach_m = this.profile.reach_m;
-    const [px, py, pz] = site.surface_point_m;
-    const [nx, ny, nz] = site.normal;
-    const [tx, ty, tz] = site.tilt;
-    const u0_m = site.profile_m[0] ?? 0;
+    const [px, py, pz] = contact.surface_point_m;
+    const [nx, ny, nz] = contact.normal;
+    const [tx, ty, tz] = contact.tilt;
+    const u0_m = contact.profile_m[0] ?? 0;
     const per_u0 = Math.abs(u0_m) > 1e-9 ? 1 / u0_m : 0;
     for (let i = 0; i < this.rest_m.length; i += 3) {
       const x = this.rest_m[i] - px;
@@ -125,9 +125,9 @@ export class Deformer {
       out_m[i] -= nx * u_m;
       out_m[i + 1] -= ny * u_m;
       out_m[i + 2] -= nz * u_m;
-      const sx = site.shift_m[0] * w;
-      const sy = site.shift_m[1] * w;
-      const sz = site.shift_m[2] * w;
+      const sx = contact.shift_m[0] * w;
+      const sy = contact.shift_m[1] * w;
+      const sz = contact.shift_m[2] * w;
       const side = this.sideways_m;
       const before = side[i] * side[i] + side[i + 1] * side[i + 1] + side[i + 2] * side[i + 2];
       if (!(sx * sx + sy * sy + sz * sz > before)) continue;

@@ -8,7 +8,7 @@ import { look_material, paint } from "../scene/look";
 import { organ_material, piece_tints, vertex_tints, type Material } from "../scene/material";
 import type { Target } from "../scene/outside";
 import { Cuts, decode_moved } from "./patch";
-import type { Mesh, Patch, Scene, Site, Vec } from "../link/protocol";
+import type { Mesh, Patch, Scene, Contact, Vec } from "../link/protocol";
 import { Wound } from "./wound";
 
 // Factors on the baked colour of the tissue (look.ts).
@@ -68,7 +68,7 @@ export class OrganView {
     this.object.add(this.lines, this.wound.object);
     this.object.frustumCulled = false; // its bounds move; it is nearly always in view
     const rest_normal = (this.geometry.getAttribute("normal").array as Float32Array).slice();
-    this.deformer = new Deformer(mesh.vertex_m, rest_normal, scene.ring_count, scene.ring_pitch_m, mesh.triangle);
+    this.deformer = new Deformer(mesh.vertex_m, rest_normal, scene.profile_points, scene.profile_pitch_m, mesh.triangle);
   }
 
   get vertex_count(): number {
@@ -99,12 +99,12 @@ export class OrganView {
     return this.cuts.triangles.size;
   }
 
-  show(sites: readonly Site[], patch?: Patch): void {
+  show(contacts: readonly Contact[], patch?: Patch): void {
     if (patch && this.cuts.learn(patch)) this.open();
     const position = this.geometry.getAttribute("position") as THREE.BufferAttribute;
     const vertex_m = position.array as Float32Array;
     const moved = patch ? decode_moved(patch) : null;
-    if (!this.deformer.apply(sites, moved, vertex_m, this.deformed)) return;
+    if (!this.deformer.apply(contacts, moved, vertex_m, this.deformed)) return;
     position.needsUpdate = true;
     this.geometry.computeVertexNormals();
     this.wound.follow(vertex_m, this.geometry.getAttribute("normal").array as Float32Array);

@@ -5,7 +5,7 @@ import { by_id } from "../document/dom";
 import { describe, describe_past_state, describe_state, latches } from "./faults";
 import { LimitNews } from "./limit_news";
 import { Pace } from "../link/pace";
-import { kSiteInside, length_of, type FigureFrame, type Frame, type Scene, type Status } from "../link/protocol";
+import { kContactInside, length_of, type FigureFrame, type Frame, type Scene, type Status } from "../link/protocol";
 
 const kRewrite_ms = 100; // numbers that change faster cannot be read
 
@@ -221,14 +221,14 @@ export class Hud {
   }
 
   private static depth(frame: Frame): string {
-    if (frame.sites.length === 0) return "free";
-    if (frame.sites.some((site) => site.state === kSiteInside)) return "inside the organ";
-    return frame.sites.map((site) => (site.depth_m * 1e3).toFixed(1)).join(" · ") + " mm";
+    if (frame.contacts.length === 0) return "free";
+    if (frame.contacts.some((contact) => contact.state === kContactInside)) return "inside the organ";
+    return frame.contacts.map((contact) => (contact.depth_m * 1e3).toFixed(1)).join(" · ") + " mm";
   }
 
   private static grip(frame: Frame): string {
     const force = Math.abs(frame.grip_force_N ?? 0) >= 0.05 ? `, ${frame.grip_force_N.toFixed(1)}\u00a0N` : "";
-    if (frame.sites.some((site) => site.state === 2)) return `holds tissue${force}`;
+    if (frame.contacts.some((contact) => contact.state === 2)) return `holds tissue${force}`;
     const percent = Math.round((frame.grip_ratio ?? 0) * 100);
     return (percent < 2 ? "open" : percent > 98 ? "closed" : `${percent} %`) + force;
   }

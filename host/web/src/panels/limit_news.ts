@@ -2,7 +2,7 @@
 // limit_news.ts - which fault or limit is shown, and for how long.
 
 import { describe, kStopped, latches } from "./faults";
-import { kSiteInside, type Frame } from "../link/protocol";
+import { kContactInside, type Frame } from "../link/protocol";
 
 const kHold_ms = 1500; // a limit that acted for one tick stays readable this long
 const kLoss_ms = 4000; // lost contact is over in one tick: it is looked for after it was felt
@@ -18,7 +18,7 @@ export class LimitNews {
   frame(frame: Frame, now_ms: number): void {
     const over = latches(this.number) && frame.fault === 0 && frame.state !== kStopped;
     if (over) this.number = 0; // reset, or a replay went back
-    const inside = frame.sites.some((site) => site.state === kSiteInside);
+    const inside = frame.contacts.some((contact) => contact.state === kContactInside);
     const acting = frame.fault || (inside ? kToolInside : frame.limit);
     if (acting > 0) {
       this.number = acting;

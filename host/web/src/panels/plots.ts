@@ -61,7 +61,7 @@ export class Plots {
     const last_s = this.times_s[this.times_s.length - 1] ?? time_s_of(frame);
     if (time_s_of(frame) < last_s || time_s_of(frame) > last_s + kLongestGap_s) this.clear();
     this.times_s.push(time_s_of(frame));
-    this.depth_mm.forEach((line, i) => line.push((frame.sites.find((site) => site.site === i)?.depth_m ?? 0) * 1e3));
+    this.depth_mm.forEach((line, i) => line.push((frame.contacts.find((contact) => contact.contact === i)?.depth_m ?? 0) * 1e3));
     this.force_N[0].push(length_of(frame.wanted_force_N));
     this.force_N[1].push(length_of(frame.force_N));
     this.margin_us[0].push(frame.worst_margin_us ?? 0);

@@ -6,7 +6,7 @@ import { toCreasedNormals } from "three/addons/utils/BufferGeometryUtils.js";
 import { look_material, paint } from "./look";
 import { kMaterials, tool_material } from "./material";
 import type { Target } from "./outside";
-import { dot, kSiteInside, length_of, type Frame, type Mesh, type Scene, type Sphere, type Vec } from "../link/protocol";
+import { dot, kContactInside, length_of, type Frame, type Mesh, type Scene, type Sphere, type Vec } from "../link/protocol";
 
 const kTouch = new THREE.Color("#7fd1c7");
 const kHeld = new THREE.Color("#f2b04e");
@@ -126,13 +126,13 @@ export class ToolView {
     this.tool.position.set(...frame.tool_position_m);
     this.tool.quaternion.set(x, y, z, w).normalize();
     this.spheres.forEach((sphere, index) => {
-      const site = frame.sites.find((candidate) => candidate.site === index);
-      sphere.material.opacity = site ? 0.42 : 0.16;
-      sphere.material.color.copy(site?.state === 2 ? kHeld : site?.state === kSiteInside ? kInside : kTouch);
+      const contact = frame.contacts.find((candidate) => candidate.contact === index);
+      sphere.material.opacity = contact ? 0.42 : 0.16;
+      sphere.material.color.copy(contact?.state === 2 ? kHeld : contact?.state === kContactInside ? kInside : kTouch);
     });
     const share = length_of(frame.force_N) / (this.scene.force_limit_N || 1);
-    const into_tissue = frame.sites.some((site) => dot(site.normal, frame.force_N) < 0);
-    const in_contact = frame.sites.flatMap((site) => this.scene.spheres[site.site] ?? []);
+    const into_tissue = frame.contacts.some((contact) => dot(contact.normal, frame.force_N) < 0);
+    const in_contact = frame.contacts.flatMap((contact) => this.scene.spheres[contact.contact] ?? []);
     const at_m = this.middle_m(in_contact); // where eyes are; the hand may hold the tool outside the picture
     this.arrow.set(at_m, frame.force_N, share, into_tissue);
     const most_Nm = this.scene.torque_limit_Nm;
