@@ -142,7 +142,7 @@ SINGLE_HEADERS = {
     **{(f"host/{room}", "model"): {"result.h"} for room in ("tracking", "record", "igtl", "server", "run")},
     ("host/run", "hal/sim"): {"hand_target.h"},
 }
-# Read and write files, allocate, take their time; no room of the loop reaches them by any way.
+# Read and write files, allocate, take their time: no header that LOOP_ROOMS include reaches them.
 OFFLINE = ("model/io/", "model/mesh/", "model/fem/", "model/reader/", "model/scene/")
 LOOP_ROOMS = ("firmware/gate", "firmware/loop", "firmware/watch")
 OURS = re.compile(r'^\s*#include "([^"]+)"', re.M)

@@ -4,7 +4,7 @@
     import tact
     for frame in tact.live():                      # of the tactd that runs as this user
         print(frame["time_ns"], frame["force_N"])
-    run = tact.read_recording("run.tactrec")       # run.frames["force_N"] is (n, 3), N
+    run = tact.read_recording("run.tactview")       # run.frames["force_N"] is (n, 3), N
     log = tact.read_ticks("run.tactlog")           # log.ticks["force_N"], every tick
     print(log.fields["force_N"]["meaning"])        # unit and meaning stand in the file, too
 
