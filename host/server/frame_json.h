@@ -16,7 +16,7 @@ namespace tact::host::server {
 
 inline constexpr std::size_t kMaxFrameJsonBytes = 4608;
 
-/// {"kind":"frame","tick":..,"tool_position_m":[x,y,z],...,"contacts":[{"contact":0,"depth_m":..,...}]}
+/// {"kind":"frame","tick":..,"force_N":[x,y,z],...,"contacts":[{"contact":0,"depth_m":..,...}]}
 std::string frame_json(const record::Frame& frame, const record::RunHeader& header);
 
 /// Constant while tactd runs: names, counts, limits, probe spheres.
