@@ -116,7 +116,7 @@ TEST(CheckTool, IsWithoutFrictionAsTheReferenceIs) {
 
 TEST(TimeTool, TimesAToolThatTouchesOrRefuses) {
   model::scene::Scene scene = make_scene();
-  scene.law = LawKind::kDiscStack;
+  scene.law = "disc_stack";
   EXPECT_TRUE(time_tool(scene, kShort).has_value());
   scene.hand_site_m.z += 0.05;
   EXPECT_FALSE(time_tool(scene, kShort).has_value());
