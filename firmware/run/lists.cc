@@ -13,10 +13,10 @@
 namespace tact::firmware::run {
 
 using hal::list::FoundPart;
-using hal::list::PartKind;
 using model::reader::SceneNumber;
 
-std::string devices_as_text(const std::vector<FoundPart>& parts) {
+std::string devices_as_text(const std::vector<FoundPart>& parts,
+                            const std::vector<hal::UsbPart>& looked_for) {
   std::string text;
   auto out = std::back_inserter(text);
   for (const FoundPart& part : parts) {
@@ -27,12 +27,8 @@ std::string devices_as_text(const std::vector<FoundPart>& parts) {
     else
       fmt::format_to(out, "  not ready: {}\n  remedy: {}\n", part.lacking, part.remedy);
   }
-  // For a kind without a part: what was searched for.
-  for (const PartKind kind : hal::list::kPartKinds) {
-    const bool there = std::any_of(parts.begin(), parts.end(),
-                                   [&](const FoundPart& part) { return part.kind == kind; });
-    if (!there) fmt::format_to(out, "{}\n", hal::list::absence_text(kind));
-  }
+  for (const std::string& absent : hal::list::absent_parts(parts, looked_for))
+    fmt::format_to(out, "{}\n", absent);
   text += "sim-delta: the simulated device\n  ready: device.kind = \"sim-delta\"\n";
   return text;
 }
@@ -40,7 +36,7 @@ std::string devices_as_text(const std::vector<FoundPart>& parts) {
 std::string devices_as_json(const std::vector<FoundPart>& parts) {
   nlohmann::json list = nlohmann::json::array();
   for (const FoundPart& part : parts)
-    list.push_back({{"kind", hal::list::name_of(part.kind)},
+    list.push_back({{"kind", part.kind},
                     {"name", part.name},
                     {"what", part.what},
                     {"scene", part.scene},

@@ -85,7 +85,7 @@ std::optional<Error> PhantomWorker::wait_until_calibrated() {
 
 std::string PhantomWorker::trouble_text() const {
   const auto reported = first_trouble();
-  switch (static_cast<Source>(reported.source)) {
+  switch (static_cast<Source>(reported.kind)) {
     case Source::kNone:
       return {};
     case Source::kError:
@@ -215,9 +215,7 @@ void PhantomWorker::close() {
 
 /// False, for the caller to pass on.
 bool PhantomWorker::fail(Fault fault, Source source, unsigned code) {
-  keep({.fault = fault,
-        .source = static_cast<std::uint8_t>(source),
-        .code = static_cast<std::uint16_t>(std::min(code, 0xFFFFu))});
+  keep({.fault = fault, .kind = static_cast<std::uint8_t>(source), .code = code});
   return false;
 }
 

@@ -6,6 +6,8 @@
 
 namespace tact::model::reader {
 
+class Keys;  // scene_reader.h
+
 struct SceneNumber {
   std::string key;               // "rhombus.growth", as --set takes it
   std::string unit;              // "N/m"; empty of a number without one

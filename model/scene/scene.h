@@ -83,8 +83,13 @@ struct Scene {
   bool describes(LawKind kind) const;
 };
 
-/// Read a scene and its meshes. `overrides` are "key.path=value" as TOML writes values.
-Result<Scene> load_scene(const std::string& path, const std::vector<std::string>& overrides);
+/// Visits the keys of [device], which hal/registry knows.
+using DeviceKeys = void (*)(reader::Keys& section, DeviceSettings& out);
+
+/// Read a scene and its meshes. `overrides` are "key.path=value" as TOML writes values. A caller
+/// that opens no device passes no keys: [device] is not looked at, and Scene::device is empty.
+Result<Scene> load_scene(const std::string& path, const std::vector<std::string>& overrides,
+                         DeviceKeys device_keys = nullptr);
 
 /// The numbers of the law in use, with the keys, units and ranges of the scene's reader: what
 /// a person may change, to feel it. What a law or a device can bear is asked where a run is opened.
@@ -93,6 +98,6 @@ Result<std::vector<reader::SceneNumber>> law_numbers(const Scene& scene,
                                                      const std::vector<std::string>& overrides);
 
 /// Every key with unit, range, default or "required", and meaning: a page for people.
-std::string scene_reference();
+std::string scene_reference(DeviceKeys device_keys);
 
 }  // namespace tact::model::scene
