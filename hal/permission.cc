@@ -6,14 +6,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
-#include <vector>
 
-#include "hal/udev_rules.h"
 #include "model/io/input_file.h"
 
 namespace tact::hal {
-namespace {
 
 namespace fs = std::filesystem;
 
@@ -28,8 +26,6 @@ std::vector<fs::path> entries(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder, none)) paths.push_back(entry.path());
   return paths;
 }
-
-}  // namespace
 
 std::optional<gid_t> haptics_group() {
   const group* const found = getgrnam("haptics");
@@ -69,14 +65,23 @@ std::string usb_node(const fs::path& device, const SystemRoots& roots) {
   return fmt::format("{}/bus/usb/{:03}/{:03}", roots.dev, number("busnum"), number("devnum"));
 }
 
-std::optional<Refusal> refused_usb_device(const char* vendor, const char* product, const char* rule,
+const UsbPart* usb_part_of(const fs::path& device, std::span<const UsbPart> parts) {
+  const std::string vendor = first_line(device / "idVendor");
+  const std::string product = first_line(device / "idProduct");
+  const auto known = std::ranges::find_if(parts, [&](const UsbPart& part) {
+    return vendor == part.vendor && (part.product == nullptr || product == part.product);
+  });
+  return known == parts.end() ? nullptr : &*known;
+}
+
+std::optional<Refusal> refused_usb_device(std::span<const UsbPart> parts,
                                           const SystemRoots& roots) {
   for (const fs::path& device : entries(roots.sys + "/bus/usb/devices")) {
-    if (first_line(device / "idVendor") != vendor) continue;
-    if (product != nullptr && first_line(device / "idProduct") != product) continue;
+    const UsbPart* const part = usb_part_of(device, parts);
+    if (part == nullptr) continue;
     const std::string node = usb_node(device, roots);
     if (open_when_permitted([&] { return access_error(node); }) == EACCES)
-      return why_refused(node, rule);
+      return why_refused(node, part->rule);
   }
   return std::nullopt;
 }

@@ -12,9 +12,12 @@
 #include <chrono>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <thread>
+#include <vector>
 
+#include "hal/device_facts.h"
 #include "model/result.h"
 
 namespace tact::hal {
@@ -32,15 +35,18 @@ int open_when_permitted(Open open) {
   return error;
 }
 
-/// Why a node may not be opened, and the remedy.
+/// Why a part may not be used, and the remedy.
 struct Refusal {
   std::string lacking, remedy;
-  model::Error error() const { return {lacking + "; " + remedy}; }
+  model::Error error(const char* between = "; ") const { return {lacking + between + remedy}; }
 };
 
 /// The group of the udev rules; none where it does not exist.
 std::optional<gid_t> haptics_group();
-/// Of a node that was refused; `rule` is of udev_rules.h.
+/// The remedy of every missing permission, to follow the rule that is missing.
+inline constexpr const char* kRuleRemedy =
+    "sudo apt install ./tact_*.deb installs it; then sudo adduser $USER haptics, and log in again";
+/// Of a node that was refused; `rule` is that of its device.
 Refusal why_refused(const std::string& node, const char* rule,
                     std::optional<gid_t> group = haptics_group());
 
@@ -52,14 +58,19 @@ struct SystemRoots {
   std::string sys = "/sys";
   std::string dev = "/dev";
 };
+/// The first line of one of its files; empty when it cannot be read.
+std::string first_line(const std::filesystem::path& file);
+std::vector<std::filesystem::path> entries(const std::filesystem::path& folder);
 /// By which node a USB device is opened: its serial port or HID node, else its own. `device` is its
 /// folder in sysfs.
 std::string usb_node(const std::filesystem::path& device, const SystemRoots& roots);
-/// Of the first USB device of this vendor and product (null: any) whose node is refused; nothing
-/// where all may be opened, or none is there. For libraries that look for devices by themselves:
+/// Which of these the device is, by its folder in sysfs; null: none.
+const UsbPart* usb_part_of(const std::filesystem::path& device, std::span<const UsbPart> parts);
+/// Of the first of these USB devices whose node is refused; nothing where all may be opened, or
+/// none is there. For libraries that look for devices by themselves:
 /// ask before the library, which then finds what udev has given away, and tell only when it fails,
 /// as it may open another device.
-std::optional<Refusal> refused_usb_device(const char* vendor, const char* product, const char* rule,
+std::optional<Refusal> refused_usb_device(std::span<const UsbPart> parts,
                                           const SystemRoots& roots = {});
 
 }  // namespace tact::hal

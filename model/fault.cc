@@ -87,8 +87,8 @@ constexpr std::array kTable{
     FaultEntry{Fault::kLinesDiffer, "lines differ",
                "the two channels of the e-stop disagreed for more than 50 ms",
                "a wire, contact or input is broken: repair it before anybody holds the device"},
-    FaultEntry{Fault::kLinesLost, "lines lost", "the GPIO chip of the safety lines does not answer",
-               "check the chip and its driver (gpiodetect), then start tactd again"},
+    FaultEntry{Fault::kLinesLost, "lines lost", "the chip of the safety lines does not answer",
+               "check the chip and its driver (dmesg), then start tactd again"},
     FaultEntry{Fault::kDeadManReleased, "dead man released", "the dead-man switch is open",
                "hold it, then reset and arm"},
     FaultEntry{

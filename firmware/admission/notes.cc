@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "hal/lines_settings.h"
 #include "model/mesh/mesh.h"
 
 namespace tact::firmware::admission {
@@ -12,7 +13,8 @@ namespace tact::firmware::admission {
 bool cannot_grip(const model::scene::Scene& scene, const hal::DeviceInfo& device) {
   const bool grips = std::ranges::any_of(
       scene.hand.path, [](const auto& way_point) { return way_point.grip_ratio > 0.0; });
-  const bool has_switch = scene.device.lines.wired() && scene.device.lines.grip >= 0;
+  const auto& lines = scene.device.of<hal::LinesSettings>();
+  const bool has_switch = lines.wired() && lines.grip >= 0;
   return grips && device.grip.kind == hal::GripKind::kNone && !has_switch;
 }
 

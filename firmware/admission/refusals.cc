@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "hal/can/can_settings.h"
 #include "model/scene/scene_limits.h"
 
 namespace tact::firmware::admission {
@@ -22,7 +23,8 @@ std::optional<model::Error> check_thermal(const model::scene::Scene& scene,
 
 std::optional<model::Error> why_not_unattended(const model::scene::Scene& scene, bool is_service) {
   const bool is_odrive = scene.device.kind == "can-odrive";
-  if (!is_service || !scene.device.is_on_can() || scene.device.can.homing != model::Homing::kJig)
+  const auto& can = scene.device.of<hal::can::CanSettings>();
+  if (!is_service || !hal::can::is_on_can(scene.device) || can.homing != hal::can::Homing::kJig)
     return std::nullopt;
   return model::Error{fmt::format(
       "device.can.homing = \"jig\": a service would believe that the arms rest on the jig whenever "

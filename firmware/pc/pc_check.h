@@ -12,6 +12,7 @@
 
 #include "firmware/pc/pc_files.h"
 #include "firmware/pc/rt_needs.h"
+#include "hal/device_facts.h"
 
 namespace tact::firmware::pc {
 
@@ -33,6 +34,7 @@ struct PcRow {
 
 struct PcQuestion {
   PcFiles files{};
+  std::vector<hal::UsbPart> usb{};  // devices to look for: hal/registry, usb_parts()
   int core = -1;  // of the loop; -1: an isolated one if there is one, else the last
 };
 

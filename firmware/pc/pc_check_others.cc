@@ -134,8 +134,9 @@ PcRow bus_row(const PcFiles& files, const std::vector<Thread>& threads) {
 }
 
 /// One row per connected part; no device is opened.
-void check_devices(const PcFiles& files, std::vector<PcRow>& rows) {
-  hal::list::PartProbes probes = hal::list::system_probes();
+void check_devices(const PcQuestion& q, std::vector<PcRow>& rows) {
+  const PcFiles& files = q.files;
+  hal::list::PartProbes probes = hal::list::system_probes(q.usb);
   // Below the same root as all other files, so that a copy of another PC's files can be checked.
   probes.roots = {.sys = files.root() + "/sys", .dev = files.root() + "/dev"};
   if (!files.root().empty()) probes.can_link = nullptr;  // a copy has no bus to query
@@ -163,7 +164,7 @@ void check_others(const PcQuestion& q, std::vector<PcRow>& rows) {
   rows.push_back(balancer_row(q.files, threads));
   rows.push_back(slack_row(q.files, threads));
   rows.push_back(bus_row(q.files, threads));
-  check_devices(q.files, rows);
+  check_devices(q, rows);
 }
 
 }  // namespace tact::firmware::pc

@@ -15,9 +15,9 @@
 namespace tact::firmware::run {
 
 using hal::list::FoundPart;
-using hal::list::PartKind;
 
-std::string devices_as_text(const std::vector<FoundPart>& parts) {
+std::string devices_as_text(const std::vector<FoundPart>& parts,
+                            const std::vector<hal::UsbPart>& looked_for) {
   std::string text;
   auto out = std::back_inserter(text);
   for (const FoundPart& part : parts) {
@@ -28,12 +28,8 @@ std::string devices_as_text(const std::vector<FoundPart>& parts) {
     else
       fmt::format_to(out, "  not ready: {}\n  remedy: {}\n", part.lacking, part.remedy);
   }
-  // For a kind without a part: what was searched for.
-  for (const PartKind kind : hal::list::kPartKinds) {
-    const bool there = std::any_of(parts.begin(), parts.end(),
-                                   [&](const FoundPart& part) { return part.kind == kind; });
-    if (!there) fmt::format_to(out, "{}\n", hal::list::absence_text(kind));
-  }
+  for (const std::string& absent : hal::list::absent_parts(parts, looked_for))
+    fmt::format_to(out, "{}\n", absent);
   text += "sim-delta: the simulated device\n  ready: device.kind = \"sim-delta\"\n";
   return text;
 }
@@ -41,7 +37,7 @@ std::string devices_as_text(const std::vector<FoundPart>& parts) {
 std::string devices_as_json(const std::vector<FoundPart>& parts) {
   nlohmann::json list = nlohmann::json::array();
   for (const FoundPart& part : parts)
-    list.push_back({{"kind", hal::list::name_of(part.kind)},
+    list.push_back({{"kind", part.kind},
                     {"name", part.name},
                     {"what", part.what},
                     {"scene", part.scene},

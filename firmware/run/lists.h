@@ -11,7 +11,8 @@
 namespace tact::firmware::run {
 
 /// Text: one paragraph per connected part, then the kinds that were not found.
-std::string devices_as_text(const std::vector<hal::list::FoundPart>& parts);
+std::string devices_as_text(const std::vector<hal::list::FoundPart>& parts,
+                            const std::vector<hal::UsbPart>& looked_for);
 
 /// {"devices":[{"kind","name","what","scene","ready","lacking","remedy"}]}
 std::string devices_as_json(const std::vector<hal::list::FoundPart>& parts);

@@ -6,6 +6,7 @@
 #include "firmware/admission/refusals.h"
 #include "firmware/gate/limits_for.h"
 #include "hal/gpio/gpio_lines.h"
+#include "hal/lines_settings.h"
 #include "model/io/limits_checksum.h"
 #include "model/time_ns.h"
 
@@ -49,7 +50,7 @@ Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsS
         "{}: --free-run is simulated time, and device.kind \"{}\" is hardware; leave it out",
         scene.path, scene.device.kind)};
   // The lines before the device: enable is low, so no drive has power while the device opens.
-  auto lines = hal::gpio::open_safety_lines(scene.device.lines);
+  auto lines = hal::gpio::open_safety_lines(scene.device.of<hal::LinesSettings>());
   if (!lines) return Error{fmt::format("{}: {}", scene.path, lines.error().message)};
   parts.lines = std::move(*lines);
   auto device = hal::registry::open_device(scene);

@@ -13,6 +13,7 @@
 #include "firmware/run/replay.h"
 #include "firmware/run/session.h"
 #include "firmware/telemetry/tick_csv.h"
+#include "hal/registry/open_device.h"
 #include "model/io/file_writer.h"
 #include "model/io/json.h"
 #include "model/io/program/program_end.h"
@@ -69,8 +70,9 @@ int print_faults(const std::string& json_path) {
 }
 
 int print_devices(const std::string& json_path) {
-  const auto parts = hal::list::list_devices();
-  if (json_path != "-") say(stdout, "{}", firmware::run::devices_as_text(parts));
+  const auto looked_for = hal::registry::usb_parts();
+  const auto parts = hal::list::list_devices(hal::list::system_probes(looked_for));
+  if (json_path != "-") say(stdout, "{}", firmware::run::devices_as_text(parts, looked_for));
   return write_json(json_path, firmware::run::devices_as_json(parts));
 }
 
@@ -117,7 +119,7 @@ model::Result<model::scene::Scene> load(firmware::run::Options& options) {
     if (!recorded) return recorded.error();
     options.overrides = std::move(*recorded);
   }
-  auto scene = model::scene::load_scene(options.scene_path, options.overrides);
+  auto scene = hal::registry::load_scene(options.scene_path, options.overrides);
   if (!scene || scene->law != model::scene::kAutoLaw) return scene;
   const auto plan = model::scene::find_plan(*scene, options.overrides);
   if (!plan) return plan.error();
@@ -126,7 +128,7 @@ model::Result<model::scene::Scene> load(firmware::run::Options& options) {
       model::scene::command_text(choice), plan->tick_p999_us, 100.0 * plan->force_error_ratio);
   // Appended last, so that the plan's law overrides law=auto.
   options.overrides.insert(options.overrides.end(), choice.begin(), choice.end());
-  return model::scene::load_scene(options.scene_path, options.overrides);
+  return hal::registry::load_scene(options.scene_path, options.overrides);
 }
 
 }  // namespace
@@ -141,7 +143,7 @@ int main(int argc, char** argv) {
   if (options.faults) return print_faults(options.json_path);
   if (options.list_devices) return print_devices(options.json_path);
   if (options.help_scene) {
-    say(stdout, "{}", model::scene::scene_reference());
+    say(stdout, "{}", model::scene::scene_reference(hal::registry::visit_device));
     return 0;
   }
   // A table of a log needs no scene; only a replay does.

@@ -72,8 +72,8 @@ void RealTime::enter(const pc::RtSettings& settings) {
 // The last line is a summary of tact-doctor.
 void RealTime::report(const pc::RtSettings& settings) const {
   for (const pc::Shortfall& s : shortfalls_) console::say(stderr, "tactd: {}\n", s.message);
-  const std::string red =
-      name_red_rows(pc::check_pc({.files = pc::PcFiles{}, .core = choose_core(settings)}));
+  const std::string red = name_red_rows(pc::check_pc(
+      {.files = pc::PcFiles{}, .usb = hal::registry::usb_parts(), .core = choose_core(settings)}));
   if (!red.empty()) console::say(stderr, "tactd: {}\n", red);
 }
 

@@ -21,8 +21,8 @@
 #include "hal/can/can_error.h"
 #include "hal/can/can_frame.h"
 #include "hal/can/can_socket.h"
-#include "hal/can/fault_latch.h"
 #include "hal/device.h"
+#include "hal/fault_latch.h"
 
 namespace tact::hal::can {
 

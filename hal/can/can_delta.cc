@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "hal/can/can_error.h"
 #include "hal/delta/delta_at_tool.h"
 #include "hal/delta/delta_frame.h"
 #include "hal/saturation.h"
@@ -28,32 +29,10 @@ double in_deg(double angle_rad) { return angle_rad * 360.0 / kTurn_rad; }
 
 }  // namespace
 
-delta::DeltaGeometry delta_geometry(const model::DeltaSettings& delta) {
-  return {.base_radius_m = delta.base_radius_m,
-          .platform_radius_m = delta.platform_radius_m,
-          .upper_arm_m = delta.upper_arm_m,
-          .forearm_m = delta.forearm_m,
-          .azimuth_rad = delta.azimuth_rad,
-          .theta_min_rad = delta.theta_min_rad,
-          .theta_max_rad = delta.theta_max_rad};
-}
-
-delta::DeltaMasses delta_masses(const model::DeltaSettings& delta) {
-  return {.arm_kg = delta.arm_kg,
-          .arm_com_m = delta.arm_com_m,
-          .arm_inertia_kgm2 = delta.arm_inertia_kgm2,
-          .rotor_inertia_kgm2 = delta.rotor_inertia_kgm2,
-          .gear_ratio = delta.gear_ratio,
-          .forearm_kg = delta.forearm_kg,
-          .platform_kg = delta.platform_kg};
-}
-
-CanDelta::CanDelta(const model::DeltaSettings& delta, const model::CanSettings& can,
-                   const Vec3& gravity_mps2)
+CanDelta::CanDelta(const DeltaSettings& delta, const CanSettings& can, const Vec3& gravity_mps2)
     : settings_(delta),
-      masses_(delta_masses(delta)),
       gravity_D_mps2_(delta::direction_D(gravity_mps2)),
-      delta_(delta_geometry(delta)),
+      delta_(delta),
       direction_(can.direction),
       zero_turns_(can.zero_turns),
       home_rad_(can.home_rad),
@@ -121,7 +100,7 @@ delta::Joints CanDelta::motor_torques_Nm(const Vec3& force_N, double ratio) cons
   if (!has_pose_) return torque_Nm;
   const Vec3 borne_N = is_finite(force_N) ? saturated(force_N, settings_.max_force_N) : Vec3{};
   const double most_Nm = settings_.max_joint_torque_Nm;
-  torque_Nm = delta::drive_torques_Nm(delta_.geometry(), masses_, pose_, gravity_D_mps2_,
+  torque_Nm = delta::drive_torques_Nm(delta_.geometry(), settings_, pose_, gravity_D_mps2_,
                                       delta::direction_D(borne_N), most_Nm);
   for (std::size_t i = 0; i < 3; ++i) {
     const double joint_Nm = std::clamp(torque_Nm[i], -most_Nm, most_Nm);  // gravity may be above
@@ -148,11 +127,11 @@ DeviceInfo CanDelta::info(std::string name, double counts_per_turn, double delay
           .damping_key = "device.delta.joint_damping_Nms_per_rad"};
 }
 
-std::string can_arm_name(std::size_t axis, const model::CanSettings& can) {
+std::string can_arm_name(std::size_t axis, const CanSettings& can) {
   return fmt::format("arm {} (node {} on {})", axis + 1, can.node[axis], can.interface);
 }
 
-std::string homing_trouble(const FaultCause& cause, const model::DeltaSettings& delta) {
+std::string homing_trouble(const FaultCause& cause, const DeltaSettings& delta) {
   switch (static_cast<CanCause>(cause.kind)) {
     case CanCause::kBeyondStop:
       return fmt::format(

@@ -13,23 +13,20 @@
 #include <optional>
 #include <string>
 
-#include "hal/can/fault_latch.h"
+#include "hal/can/can_settings.h"
 #include "hal/delta/delta_dynamics.h"
 #include "hal/delta/delta_kinematics.h"
 #include "hal/device.h"
+#include "hal/fault_latch.h"
 #include "hal/velocity_observer.h"
-#include "model/device_settings.h"
 #include "model/result.h"
 
 namespace tact::hal::can {
 
-delta::DeltaGeometry delta_geometry(const model::DeltaSettings& delta);
-delta::DeltaMasses delta_masses(const model::DeltaSettings& delta);
-
 class CanDelta {
  public:
   /// `gravity_mps2`: where down is for the base (hal/mounting.h).
-  CanDelta(const model::DeltaSettings& delta, const model::CanSettings& can,
+  CanDelta(const DeltaSettings& delta, const CanSettings& can,
            const Vec3& gravity_mps2 = delta::kGravity_W_mps2);
 
   /// Set-up: the arms rest at home_rad now, so zero is where that says.
@@ -53,8 +50,7 @@ class CanDelta {
   std::optional<FaultCause> doubt(const delta::Joints& theta_rad,
                                   const delta::DeltaForward& pose) const RT_SAFE;
 
-  model::DeltaSettings settings_;
-  delta::DeltaMasses masses_;
+  DeltaSettings settings_;
   Vec3 gravity_D_mps2_;
   delta::DeltaKinematics delta_;
   delta::Joints direction_{}, zero_turns_{}, home_rad_{};
@@ -65,9 +61,9 @@ class CanDelta {
 };
 
 /// "arm 2 (node 2 on can0)".
-std::string can_arm_name(std::size_t axis, const model::CanSettings& can);
+std::string can_arm_name(std::size_t axis, const CanSettings& can);
 
 /// What a cause of a lost homing means, with the remedy; empty for other causes.
-std::string homing_trouble(const FaultCause& cause, const model::DeltaSettings& delta);
+std::string homing_trouble(const FaultCause& cause, const DeltaSettings& delta);
 
 }  // namespace tact::hal::can

@@ -24,15 +24,16 @@ class CanDevice final : public Device {
   CanDevice(std::unique_ptr<BasicCanBus<Frame>> bus, const model::DeviceSettings& settings,
             double rate_Hz, BasicCanStart<Frame> start)
       : bus_(std::move(bus)),
-        settings_(settings),
-        delta_(settings.delta, settings.can, mounting_of(settings).gravity_in_base_mps2()),
+        delta_settings_(settings.of<DeltaSettings>()),
+        can_(settings.of<CanSettings>()),
+        delta_(delta_settings_, can_, mounting_of(settings).gravity_in_base_mps2()),
         start_(std::move(start)),
         drives_(*start_.drives),
         period_ns_(model::period_ns(rate_Hz)),
         gap_(1.0 / rate_Hz),
         loop_{.bus = *bus_} {
-    for (std::size_t i = 0; i < 3; ++i) loop_.axes[i].node = settings.can.node[i];
-    if (settings.can.homing == model::Homing::kJig) delta_.home_on_jig(start_.motor_turns);
+    for (std::size_t i = 0; i < 3; ++i) loop_.axes[i].node = can_.node[i];
+    if (can_.homing == Homing::kJig) delta_.home_on_jig(start_.motor_turns);
   }
   ~CanDevice() override { stop(); }
 
@@ -110,11 +111,10 @@ class CanDevice final : public Device {
     const FaultCause cause = loop_.latch.cause();
     if (cause.fault == Fault::kNone) return wait_text();
     if (cause.axis > 2) return {};
-    if (auto words = can_bus_trouble(cause, settings_.can.interface, Frame::kLinkType);
-        !words.empty())
+    if (auto words = can_bus_trouble(cause, can_.interface, Frame::kLinkType); !words.empty())
       return words;
-    if (auto words = homing_trouble(cause, settings_.delta); !words.empty()) return words;
-    return fmt::format("{}: {}", can_arm_name(cause.axis, settings_.can), words(cause));
+    if (auto words = homing_trouble(cause, delta_settings_); !words.empty()) return words;
+    return fmt::format("{}: {}", can_arm_name(cause.axis, can_), words(cause));
   }
 
   std::vector<DeviceCount> counters() const override {
@@ -218,7 +218,7 @@ class CanDevice final : public Device {
   std::string wait_text() const {
     const FaultCause wait = loop_.waits.cause();
     if (wait.kind == 0 || wait.axis > 2) return {};
-    return fmt::format("waiting for power of {}: {}", can_arm_name(wait.axis, settings_.can),
+    return fmt::format("waiting for power of {}: {}", can_arm_name(wait.axis, can_),
                        drives_.words(wait));
   }
 
@@ -241,7 +241,8 @@ class CanDevice final : public Device {
   }
 
   std::unique_ptr<BasicCanBus<Frame>> bus_;
-  model::DeviceSettings settings_;
+  DeltaSettings delta_settings_;
+  CanSettings can_;
   CanDelta delta_;
   BasicCanStart<Frame> start_;
   BasicCanDrives<Frame>& drives_;

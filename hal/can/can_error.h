@@ -17,6 +17,19 @@
 
 namespace tact::hal::can {
 
+/// Kinds of FaultCause that all CAN devices have; the drives' own begin at kFirstOwn.
+enum class CanCause : std::uint8_t {
+  kCall = 1,        // of the bus; code: errno
+  kNoRoom,          // twenty batches in a row
+  kErrorFrame,      // code: classes, controller state << 16
+  kBeyondStop = 8,  // of a lost homing; code: the arm's angle, mrad, two's complement
+  kRodsApart,
+  kSilent = 12,  // of a drive; code: for how long, ms
+  kNoPosition,   // code: for how long, ms
+  kJumped,       // position without motion
+  kFirstOwn = 16,
+};
+
 /// The classes that mean something here; a kernel sends others, too.
 enum class CanErrorClass : std::uint16_t {
   kController = 0x004,

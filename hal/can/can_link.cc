@@ -13,8 +13,6 @@
 namespace tact::hal::can {
 namespace {
 
-using model::Error;
-
 constexpr std::uint16_t kLinkInfo = 18, kInfoKind = 1, kInfoData = 2;
 constexpr std::uint16_t kMtu = 4;
 constexpr std::uint16_t kCanBitTiming = 1, kCanState = 4, kCanRestartMs = 6, kCanFastTiming = 9;
@@ -64,59 +62,56 @@ void take_link_info(std::span<const std::uint8_t> info, CanLink& link) {
     if (one.type == kInfoData) take_can_data(one.value, link);
 }
 
+/// The command that sets a bus up again; `how` are its parameters.
+std::string again(const std::string& name, const std::string& how = {}) {
+  return fmt::format("sudo ip link set {0} down; sudo ip link set {0} up{1}{2}", name,
+                     how.empty() ? "" : " ", how);
+}
+
 // A bus on which frames are not sent, with its remedy.
-std::optional<Error> check_state(const CanLink& link, const std::string& name) {
-  if (link.state == CanLinkState::kBusOff) {
-    return Error{
-        fmt::format("{0} is bus-off: check bit rate, termination and cable; then sudo ip "
-                    "link set {0} down; sudo ip link set {0} up",
-                    name)};
-  }
-  if (link.state == CanLinkState::kPassive) {
-    return Error{
-        fmt::format("{0} is error passive: is it at the drives' bit rate, are they powered "
-                    "and both ends terminated? Then sudo ip link set {0} down; sudo ip "
-                    "link set {0} up",
-                    name)};
-  }
-  if (link.state == CanLinkState::kStopped || link.state == CanLinkState::kSleeping) {
-    return Error{
-        fmt::format("{0} sleeps: sudo ip link set {0} down; sudo ip link set {0} up", name)};
-  }
+std::optional<Refusal> check_state(const CanLink& link, const std::string& name) {
+  if (link.state == CanLinkState::kBusOff)
+    return Refusal{name + " is bus-off",
+                   "check bit rate, termination and cable; then " + again(name)};
+  if (link.state == CanLinkState::kPassive)
+    return Refusal{
+        name + " is error passive",
+        "is it at the drives' bit rate, are they powered and both ends terminated? Then " +
+            again(name)};
+  if (link.state == CanLinkState::kStopped || link.state == CanLinkState::kSleeping)
+    return Refusal{name + " sleeps", again(name)};
   return std::nullopt;
 }
 
 // What every bus needs; `link_type` sets it up.
-std::optional<Error> check_interface(const CanLink& link, const std::string& name,
-                                     const char* link_type) {
-  if (!link.is_can) {
-    return Error{fmt::format(
-        "{} is no CAN interface: set device.can.interface to one (ip -details link shows them)",
-        name)};
-  }
-  if (link.only_local) {
-    return Error{
-        fmt::format("{} is a vcan, which carries nothing between programs that do not ask "
-                    "for loopback: use a pair, sudo ip link add can0 type vxcan peer name "
-                    "can1",
-                    name)};
-  }
+std::optional<Refusal> check_interface(const CanLink& link, const std::string& name,
+                                       const char* link_type) {
+  if (!link.is_can)
+    return Refusal{name + " is no CAN interface",
+                   "set device.can.interface to one (ip -details link shows them)"};
+  if (link.only_local)
+    return Refusal{
+        name + " is a vcan, which carries nothing between programs that do not ask for loopback",
+        "use a pair, sudo ip link add can0 type vxcan peer name can1"};
   if (!link.up)
-    return Error{fmt::format("{0} is down: sudo ip link set {0} up {1}", name, link_type)};
-  if (link.restart_ms.value_or(0) != 0) {
-    return Error{fmt::format(
-        "{0} comes back by itself {1} ms after bus-off, into a force that is "
-        "old by then: sudo ip link set {0} down; sudo ip link set {0} up {2} restart-ms 0",
-        name, *link.restart_ms, link_type)};
-  }
+    return Refusal{name + " is down", fmt::format("sudo ip link set {} up {}", name, link_type)};
+  if (link.restart_ms.value_or(0) != 0)
+    return Refusal{fmt::format("{} comes back by itself {} ms after bus-off, into a force that is "
+                               "old by then",
+                               name, *link.restart_ms),
+                   again(name, link_type) + " restart-ms 0"};
   // A serial adapter (slcan) that its daemon has set up tells none.
-  if (link.has_controller && !link.bitrate) {
-    return Error{
-        fmt::format("{0} does not tell its bit rate, so nobody knows how late a force is: sudo ip "
-                    "link set {0} down; sudo ip link set {0} up {1}",
-                    name, link_type)};
-  }
+  if (link.has_controller && !link.bitrate)
+    return Refusal{name + " does not tell its bit rate, so nobody knows how late a force is",
+                   again(name, link_type)};
   return check_state(link, name);
+}
+
+Refusal too_slow(const std::string& name, const std::string& rates, double rate_Hz,
+                 const char* link_type) {
+  return {
+      fmt::format("{} runs at {} bit/s, too slow for three drives at {} Hz", name, rates, rate_Hz),
+      again(name, link_type) + ", and the drives alike, or lower rate_Hz"};
 }
 
 }  // namespace
@@ -153,40 +148,27 @@ std::optional<CanLink> decode_can_link(std::span<const std::uint8_t> message) {
   return link;
 }
 
-std::optional<Error> check_can_link(const CanLink& link, const std::string& name, int cycle_bits,
-                                    double rate_Hz) {
-  if (auto error = check_interface(link, name, CanFrame::kLinkType)) return error;
-  if (link.bitrate && bus_time_s(cycle_bits, link.rate()) * rate_Hz > kMaxLoad) {
-    return Error{
-        fmt::format("{0} runs at {1} bit/s, too slow for three drives at {2} Hz: sudo ip "
-                    "link set {0} down; sudo ip link set {0} up {3}, "
-                    "and the drives alike, or lower rate_Hz",
-                    name, *link.bitrate, rate_Hz, CanFrame::kLinkType)};
-  }
+std::optional<Refusal> check_can_link(const CanLink& link, const std::string& name, int cycle_bits,
+                                      double rate_Hz) {
+  if (auto refusal = check_interface(link, name, CanFrame::kLinkType)) return refusal;
+  if (link.bitrate && bus_time_s(cycle_bits, link.rate()) * rate_Hz > kMaxLoad)
+    return too_slow(name, std::to_string(*link.bitrate), rate_Hz, CanFrame::kLinkType);
   return std::nullopt;
 }
 
-std::optional<Error> check_can_link(const CanLink& link, const std::string& name,
-                                    const CanFdBits& cycle, double rate_Hz) {
-  if (auto error = check_interface(link, name, CanFdFrame::kLinkType)) return error;
-  if (!link.carries_fd) {
-    return Error{
-        fmt::format("{0} carries classic CAN alone: sudo ip link set {0} down; sudo ip link set "
-                    "{0} up {1}; if that is refused, take an adapter that has CAN FD",
-                    name, CanFdFrame::kLinkType)};
-  }
-  if (link.has_controller && !link.fast_bitrate) {
-    return Error{
-        fmt::format("{0} has no fast bit rate: sudo ip link set {0} down; sudo ip link set {0} up "
-                    "{1}",
-                    name, CanFdFrame::kLinkType)};
-  }
+std::optional<Refusal> check_can_link(const CanLink& link, const std::string& name,
+                                      const CanFdBits& cycle, double rate_Hz) {
+  if (auto refusal = check_interface(link, name, CanFdFrame::kLinkType)) return refusal;
+  const std::string command = again(name, CanFdFrame::kLinkType);
+  if (!link.carries_fd)
+    return Refusal{name + " carries classic CAN alone",
+                   command + "; if that is refused, take an adapter that has CAN FD"};
+  if (link.has_controller && !link.fast_bitrate)
+    return Refusal{name + " has no fast bit rate", command};
   if (!link.bitrate || !link.fast_bitrate) return std::nullopt;
   if (bus_time_s(cycle, link.rate()) * rate_Hz <= kMaxLoad) return std::nullopt;
-  return Error{fmt::format(
-      "{0} runs at {1} and {2} bit/s, too slow for three drives at {3} Hz: sudo ip link "
-      "set {0} down; sudo ip link set {0} up {4}, and the drives alike, or lower rate_Hz",
-      name, *link.bitrate, *link.fast_bitrate, rate_Hz, CanFdFrame::kLinkType)};
+  return too_slow(name, fmt::format("{} and {}", *link.bitrate, *link.fast_bitrate), rate_Hz,
+                  CanFdFrame::kLinkType);
 }
 
 }  // namespace tact::hal::can

@@ -19,7 +19,7 @@
 
 #include "hal/can/can_fd_frame.h"
 #include "hal/can/can_frame.h"
-#include "model/result.h"
+#include "hal/permission.h"
 
 namespace tact::hal::can {
 
@@ -56,11 +56,11 @@ struct CanLink {
 std::optional<CanLink> decode_can_link(std::span<const std::uint8_t> message);
 
 /// Why it must not be used, if so. `cycle_bits`: of all frames of a tick, at worst stuffing.
-std::optional<model::Error> check_can_link(const CanLink& link, const std::string& name,
-                                           int cycle_bits, double rate_Hz);
+std::optional<Refusal> check_can_link(const CanLink& link, const std::string& name, int cycle_bits,
+                                      double rate_Hz);
 
 /// The same for CAN FD.
-std::optional<model::Error> check_can_link(const CanLink& link, const std::string& name,
-                                           const CanFdBits& cycle, double rate_Hz);
+std::optional<Refusal> check_can_link(const CanLink& link, const std::string& name,
+                                      const CanFdBits& cycle, double rate_Hz);
 
 }  // namespace tact::hal::can

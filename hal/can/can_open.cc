@@ -88,7 +88,7 @@ Result<std::unique_ptr<BasicCanSocket<Bytes>>> open_checked(const std::string& n
                                                             std::span<const can_filter> filters) {
   const auto link = read_can_link(name);
   if (!link) return link.error();
-  if (auto error = check_can_link(*link, name, cycle, rate_Hz)) return *error;
+  if (const auto refusal = check_can_link(*link, name, cycle, rate_Hz)) return refusal->error(": ");
   const auto fd = open_socket(name, link->index, filters, sizeof(Bytes) == kCanFdFrameBytes);
   if (!fd) return fd.error();
   return std::make_unique<BasicCanSocket<Bytes>>(*fd, link->rate());
@@ -147,7 +147,7 @@ Result<std::unique_ptr<CanFdSocket>> open_checked_can(const std::string& name,
   return open_checked<CanFdFrameBytes>(name, cycle, rate_Hz, filters);
 }
 
-std::optional<Error> lock_drives(const model::CanSettings& settings, bool gives_sync) {
+std::optional<Error> lock_drives(const CanSettings& settings, bool gives_sync) {
   std::array<char, IF_NAMESIZE> name{};  // its own: an interface may have other names beside it
   const unsigned index = if_nametoindex(settings.interface.c_str());
   if (index == 0 || if_indextoname(index, name.data()) == nullptr) return std::nullopt;

@@ -11,8 +11,8 @@
 #include <string>
 
 #include "hal/can/can_link.h"
+#include "hal/can/can_settings.h"
 #include "hal/can/can_socket.h"
-#include "model/device_settings.h"
 #include "model/result.h"
 
 namespace tact::hal::can {
@@ -33,6 +33,6 @@ model::Result<std::unique_ptr<CanFdSocket>> open_checked_can(const std::string& 
 /// The drives of a scene, for one program alone (hal/device_lock.h): takes each node of the bus.
 /// `gives_sync`: the one who sends SYNC to all nodes, one on a bus. An interface that is not there
 /// has nothing to be taken.
-std::optional<model::Error> lock_drives(const model::CanSettings& settings, bool gives_sync);
+std::optional<model::Error> lock_drives(const CanSettings& settings, bool gives_sync);
 
 }  // namespace tact::hal::can

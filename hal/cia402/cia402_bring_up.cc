@@ -29,8 +29,12 @@ constexpr SdoEntry kDeviceType{0x1000, 0, 4};
 
 class BringUp {
  public:
-  BringUp(can::CanBus& bus, const model::CanSettings& can, double rate_Hz)
-      : bus_(bus), can_(can), rate_Hz_(rate_Hz), network_(bus, can) {}
+  BringUp(can::CanBus& bus, const model::DeviceSettings& settings, double rate_Hz)
+      : bus_(bus),
+        can_(settings.of<can::CanSettings>()),
+        own_(settings.of<Cia402Settings>()),
+        rate_Hz_(rate_Hz),
+        network_(bus, can_) {}
 
   Result<Cia402Start> run() {
     for (const bool last : {false, true}) {
@@ -92,7 +96,7 @@ class BringUp {
   }
 
   std::optional<Error> configure(std::size_t i) {
-    const auto words = settings_.write(can_.node[i], cst_settings(can_, rate_Hz_));
+    const auto words = settings_.write(can_.node[i], cst_settings(own_, rate_Hz_));
     if (words) return wrong(i, *words);
     return std::nullopt;
   }
@@ -137,7 +141,7 @@ class BringUp {
   /// The torque that 6071 calls 1000, and the position. What the user states goes before 6076,
   /// which some drives lack and others fill with a default.
   std::optional<Error> learn(std::size_t i, Cia402Start& start) {
-    start.rated_torque_Nm[i] = can_.rated_torque_Nm;
+    start.rated_torque_Nm[i] = own_.rated_torque_Nm;
     if (start.rated_torque_Nm[i] > 0.0) return position(i, start.motor_turns[i]);
     SdoFailure failure;
     const auto rated_mNm = sdo_.read(can_.node[i], {0x6076, 0, 4}, failure);
@@ -156,14 +160,14 @@ class BringUp {
     std::uint32_t counts = 0;
     if (auto error = get(i, {0x6064, 0, 4}, counts)) return error;
     // 6064 is signed; SDO carries its bits.
-    turns = static_cast<std::int32_t>(counts) / can_.counts_per_motor_turn;
+    turns = static_cast<std::int32_t>(counts) / own_.counts_per_motor_turn;
     return std::nullopt;
   }
 
   /// On a jig the position of now is the zero of the arms: one that still falls would shift it.
   std::optional<Error> rest(Cia402Start& start) {
     // An absolute encoder's zero does not depend on where the arms are now.
-    if (can_.homing != model::Homing::kJig) return std::nullopt;
+    if (can_.homing != can::Homing::kJig) return std::nullopt;
     sdo_.wait(kRest_ms);
     for (std::size_t i = 0; i < 3; ++i) {
       const double before_turns = start.motor_turns[i];
@@ -175,7 +179,8 @@ class BringUp {
   }
 
   can::CanBus& bus_;
-  const model::CanSettings& can_;
+  const can::CanSettings& can_;
+  const Cia402Settings& own_;
   double rate_Hz_;
   Cia402Network network_;
   SdoClient& sdo_ = network_.sdo();
@@ -184,7 +189,7 @@ class BringUp {
 
 }  // namespace
 
-std::vector<std::uint32_t> cia402_ids(const model::CanSettings& can) {
+std::vector<std::uint32_t> cia402_ids(const can::CanSettings& can) {
   std::vector<std::uint32_t> ids;
   for (const int node : can.node)
     for (const std::uint32_t base : {0x080u, 0x180u, 0x580u, 0x700u})  // EMCY TPDO SDO heartbeat
@@ -197,16 +202,17 @@ int cia402_cycle_bits() {
   return can::most_can_bits(0) + 3 * (can::most_can_bits(4) + can::most_can_bits(8));
 }
 
-CstConfiguration cst_settings(const model::CanSettings& can, double rate_Hz) {
+CstConfiguration cst_settings(const Cia402Settings& settings, double rate_Hz) {
   CstConfiguration out;
   // 60C2 takes whole ms; bring_up_cia402 has refused every other rate.
   out.period_ms = static_cast<std::uint8_t>(std::lround(1000.0 / rate_Hz));
-  out.command_transmission_type = can.command_at_sync ? 1 : 255;
+  out.command_transmission_type = settings.command_at_sync ? 1 : 255;
   return out;
 }
 
-Result<Cia402Start> bring_up_cia402(can::CanBus& bus, const model::CanSettings& can,
+Result<Cia402Start> bring_up_cia402(can::CanBus& bus, const model::DeviceSettings& settings,
                                     double rate_Hz) {
+  const auto& can = settings.of<can::CanSettings>();
   const double period_ms = 1000.0 / rate_Hz;
   if (!(period_ms >= 1.0 && period_ms <= 10.0) || period_ms != std::floor(period_ms)) {
     return Error{fmt::format(
@@ -219,11 +225,11 @@ Result<Cia402Start> bring_up_cia402(can::CanBus& bus, const model::CanSettings& 
     return Error{fmt::format(
         "device.can.node has {}, but a CANopen drive's node is 1 to 126 (127 is tactd's)", node)};
   }
-  if (can.homing == model::Homing::kIndex) {
+  if (can.homing == can::Homing::kIndex) {
     return Error{
         "device.can.homing \"index\" is for ODrives: CiA 402 drives need \"absolute\" or \"jig\""};
   }
-  return BringUp(bus, can, rate_Hz).run();
+  return BringUp(bus, settings, rate_Hz).run();
 }
 
 }  // namespace tact::hal::cia402

@@ -22,8 +22,8 @@
 
 #include "hal/can/can_bus.h"
 #include "hal/cia402/cia402_cst.h"
+#include "hal/cia402/cia402_delta.h"
 #include "hal/delta/delta_kinematics.h"
-#include "model/device_settings.h"
 #include "model/result.h"
 
 namespace tact::hal::cia402 {
@@ -35,13 +35,13 @@ struct Cia402Start {
 };
 
 /// What the device needs to hear.
-std::vector<std::uint32_t> cia402_ids(const model::CanSettings& can);
+std::vector<std::uint32_t> cia402_ids(const can::CanSettings& can);
 /// Of SYNC, commands and samples of a tick at worst stuffing; heartbeats and SDO come on top.
 int cia402_cycle_bits();
 /// For one drive at this rate.
-CstConfiguration cst_settings(const model::CanSettings& can, double rate_Hz);
+CstConfiguration cst_settings(const Cia402Settings& settings, double rate_Hz);
 
-model::Result<Cia402Start> bring_up_cia402(can::CanBus& bus, const model::CanSettings& can,
+model::Result<Cia402Start> bring_up_cia402(can::CanBus& bus, const model::DeviceSettings& settings,
                                            double rate_Hz);
 
 }  // namespace tact::hal::cia402

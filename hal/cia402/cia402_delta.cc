@@ -27,15 +27,15 @@ constexpr int kMaxIdleTicks = 20;
 
 class Cia402s final : public can::CanDrives {
  public:
-  Cia402s(const model::CanSettings& can, double rate_Hz, const Cia402Start& start)
-      : configuration_(cst_settings(can, rate_Hz)),
-        counts_per_motor_turn_(can.counts_per_motor_turn),
-        command_at_sync_(can.command_at_sync),
+  Cia402s(const model::DeviceSettings& settings, double rate_Hz, const Cia402Start& start)
+      : configuration_(cst_settings(settings.of<Cia402Settings>(), rate_Hz)),
+        counts_per_motor_turn_(settings.of<Cia402Settings>().counts_per_motor_turn),
+        command_at_sync_(settings.of<Cia402Settings>().command_at_sync),
         ticks_per_heartbeat_(rate_Hz > kHostHeartbeat_Hz
                                  ? static_cast<std::uint64_t>(rate_Hz / kHostHeartbeat_Hz)
                                  : 1) {
     for (std::size_t i = 0; i < 3; ++i) {
-      axes_[i].node = can.node[i];
+      axes_[i].node = settings.of<can::CanSettings>().node[i];
       axes_[i].rated_torque_Nm = start.rated_torque_Nm[i];
     }
   }
@@ -120,9 +120,7 @@ class Cia402s final : public can::CanDrives {
     }
   }
 
-  std::string words(const can::FaultCause& cause) const override {
-    return text_of_cia402_cause(cause);
-  }
+  std::string words(const FaultCause& cause) const override { return text_of_cia402_cause(cause); }
 
   std::vector<DeviceCount> counters() const override { return {{"old", old_}, {"extra", extra_}}; }
 
@@ -216,24 +214,24 @@ class Cia402s final : public can::CanDrives {
 Result<std::unique_ptr<Device>> start_cia402_delta(std::unique_ptr<can::CanBus> bus,
                                                    const model::DeviceSettings& settings,
                                                    double rate_Hz) {
-  const model::CanSettings& can = settings.can;
-  const auto start = bring_up_cia402(*bus, can, rate_Hz);
+  const auto& own = settings.of<Cia402Settings>();
+  const auto start = bring_up_cia402(*bus, settings, rate_Hz);
   if (!start) return start.error();
   // A sample is one period old when it is used; then three commands on the bus, and a period more
   // if they wait for SYNC.
   const auto period_ns = model::period_ns(rate_Hz);
-  const int periods = can.command_at_sync ? 2 : 1;
+  const int periods = own.command_at_sync ? 2 : 1;
   const double bus_s = can::bus_time_s(3 * can::most_can_bits(4), bus->rate());
   return can::start_can_device(
       std::move(bus), settings, rate_Hz,
-      {.drives = std::make_unique<Cia402s>(can, rate_Hz, *start),
+      {.drives = std::make_unique<Cia402s>(settings, rate_Hz, *start),
        .name = "delta with three CiA 402 drives on CAN",
        .position = "position",
        .one_sync = true,
        // Three heartbeats and half of one.
        .most_silent_ns =
-           model::kMillisecond_ns * cst_settings(can, rate_Hz).drive_heartbeat_ms * 7 / 2,
-       .counts_per_turn = can.counts_per_motor_turn * settings.delta.gear_ratio,
+           model::kMillisecond_ns * cst_settings(own, rate_Hz).drive_heartbeat_ms * 7 / 2,
+       .counts_per_turn = own.counts_per_motor_turn * settings.of<can::DeltaSettings>().gear_ratio,
        .delay_s = 1e-9 * static_cast<double>(periods * period_ns) + bus_s,
        .motor_turns = start->motor_turns,
        .caution = start->caution});
@@ -241,7 +239,7 @@ Result<std::unique_ptr<Device>> start_cia402_delta(std::unique_ptr<can::CanBus> 
 
 Result<std::unique_ptr<Device>> open_can_cia402(const model::DeviceSettings& settings,
                                                 double rate_Hz) {
-  const model::CanSettings& can = settings.can;
+  const can::CanSettings& can = settings.of<can::CanSettings>();
   if (auto error = can::lock_drives(can, /*gives_sync=*/true)) return *error;
   auto socket = can::open_checked_can(can.interface, cia402_cycle_bits(), rate_Hz, cia402_ids(can));
   if (!socket) return socket.error();

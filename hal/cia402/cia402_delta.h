@@ -18,11 +18,32 @@
 #include <memory>
 
 #include "hal/can/can_bus.h"
+#include "hal/can/can_settings.h"
 #include "hal/device.h"
 #include "model/device_settings.h"
 #include "model/result.h"
 
 namespace tact::hal::cia402 {
+
+struct Cia402Settings {
+  double counts_per_motor_turn = 10'000.0;
+  bool command_at_sync = false;  // RPDO type 1, if the drive insists
+  double rated_torque_Nm = 0.0;  // what 1000 of object 6071 are; 0: the drive's own 6076
+
+  template <class Keys>
+  void visit(Keys& k, const model::DeviceSettings& device) {
+    k.number("counts_per_motor_turn", {100.0, 1e8}, "increments of a CiA 402 drive",
+             counts_per_motor_turn, Keys::kOptional);
+    k.flag("command_at_sync", "CiA 402: torque waits for SYNC, if the drive insists",
+           command_at_sync, Keys::kOptional);
+    k.number("rated_torque_Nm", {0.0, 1000.0}, "CiA 402: of a motor; 0: as the drive tells (6076)",
+             rated_torque_Nm, Keys::kOptional);
+    if (rated_torque_Nm != 0.0)
+      can::refuse_of_others(k, device, "can-cia402", "rated_torque_Nm", "a CiA 402 drive");
+    if (command_at_sync)
+      can::refuse_of_others(k, device, "can-cia402", "command_at_sync", "a CiA 402 drive");
+  }
+};
 
 /// From a bus that is open: what remains when interface and socket are checked.
 model::Result<std::unique_ptr<Device>> start_cia402_delta(std::unique_ptr<can::CanBus> bus,

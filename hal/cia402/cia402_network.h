@@ -16,15 +16,15 @@
 #include <string>
 
 #include "hal/can/can_bus.h"
+#include "hal/can/can_settings.h"
 #include "hal/cia402/sdo_client.h"
-#include "model/device_settings.h"
 #include "model/result.h"
 
 namespace tact::hal::cia402 {
 
 class Cia402Network {
  public:
-  Cia402Network(can::CanBus& bus, const model::CanSettings& can)
+  Cia402Network(can::CanBus& bus, const can::CanSettings& can)
       : bus_(bus), can_(can), sdo_(bus, [this](const can::CanFrame& frame) { take(frame); }) {}
 
   SdoClient& sdo() { return sdo_; }
@@ -45,7 +45,7 @@ class Cia402Network {
   void take(const can::CanFrame& frame);
 
   can::CanBus& bus_;
-  const model::CanSettings& can_;
+  const can::CanSettings& can_;
   std::array<std::optional<NmtState>, 3> said_{};  // by the last heartbeat since asked
   std::array<bool, 3> booted_{};                   // since the reset
   SdoClient sdo_;

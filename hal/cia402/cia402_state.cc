@@ -78,7 +78,7 @@ std::optional<std::uint16_t> next_controlword(Cia402State state, std::uint16_t l
   return std::nullopt;
 }
 
-std::string text_of_cia402_cause(const can::FaultCause& cause) {
+std::string text_of_cia402_cause(const FaultCause& cause) {
   const char* state = cia402_state_name(static_cast<Cia402State>(cause.code));
   switch (static_cast<Cia402Cause>(cause.kind)) {
     case Cia402Cause::kEmergency:

@@ -14,7 +14,8 @@
 #include <optional>
 #include <string>
 
-#include "hal/can/fault_latch.h"
+#include "hal/can/can_error.h"
+#include "hal/fault_latch.h"
 #include "model/rt.h"
 
 namespace tact::hal::cia402 {
@@ -68,6 +69,6 @@ enum class Cia402Cause : std::uint8_t {
 };
 
 /// For a person, with the remedy; empty for a cause that all drives have. Any thread.
-std::string text_of_cia402_cause(const can::FaultCause& cause);
+std::string text_of_cia402_cause(const FaultCause& cause);
 
 }  // namespace tact::hal::cia402

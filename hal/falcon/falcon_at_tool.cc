@@ -32,8 +32,7 @@ void visit_workspace(const FalconKinematics& falcon, Visit visit) {
 
 }  // namespace
 
-model::DeviceAtTool falcon_at_tool(const FalconKinematics& falcon,
-                                   const model::FalconSettings& settings) {
+model::DeviceAtTool falcon_at_tool(const FalconKinematics& falcon, const FalconSettings& settings) {
   double s = 0.0;
   visit_workspace(falcon, [&](const model::Mat3& jacobian) {
     s = std::max(s, model::singular_values(jacobian)[0]);
@@ -46,7 +45,7 @@ model::DeviceAtTool falcon_at_tool(const FalconKinematics& falcon,
           .delay_s = falcon_delay_s(settings.event_character)};
 }
 
-double falcon_max_force_N(const FalconKinematics& falcon, const model::FalconSettings& settings) {
+double falcon_max_force_N(const FalconKinematics& falcon, const FalconSettings& settings) {
   delta::Joints torque_Nm{};
   for (std::size_t i = 0; i < 3; ++i)
     torque_Nm[i] = (kFalconMotorMax - settings.dead_band_words[i]) / settings.gain_words_per_Nm[i];

@@ -9,9 +9,9 @@
 // every direction, N. K: falcon_kinematics.h.
 #pragma once
 
+#include "hal/falcon/falcon_device.h"
 #include "hal/falcon/falcon_kinematics.h"
 #include "model/device_at_tool.h"
-#include "model/device_settings.h"
 
 namespace tact::hal::falcon {
 
@@ -20,8 +20,7 @@ namespace tact::hal::falcon {
 /// up to 1 ms more.
 constexpr double falcon_delay_s(bool event_character) { return event_character ? 2e-3 : 3e-3; }
 
-model::DeviceAtTool falcon_at_tool(const FalconKinematics& falcon,
-                                   const model::FalconSettings& settings);
-double falcon_max_force_N(const FalconKinematics& falcon, const model::FalconSettings& settings);
+model::DeviceAtTool falcon_at_tool(const FalconKinematics& falcon, const FalconSettings& settings);
+double falcon_max_force_N(const FalconKinematics& falcon, const FalconSettings& settings);
 
 }  // namespace tact::hal::falcon

@@ -31,11 +31,12 @@ bool is_pressed(const FalconReport& report, std::uint8_t button) RT_SAFE {
 
 }  // namespace
 
-FalconDevice::FalconDevice(const model::FalconSettings& settings, std::unique_ptr<FalconPipe> pipe)
+FalconDevice::FalconDevice(const FalconSettings& settings, std::unique_ptr<FalconPipe> pipe)
     : settings_(settings),
       pipe_(std::move(pipe)),
-      velocity_(settings.observer_bandwidth_Hz, kJump_m),
-      trouble_(FalconTrouble{.what = FalconTrouble::What::kNotHomed}) {}
+      velocity_(settings.observer_bandwidth_Hz, kJump_m) {
+  wait_for_homing(0);
+}
 
 FalconDevice::~FalconDevice() { stop(); }
 
@@ -53,11 +54,11 @@ DeviceInfo FalconDevice::info() const {
 Fault FalconDevice::read(Sample& sample, std::int64_t now_ns) RT_SAFE {
   sample.fresh = false;
   now_ns_ = now_ns;
-  if (stopped_) return fault_;
+  if (stopped_) return fault();
   if (heard_ns_ == 0) heard_ns_ = now_ns;  // silence begins with the loop
   check_pipe();
   FalconReply reply;
-  if (fault_ == Fault::kNone && pipe_->newest(reply) && take(reply, now_ns)) {
+  if (fault() == Fault::kNone && pipe_->newest(reply) && take(reply, now_ns)) {
     sample.tool = {.position_m = falcon_point_W(position_D_m_),
                    .velocity_mps = velocity_W_mps_,
                    .grip_ratio = is_pressed(reply.report, kFalconCentre) ? 1.0 : 0.0};
@@ -66,7 +67,7 @@ Fault FalconDevice::read(Sample& sample, std::int64_t now_ns) RT_SAFE {
     sample.fresh = true;
   }
   check_silence(now_ns);
-  return fault_;
+  return fault();
 }
 
 /// A new sample of a homed device that answers a command in time.
@@ -75,7 +76,7 @@ bool FalconDevice::take(const FalconReply& reply, std::int64_t now_ns) RT_SAFE {
   sequence_ = reply.sequence;
   if (answers == 0) return false;
   const bool homed = follow_homing(reply.report);
-  if (fault_ != Fault::kNone) return false;
+  if (fault() != Fault::kNone) return false;
   // Before homing the counts mean nothing; afterwards a report must be one that a hand can make.
   if (homed && !locate(reply)) {
     ++misfits_;
@@ -90,15 +91,10 @@ bool FalconDevice::take(const FalconReply& reply, std::int64_t now_ns) RT_SAFE {
 
 bool FalconDevice::follow_homing(const FalconReport& report) RT_SAFE {
   const bool homed = report.all_homed();
-  if (homed_ && !homed)
-    latch(Fault::kHomingLost, {.what = FalconTrouble::What::kHomingLost, .homed = report.homed});
-  if (homed_ || fault_ != Fault::kNone) return homed;
-  const FalconTrouble state{
-      .what = homed ? FalconTrouble::What::kNone : FalconTrouble::What::kNotHomed,
-      .homed = report.homed};
-  // Relaxed: one word that says all; nothing else is published by it. The same in latch().
-  trouble_.store(state, std::memory_order_relaxed);
-  if (!homed) return false;
+  if (homed_ && !homed) latch(Fault::kHomingLost, FalconTrouble::kHomingLost, report.homed);
+  if (homed_ || fault() != Fault::kNone) return homed;
+  if (!homed) return wait_for_homing(report.homed), false;
+  waits_.clear();
   homed_ = true;  // the counts jump with it; nothing was believed before
   return true;
 }
@@ -128,60 +124,51 @@ bool FalconDevice::locate(const FalconReply& reply) RT_SAFE {
 
 void FalconDevice::check_silence(std::int64_t now_ns) RT_SAFE {
   ++misses_;
-  if (fault_ != Fault::kNone || misses_ < kSilentTicks) return;
+  if (fault() != Fault::kNone || misses_ < kSilentTicks) return;
   const FalconPipeHealth health = pipe_->health();
   const std::int64_t silence_ns = now_ns - heard_ns_;
   // Who sends rubbish is named as garbled, before the longer silence would name it mute.
   const bool babbles = misfits_ > 0 || health.dropped_bytes != dropped_before_;
   if (babbles && silence_ns >= kGarbled_ns)
-    latch(Fault::kDeviceGarbled,
-          {.what = FalconTrouble::What::kGarbled, .line_errors = health.line_errors});
+    latch(Fault::kDeviceGarbled, FalconTrouble::kGarbled, health.line_errors);
   if (silence_ns >= kMute_ns && misses_ >= kMuteTicks)
-    latch(Fault::kDeviceLost, {.what = FalconTrouble::What::kSilent});
+    latch(Fault::kDeviceLost, FalconTrouble::kSilent);
 }
 
 void FalconDevice::check_pipe() RT_SAFE {
   const FalconPipeHealth health = pipe_->health();
-  const auto error = static_cast<std::uint16_t>(health.error);
+  const auto error = static_cast<std::uint32_t>(health.error);
   // The hand has felt zero since; what the gate would go on with is the force from before.
-  if (health.stood_in) return latch(Fault::kLoopStalled, {.what = FalconTrouble::What::kStoodIn});
+  if (health.stood_in) return latch(Fault::kLoopStalled, FalconTrouble::kStoodIn);
   switch (health.end) {
     case FalconPipeEnd::kOpen:
       return;
     case FalconPipeEnd::kUnplugged:
-      return latch(Fault::kDeviceUnplugged,
-                   {.what = FalconTrouble::What::kUnplugged, .error = error});
+      return latch(Fault::kDeviceUnplugged, FalconTrouble::kUnplugged, error);
     case FalconPipeEnd::kStalled:
-      return latch(Fault::kDeviceFailed, {.what = FalconTrouble::What::kStalled, .error = error});
+      return latch(Fault::kDeviceFailed, FalconTrouble::kStalled, error);
     case FalconPipeEnd::kBroken:
-      return latch(Fault::kDeviceFailed, {.what = FalconTrouble::What::kBroken, .error = error});
+      return latch(Fault::kDeviceFailed, FalconTrouble::kBroken, error);
   }
-}
-
-/// The first fault stays.
-void FalconDevice::latch(Fault fault, const FalconTrouble& trouble) RT_SAFE {
-  if (fault_ != Fault::kNone) return;
-  fault_ = fault;
-  trouble_.store(trouble, std::memory_order_relaxed);
 }
 
 /// A short silence takes nothing from it: that is the gate's to judge.
 bool FalconDevice::ready() const RT_SAFE {
-  return homed_ && powered_ && !stopped_ && fault_ == Fault::kNone && stamp_ns_ != 0;
+  return homed_ && powered_ && !stopped_ && fault() == Fault::kNone && stamp_ns_ != 0;
 }
 
 Fault FalconDevice::write(const Wrench& wrench) RT_SAFE {
-  if (stopped_) return fault_;
+  if (stopped_) return fault();
   const bool sound = is_finite(wrench.force_N);
   const bool silent = misses_ >= kSilentTicks && now_ns_ - heard_ns_ >= kSilent_ns;
   words_ = ready() && !silent ? words_for(sound ? wrench.force_N : Vec3{}) : FalconWords{};
-  if (fault_ != Fault::kNone || exchange_.may_send(now_ns_)) {  // zeros wait for no answer
+  if (fault() != Fault::kNone || exchange_.may_send(now_ns_)) {  // zeros wait for no answer
     if (pipe_->submit(encode(command(words_))))
       exchange_.sent(now_ns_);
     else
       check_pipe();  // gone is known in this tick; full is a missed cycle
   }
-  if (fault_ != Fault::kNone) return fault_;
+  if (fault() != Fault::kNone) return fault();
   return sound ? Fault::kNone : Fault::kForceNotFinite;
 }
 
@@ -211,14 +198,15 @@ FalconWords FalconDevice::words_for(const Vec3& force_W_N) const RT_SAFE {
 }
 
 FalconCommand FalconDevice::command(const FalconWords& words) const RT_SAFE {
-  const bool ready = homed_ && fault_ == Fault::kNone;
+  const bool ready = homed_ && fault() == Fault::kNone;
   const std::uint8_t light = !ready ? kFalconRed : powered_ ? kFalconGreen : kFalconBlue;
   // FP-4: sources disagree whether a Falcon forgets its home without the bit: a setting.
   return {.motor = words, .lights = light, .homing = !homed_ || settings_.keep_homing};
 }
 
 std::string FalconDevice::trouble() const {
-  return text_of(trouble_.load(std::memory_order_relaxed));
+  const FaultCause cause = fault() != Fault::kNone ? latch_.cause() : waits_.cause();
+  return text_of(static_cast<FalconTrouble>(cause.kind), cause.code);
 }
 
 std::optional<ShutdownFrames> FalconDevice::shutdown_frames() {

@@ -17,10 +17,11 @@
 #include <string>
 
 #include "hal/device.h"
+#include "hal/device_facts.h"
 #include "hal/falcon/falcon_kinematics.h"
 #include "hal/falcon/falcon_pipe.h"
+#include "hal/fault_latch.h"
 #include "hal/velocity_observer.h"
-#include "model/device_settings.h"
 #include "model/result.h"
 #include "model/units.h"
 
@@ -59,33 +60,80 @@ class FalconExchange {
   std::size_t first_ = 0, count_ = 0;
 };
 
-/// What keeps a Falcon from making force. One atomic word: the loop stores it, any thread reads it.
-struct alignas(8) FalconTrouble {
-  enum class What : std::uint8_t {
-    kNone,
-    kNotHomed,
-    kUnplugged,
-    kStalled,
-    kBroken,
-    kSilent,
-    kGarbled,
-    kHomingLost,
-    kStoodIn,
-  };
-  What what = What::kNone;
-  std::uint8_t homed = 0;        // three bits, axis 1 first
-  std::uint8_t line_errors = 0;  // ftdi_requests.h
-  std::uint16_t error = 0;       // errno
+/// With every product its vendor's number names all FTDI adapters.
+inline constexpr UsbPart kFalconParts[] = {
+    {.kind = "falcon",
+     .vendor = "0403",
+     .product = "cb48",
+     .name = "Novint Falcon",
+     .path_key = "device.falcon.bus_path",
+     .rule =
+         R"(SUBSYSTEM=="usb", ATTR{idVendor}=="0403", ATTR{idProduct}=="cb48", GROUP="haptics", MODE="0660")",
+     .absence =
+         "no Novint Falcon (USB 0403:cb48); switch its supply on and plug in its cable (lsusb "
+         "shows it)"}};
+
+struct FalconSettings {
+  static constexpr Section kSection{"falcon", "a Novint Falcon"};
+  using PerAxis = std::array<double, 3>;
+
+  std::string bus_path;         // "1-2.3"; empty: the only one
+  std::string firmware_path;    // absolute; empty: its firmware must be running
+  std::string firmware_sha256;  // empty: only images that are known
+  bool event_character = true;  // the USB chip answers at once, without its 1 ms timer
+  bool keep_homing = true;      // the homing request stays set while it runs
+  PerAxis gain_words_per_Nm{10'000.0, 10'000.0, 10'000.0};  // by tact-calibrate
+  PerAxis dead_band_words{};                                // before an axis moves at all
+  double moving_mass_kg = 0.0;  // held up by the motors, at the grip; 0: not held
+  double observer_bandwidth_Hz = 40.0;
+  double joint_friction_Nm = 0.02, joint_damping_Nms_per_rad = 0.01;
+
+  template <class Keys>
+  void visit(Keys& k) {
+    constexpr auto kOptional = Keys::kOptional;
+    k.text("bus_path", "which one, as 1-2.3; empty: the only one", bus_path, kOptional);
+    k.file("firmware", "file of the firmware that you own; empty: it runs already", firmware_path,
+           kOptional);
+    k.text("firmware_sha256", "its digest; empty: only images that are known", firmware_sha256,
+           kOptional);
+    k.flag("event_character", "answers without the USB chip's 1 ms timer", event_character,
+           kOptional);
+    k.flag("keep_homing", "the homing request stays set while it runs", keep_homing, kOptional);
+    k.per_arm("gain_words_per_Nm", {100.0, 1e6}, "of axis 1, 2, 3, by tact-calibrate",
+              gain_words_per_Nm, kOptional);
+    k.per_arm("dead_band_words", {0.0, 1000.0}, "before an axis moves, by tact-calibrate",
+              dead_band_words, kOptional);
+    k.number("moving_mass_kg", {0.0, 1.0}, "at the grip, held up by the motors, by tact-calibrate",
+             moving_mass_kg, kOptional);
+    k.number("observer_bandwidth_Hz", {1.0, 500.0}, "of the velocity observer",
+             observer_bandwidth_Hz, kOptional);
+    k.number("joint_friction_Nm", {0.0, 1.0}, "Coulomb friction of a thigh", joint_friction_Nm,
+             kOptional);
+    k.number("joint_damping_Nms_per_rad", {0.0, 1.0}, "viscous friction of a thigh",
+             joint_damping_Nms_per_rad, kOptional);
+  }
 };
-static_assert(std::atomic<FalconTrouble>::is_always_lock_free);
+
+/// What keeps a Falcon from making force: kinds of FaultCause.
+enum class FalconTrouble : std::uint8_t {
+  kNone,
+  kNotHomed,   // code: homed axes, three bits, axis 1 first
+  kUnplugged,  // code: errno, as of the next two
+  kStalled,
+  kBroken,
+  kSilent,
+  kGarbled,     // code: line errors (ftdi_requests.h)
+  kHomingLost,  // code: homed axes
+  kStoodIn,
+};
 
 /// One message: which part, why, the remedy; empty for kNone.
-std::string text_of(const FalconTrouble& trouble);
+std::string text_of(FalconTrouble trouble, std::uint32_t code);
 
 class FalconDevice final : public Device {
  public:
   /// A Falcon whose firmware runs.
-  FalconDevice(const model::FalconSettings& settings, std::unique_ptr<FalconPipe> pipe);
+  FalconDevice(const FalconSettings& settings, std::unique_ptr<FalconPipe> pipe);
   ~FalconDevice() override;
 
   /// Before the loop: where down is for its base, else as for one that lies (hal/mounting.h).
@@ -111,11 +159,17 @@ class FalconDevice final : public Device {
   bool locate(const FalconReply& reply) RT_SAFE;
   void check_silence(std::int64_t now_ns) RT_SAFE;
   void check_pipe() RT_SAFE;
-  void latch(Fault fault, const FalconTrouble& trouble) RT_SAFE;
+  Fault fault() const RT_SAFE { return latch_.fault(); }
+  void latch(Fault fault, FalconTrouble trouble, std::uint32_t code = 0) RT_SAFE {
+    latch_.set({.fault = fault, .kind = static_cast<std::uint8_t>(trouble), .code = code});
+  }
+  void wait_for_homing(std::uint8_t homed) RT_SAFE {
+    waits_.set({.kind = static_cast<std::uint8_t>(FalconTrouble::kNotHomed), .code = homed});
+  }
   FalconWords words_for(const Vec3& force_W_N) const RT_SAFE;
   FalconCommand command(const FalconWords& words) const RT_SAFE;
 
-  model::FalconSettings settings_;
+  FalconSettings settings_;
   Vec3 gravity_mps2_{0.0, 0.0, -model::kGravity_mps2};
   FalconKinematics kinematics_;
   std::unique_ptr<FalconPipe> pipe_;
@@ -135,8 +189,8 @@ class FalconDevice final : public Device {
   int misses_ = 0;             // reads in a row without a good report
   bool homed_ = false, powered_ = true, stopped_ = false;
   FalconWords words_{};
-  Fault fault_ = Fault::kNone;
-  std::atomic<FalconTrouble> trouble_;
+  FaultLatch latch_;
+  WaitNote waits_;  // for homing
 };
 
 }  // namespace tact::hal::falcon

@@ -112,7 +112,7 @@ Result<falcon::FalconBoot> boot_falcon(std::unique_ptr<FalconUsb>& usb,
 }
 
 Result<std::unique_ptr<falcon::FalconDevice>> open_falcon_device(
-    const model::FalconSettings& settings) {
+    const falcon::FalconSettings& settings) {
   // First: a wrong file is told before the device is touched.
   const auto image = load_falcon_image(settings.firmware_path, settings.firmware_sha256);
   if (!image) return image.error();
@@ -132,7 +132,7 @@ Result<std::unique_ptr<falcon::FalconDevice>> open_falcon_device(
 
 Result<std::unique_ptr<Device>> open_falcon(const model::DeviceSettings& settings,
                                             double /*rate_Hz*/) {
-  auto device = open_falcon_device(settings.falcon);
+  auto device = open_falcon_device(settings.of<falcon::FalconSettings>());
   if (!device) return device.error();
   (*device)->set_gravity(mounting_of(settings).gravity_in_base_mps2());
   return std::unique_ptr<Device>(std::move(*device));

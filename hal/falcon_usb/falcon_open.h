@@ -33,6 +33,6 @@ model::Result<std::unique_ptr<Device>> open_falcon(const model::DeviceSettings& 
                                                    double rate_Hz);
 /// The same, for a program that calibrates it.
 model::Result<std::unique_ptr<falcon::FalconDevice>> open_falcon_device(
-    const model::FalconSettings& settings);
+    const falcon::FalconSettings& settings);
 
 }  // namespace tact::hal::falcon_usb

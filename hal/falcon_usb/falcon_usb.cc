@@ -8,7 +8,6 @@
 
 #include "hal/device_lock.h"
 #include "hal/permission.h"
-#include "hal/udev_rules.h"
 
 namespace tact::hal::falcon_usb {
 namespace {
@@ -82,7 +81,7 @@ Result<libusb_device*> choose(const Falcons& falcons, const std::string& bus_pat
 }
 
 Error open_error(int error, const std::string& node) {
-  if (error == EACCES) return why_refused(node, kFalconRule).error();
+  if (error == EACCES) return why_refused(node, falcon::kFalconParts[0].rule).error();
   return Error{fmt::format("the Falcon at {} cannot be opened ({}): unplug it and plug it in again",
                            node, libusb_strerror(static_cast<libusb_error>(error)))};
 }

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "hal/falcon/falcon_boot.h"
-#include "model/device_settings.h"
+#include "hal/falcon/falcon_device.h"
 #include "model/result.h"
 
 namespace tact::hal::falcon_usb {

@@ -16,7 +16,7 @@ constexpr const char* kWeightFelt =
     "; its weight is felt, as the library balances it only where the base stands as delivered";
 constexpr const char* kDampingKey = "device.force_dimension.damping_Ns_per_m";
 
-DeviceInfo info_of(const SdkSession& session, const model::ForceDimensionSettings& settings) {
+DeviceInfo info_of(const SdkSession& session, const ForceDimensionSettings& settings) {
   const ForceDimensionType& type = session.type;
   return {.name = session.serial_number == 0
                       ? fmt::format("Force Dimension {}", type.name)
@@ -34,20 +34,21 @@ DeviceInfo info_of(const SdkSession& session, const model::ForceDimensionSetting
           .damping_key = kDampingKey,
           .caution = std::string(vendor_sdk::kNoGuardian) +
                      (session.balances_weight ? "" : kWeightFelt) + (type.old ? kOldType : "") +
-                     vendor_sdk::assumed_damping_text(
-                         settings.damping_Ns_per_m,
-                         model::ForceDimensionSettings{}.damping_Ns_per_m, kDampingKey)};
+                     vendor_sdk::assumed_damping_text(settings.damping_Ns_per_m,
+                                                      ForceDimensionSettings{}.damping_Ns_per_m,
+                                                      kDampingKey)};
 }
 
 }  // namespace
 
 model::Result<std::unique_ptr<Device>> open_force_dimension(const model::DeviceSettings& settings,
                                                             double rate_Hz) {
-  const auto session =
-      open_sdk_session(settings.force_dimension, settings.trust_library, mounting_of(settings));
+  const auto session = open_sdk_session(settings.of<ForceDimensionSettings>(),
+                                        settings.trust_library, mounting_of(settings));
   if (!session) return session.error();
-  return std::unique_ptr<Device>(new vendor_sdk::LibraryDevice(
-      info_of(*session, settings.force_dimension), SdkWorker::start(*session, rate_Hz)));
+  return std::unique_ptr<Device>(
+      new vendor_sdk::LibraryDevice(info_of(*session, settings.of<ForceDimensionSettings>()),
+                                    SdkWorker::start(*session, rate_Hz)));
 }
 
 }  // namespace tact::hal::force_dimension

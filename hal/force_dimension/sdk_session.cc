@@ -8,13 +8,11 @@
 #include <optional>
 
 #include "hal/device_lock.h"
-#include "hal/udev_rules.h"
 
 namespace tact::hal::force_dimension {
 namespace {
 
 using model::Error;
-using model::ForceDimensionSettings;
 using model::Result;
 
 // Some hundred, so that the library touches all memory that a cycle needs; 0.1 s at its 4 kHz.
@@ -127,7 +125,7 @@ Result<SdkSession> open_sdk_session(const ForceDimensionSettings& settings, bool
                                     const Mounting& mounting, const SystemRoots& roots) {
   const auto sdk = load_sdk(settings.library, trust_library);
   if (!sdk) return sdk.error();
-  const auto refusal = refused_usb_device("1451", nullptr, kForceDimensionRule, roots);
+  const auto refusal = refused_usb_device(kForceDimensionParts, roots);
   const auto id = open_device(*sdk, settings.id, refusal);
   if (!id) return id.error();
   SdkSession session{.sdk = *sdk, .id = *id, .type = {}};

@@ -8,10 +8,10 @@
 #pragma once
 
 #include "hal/force_dimension/device_types.h"
+#include "hal/force_dimension/force_dimension_device.h"
 #include "hal/force_dimension/sdk_library.h"
 #include "hal/mounting.h"
 #include "hal/permission.h"
-#include "model/device_settings.h"
 
 namespace tact::hal::force_dimension {
 
@@ -28,7 +28,7 @@ struct SdkSession {
 GripKind grip_of(const SdkSession& session);
 
 /// Leaves nothing open when it fails.
-model::Result<SdkSession> open_sdk_session(const model::ForceDimensionSettings& settings,
+model::Result<SdkSession> open_sdk_session(const ForceDimensionSettings& settings,
                                            bool trust_library, const Mounting& mounting = {},
                                            const SystemRoots& roots = {});
 

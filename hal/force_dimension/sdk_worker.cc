@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <ctime>
@@ -21,7 +22,6 @@ using model::Quat;
 using model::Vec3;
 using vendor_sdk::LibraryForce;
 using vendor_sdk::LibraryPose;
-using vendor_sdk::LibraryTrouble;
 
 // 4 kHz, the rate that the vendor claims: the pose is young, and the watchdog fed, whatever the
 // loop's rate.
@@ -39,30 +39,25 @@ void sleep_until_ns(std::int64_t deadline_ns) {
 
 }  // namespace
 
-std::string text_of_sdk_trouble(const LibraryTrouble& t) {
-  switch (static_cast<SdkTroubleSource>(t.source)) {
-    case SdkTroubleSource::kNone:
-      return {};
-    case SdkTroubleSource::kPose:
-      return fmt::format("the device does not tell its pose: {}", text_of_sdk_error(t.code));
-    case SdkTroubleSource::kGrip:
-      return fmt::format("the device does not tell its gripper: {}", text_of_sdk_error(t.code));
-    case SdkTroubleSource::kForce:
-      return fmt::format("the device does not take a force: {}", text_of_sdk_error(t.code));
-    case SdkTroubleSource::kEnable:
-      return fmt::format("the device does not switch its forces: {}", text_of_sdk_error(t.code));
-    case SdkTroubleSource::kWatch:
-      return fmt::format("the device does not tell its status: {}", text_of_sdk_error(t.code));
-    case SdkTroubleSource::kForceOff:
-      return fmt::format("the device switched its forces off: {}", force_off_text(t.code));
-    case SdkTroubleSource::kStatus:
-      break;
-  }
+std::string text_of_sdk_trouble(const FaultCause& t) {
+  constexpr std::array kRefused{"",
+                                "tell its pose",
+                                "tell its gripper",
+                                "take a force",
+                                "switch its forces",
+                                "tell its status"};
+  const auto source = static_cast<SdkTroubleSource>(t.kind);
+  const int code = static_cast<int>(t.code);
+  if (source == SdkTroubleSource::kNone) return {};
+  if (source == SdkTroubleSource::kForceOff)
+    return fmt::format("the device switched its forces off: {}", force_off_text(code));
+  if (source != SdkTroubleSource::kStatus)
+    return fmt::format("the device does not {}: {}", kRefused.at(t.kind), text_of_sdk_error(code));
   if (t.fault == Fault::kHomingLost)
     return "the device has lost its calibration; calibrate it, then start tactd again";
   if (t.fault == Fault::kDeviceUnplugged)
     return "the device is no longer connected; plug it in, then start tactd again";
-  return t.code == kSdkPower
+  return code == kSdkPower
              ? "the device has no power; switch its supply on, then start tactd again"
              : "the device reports an error of its own; switch it off and on, then start tactd "
                "again";
@@ -196,8 +191,8 @@ bool SdkWorker::fail(SdkTroubleSource source) {
 
 void SdkWorker::keep_trouble(Fault fault, SdkTroubleSource source, int code) {
   keep({.fault = fault,
-        .source = static_cast<std::uint8_t>(source),
-        .code = static_cast<std::uint16_t>(std::clamp(code, 0, 65'535))});
+        .kind = static_cast<std::uint8_t>(source),
+        .code = static_cast<std::uint32_t>(code)});
 }
 
 }  // namespace tact::hal::force_dimension

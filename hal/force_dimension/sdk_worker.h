@@ -31,7 +31,7 @@ enum class SdkTroubleSource : std::uint8_t {
   kStatus
 };
 
-std::string text_of_sdk_trouble(const vendor_sdk::LibraryTrouble& trouble);
+std::string text_of_sdk_trouble(const FaultCause& trouble);
 
 /// From one pose and force to the next.
 std::int64_t sdk_cycle_ns(double rate_Hz);

@@ -16,7 +16,6 @@
 #include <string_view>
 
 #include "hal/permission.h"
-#include "hal/udev_rules.h"
 
 namespace tact::hal::gpio {
 namespace {
@@ -81,12 +80,11 @@ std::string slow_bus(const std::string& device, const std::string& sys_root) {
 
 std::vector<GpioChip> find_gpio_chips(const SystemRoots& roots) {
   std::vector<GpioChip> chips;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(roots.sys + "/bus/gpio/devices", error)) {
-    const std::string name = entry.path().filename().string();
+  for (const fs::path& device : entries(roots.sys + "/bus/gpio/devices")) {
+    const std::string name = device.filename().string();
     if (number_of(name) < 0) continue;
     GpioChip chip{.name = name, .path = roots.dev + "/" + name, .label = {}, .bus = {}};
-    chip.bus = slow_bus(entry.path().string(), roots.sys);
+    chip.bus = slow_bus(device.string(), roots.sys);
     ask_chip(chip);
     chips.push_back(std::move(chip));
   }

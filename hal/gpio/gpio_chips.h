@@ -20,6 +20,9 @@ namespace tact::hal::gpio {
 
 using hal::SystemRoots;
 
+inline constexpr const char* kGpioRule =
+    R"(SUBSYSTEM=="gpio", KERNEL=="gpiochip[0-9]*", GROUP="haptics", MODE="0660")";
+
 struct GpioChip {
   std::string name;   // gpiochip0
   std::string path;   // /dev/gpiochip0

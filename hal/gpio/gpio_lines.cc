@@ -20,7 +20,6 @@ namespace {
 
 using model::Error;
 using model::Fault;
-using model::LinesSettings;
 using model::Result;
 
 constexpr const char* kConsumer = "tactd";

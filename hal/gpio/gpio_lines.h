@@ -12,22 +12,22 @@
 #include <memory>
 
 #include "hal/gpio/gpio_chips.h"
+#include "hal/lines_settings.h"
 #include "hal/safety_lines.h"
-#include "model/device_settings.h"
 #include "model/result.h"
 
 namespace tact::hal::gpio {
 
 /// Lines of scene.device.lines, outputs low; NoSafetyLines when none is wired. Set-up only.
-model::Result<std::unique_ptr<SafetyLines>> open_safety_lines(const model::LinesSettings& settings,
+model::Result<std::unique_ptr<SafetyLines>> open_safety_lines(const LinesSettings& settings,
                                                               const SystemRoots& roots = {});
 
 /// The lines of a chip that is chosen and checked. Every line that the scene wires is there, or
 /// this is an error that names it.
 model::Result<std::unique_ptr<SafetyLines>> open_lines_of(const GpioChip& chip,
-                                                          const model::LinesSettings& settings);
+                                                          const LinesSettings& settings);
 
 /// The first thing wrong with the line numbers: outside the chip, used twice, none at all.
-model::Result<bool> check_offsets(const model::LinesSettings& settings, const GpioChip& chip);
+model::Result<bool> check_offsets(const LinesSettings& settings, const GpioChip& chip);
 
 }  // namespace tact::hal::gpio

@@ -38,7 +38,7 @@ class BringUp {
   using Message = std::optional<can::CanFdFrame> (*)(int node);
   using Condition = bool (*)(const Heard&);
 
-  BringUp(can::CanFdBus& bus, const model::CanSettings& can) : bus_(bus), can_(can) {
+  BringUp(can::CanFdBus& bus, const can::CanSettings& can) : bus_(bus), can_(can) {
     for (std::size_t i = 0; i < 3; ++i) axes_[i].node = can.node[i];
   }
 
@@ -48,7 +48,8 @@ class BringUp {
                             &BringUp::check_position, &BringUp::watch_rest}) {
       if (auto error = (this->*step)()) return *error;
       if (bus_.fault() != Fault::kNone)
-        return Error{can_bus_trouble(bus_.cause(), can_.interface, can::CanFdFrame::kLinkType)};
+        return Error{
+            can::can_bus_trouble(bus_.cause(), can_.interface, can::CanFdFrame::kLinkType)};
     }
     for (std::size_t i = 0; i < 3; ++i) start_.motor_turns[i] = *axes_[i].last.position_turns;
     return start_;
@@ -73,7 +74,7 @@ class BringUp {
             "does not speak register map 5: install its vendor's firmware of today")) {
       return error;
     }
-    if (can_.homing != model::Homing::kAbsolute) return {};
+    if (can_.homing != can::Homing::kAbsolute) return {};
     return wrong(
         [](const Heard& a) { return a.kind->home_state != static_cast<int>(MoteusHome::kOutput); },
         "counts its position from wherever it was switched on, or from the rotor: homing "
@@ -133,7 +134,7 @@ class BringUp {
                   "starts by itself: end the program that drives it, then start tactd again")) {
       return error;
     }
-    if (can_.homing != model::Homing::kJig) return {};
+    if (can_.homing != can::Homing::kJig) return {};
     return wrong([](const Heard& a) { return a.most_turns - a.least_turns > kRest_turns; },
                  "moves: let the arms rest on the jig until tactd is ready");
   }
@@ -186,7 +187,7 @@ class BringUp {
   }
 
   can::CanFdBus& bus_;
-  const model::CanSettings& can_;
+  const can::CanSettings& can_;
   std::array<Heard, 3> axes_;
   std::int64_t ask_ns_ = 0;
   MoteusStart start_;
@@ -194,11 +195,11 @@ class BringUp {
 
 }  // namespace
 
-std::vector<std::uint32_t> moteus_ids(const model::CanSettings& can) {
+std::vector<std::uint32_t> moteus_ids(const can::CanSettings& can) {
   return {moteus_reply_id(can.node[0]), moteus_reply_id(can.node[1]), moteus_reply_id(can.node[2])};
 }
 
-can::CanFdBits moteus_cycle_bits(const model::CanSettings& can) {
+can::CanFdBits moteus_cycle_bits(const can::CanSettings& can) {
   can::CanFdBits all;
   for (const int node : can.node) {
     const auto command = moteus_torque(node, 0.0, 1.0).value_or(can::CanFdFrame{});
@@ -222,13 +223,13 @@ const char* lacking_in(const MoteusReply& reply) RT_SAFE {
   return reply.fault ? nullptr : "fault code";
 }
 
-Result<MoteusStart> bring_up_moteus(can::CanFdBus& bus, const model::CanSettings& can) {
+Result<MoteusStart> bring_up_moteus(can::CanFdBus& bus, const can::CanSettings& can) {
   for (const int node : can.node) {
     if (node >= kMoteusSmallestNode && node <= kMoteusLargestNode) continue;
     return Error{fmt::format("device.can.node has {}, but a moteus' id.id is {} to {}", node,
                              kMoteusSmallestNode, kMoteusLargestNode)};
   }
-  if (can.homing == model::Homing::kIndex) {
+  if (can.homing == can::Homing::kIndex) {
     return Error{
         "device.can.homing \"index\" is for drives that search their pulse themselves; with moteus "
         "use \"absolute\" (an encoder at the output) or \"jig\""};

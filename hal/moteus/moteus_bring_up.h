@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "hal/can/can_bus.h"
+#include "hal/can/can_settings.h"
 #include "hal/delta/delta_kinematics.h"
 #include "hal/moteus/moteus_protocol.h"
-#include "model/device_settings.h"
 #include "model/result.h"
 
 namespace tact::hal::moteus {
@@ -27,12 +27,12 @@ struct MoteusStart {
 };
 
 /// What the device needs to hear.
-std::vector<std::uint32_t> moteus_ids(const model::CanSettings& can);
+std::vector<std::uint32_t> moteus_ids(const can::CanSettings& can);
 /// Of all frames of a tick at worst stuffing.
-can::CanFdBits moteus_cycle_bits(const model::CanSettings& can);
+can::CanFdBits moteus_cycle_bits(const can::CanSettings& can);
 /// What a reply lacks of what moteus_torque asks for, by name; nullptr: nothing.
 const char* lacking_in(const MoteusReply& reply) RT_SAFE;
 
-model::Result<MoteusStart> bring_up_moteus(can::CanFdBus& bus, const model::CanSettings& can);
+model::Result<MoteusStart> bring_up_moteus(can::CanFdBus& bus, const can::CanSettings& can);
 
 }  // namespace tact::hal::moteus

@@ -46,7 +46,7 @@ enum class MoteusCause : std::uint8_t {
 
 class Moteuses final : public can::CanFdDrives {
  public:
-  Moteuses(const model::CanSettings& can, double largest_torque_Nm)
+  Moteuses(const can::CanSettings& can, double largest_torque_Nm)
       : nodes_(can.node), idle_torque_Nm_(kIdleTorque * largest_torque_Nm) {}
 
   int node_of(const can::CanFdFrame& frame) const RT_SAFE override {
@@ -116,7 +116,7 @@ class Moteuses final : public can::CanFdDrives {
     return step < 1;
   }
 
-  std::string words(const can::FaultCause& cause) const override {
+  std::string words(const FaultCause& cause) const override {
     switch (static_cast<MoteusCause>(cause.kind)) {
       case MoteusCause::kFault:
       case MoteusCause::kLowSupply:
@@ -229,21 +229,22 @@ Result<std::unique_ptr<Device>> start_moteus_delta(std::unique_ptr<can::CanFdBus
                     "more",
                     rate_Hz, 1e3 * kWatchdog_s, kMinRate_Hz)};
   }
-  auto start = bring_up_moteus(*bus, settings.can);
+  const auto& can = settings.of<can::CanSettings>();
+  const auto& delta = settings.of<can::DeltaSettings>();
+  auto start = bring_up_moteus(*bus, can);
   if (!start) return start.error();
   // A reply tells of the moment before its command (MO-2), so a position is one period old when it
   // is used; then all frames of a tick on the bus, at most.
   const auto period_ns = static_cast<double>(model::period_ns(rate_Hz));
-  const double bus_s = can::bus_time_s(moteus_cycle_bits(settings.can), bus->rate());
+  const double bus_s = can::bus_time_s(moteus_cycle_bits(can), bus->rate());
   return can::start_can_device(
       std::move(bus), settings, rate_Hz,
-      {.drives = std::make_unique<Moteuses>(
-           settings.can, settings.delta.max_joint_torque_Nm / settings.delta.gear_ratio),
+      {.drives = std::make_unique<Moteuses>(can, delta.max_joint_torque_Nm / delta.gear_ratio),
        .name = "delta with three moteus on CAN FD",
        .position = "reply",
        .one_sync = true,
        .most_silent_ns = kSilence_ns,
-       .counts_per_turn = settings.delta.counts_per_turn,
+       .counts_per_turn = delta.counts_per_turn,
        .delay_s = 1e-9 * period_ns + bus_s,
        .motor_turns = start->motor_turns,
        .caution = start->caution});
@@ -251,7 +252,7 @@ Result<std::unique_ptr<Device>> start_moteus_delta(std::unique_ptr<can::CanFdBus
 
 Result<std::unique_ptr<Device>> open_can_moteus(const model::DeviceSettings& settings,
                                                 double rate_Hz) {
-  const model::CanSettings& can = settings.can;
+  const can::CanSettings& can = settings.of<can::CanSettings>();
   if (auto error = can::lock_drives(can, /*gives_sync=*/false)) return *error;
   auto socket =
       can::open_checked_can(can.interface, moteus_cycle_bits(can), rate_Hz, moteus_ids(can));

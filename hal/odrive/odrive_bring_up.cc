@@ -27,8 +27,12 @@ using Axis = OdriveHeard;
 
 class BringUp {
  public:
-  BringUp(can::CanBus& bus, const model::CanSettings& can, double rate_Hz)
-      : bus_(bus), can_(can), rate_Hz_(rate_Hz), drives_(bus, can) {}
+  BringUp(can::CanBus& bus, const model::DeviceSettings& settings, double rate_Hz)
+      : bus_(bus),
+        can_(settings.of<can::CanSettings>()),
+        own_(settings.of<OdriveSettings>()),
+        rate_Hz_(rate_Hz),
+        drives_(bus, settings) {}
 
   Result<OdriveStart> run() {
     using Step = std::optional<Error> (BringUp::*)();
@@ -36,7 +40,8 @@ class BringUp {
                             &BringUp::set_torque_mode, &BringUp::find_index,
                             &BringUp::wake_estimates, &BringUp::count_positions}) {
       if (auto error = (this->*step)()) return *error;
-      if (bus_.fault() != Fault::kNone) return Error{can_bus_trouble(bus_.cause(), can_.interface)};
+      if (bus_.fault() != Fault::kNone)
+        return Error{can::can_bus_trouble(bus_.cause(), can_.interface)};
     }
     OdriveStart start{.generation = drives_.generation, .motor_turns = {}};
     for (std::size_t i = 0; i < 3; ++i) start.motor_turns[i] = drives_.axes[i].at_turns;
@@ -122,16 +127,16 @@ class BringUp {
       return odrive_controller_mode(node, OdriveControlMode::kTorque,
                                     OdriveInputMode::kPassThrough);
     });
-    const bool limited = can_.max_velocity_turns_per_s > 0.0 && can_.max_current_A > 0.0;
+    const bool limited = own_.max_velocity_turns_per_s > 0.0 && own_.max_current_A > 0.0;
     if (!limited) return {};  // the drive's own limits stay
     drives_.each([this](int node) {
-      return odrive_limits(node, can_.max_velocity_turns_per_s, can_.max_current_A);
+      return odrive_limits(node, own_.max_velocity_turns_per_s, own_.max_current_A);
     });
     return {};
   }
 
   std::optional<Error> find_index() {
-    if (can_.homing != model::Homing::kIndex) return {};
+    if (can_.homing != can::Homing::kIndex) return {};
     drives_.forget_positions();
     drives_.each([](int node) { return odrive_axis_state(node, OdriveAxisState::kIndexSearch); });
     drives_.run_for(kIndexStart_ms);  // a heartbeat from before must not say that it is done
@@ -216,20 +221,21 @@ class BringUp {
                                                         : "axis.config.can.encoder_rate_ms")};
       }
     }
-    if (can_.homing != model::Homing::kJig) return {};
+    if (can_.homing != can::Homing::kJig) return {};
     return drives_.wrong([](const Axis& a) { return a.moved_turns() > kRest_turns; },
                          "moves: let the arms rest on the jig until tactd is ready");
   }
 
   can::CanBus& bus_;
-  const model::CanSettings& can_;
+  const can::CanSettings& can_;
+  const OdriveSettings& own_;
   double rate_Hz_;
   OdriveListener drives_;
 };
 
 }  // namespace
 
-std::vector<std::uint32_t> odrive_ids(const model::CanSettings& can) {
+std::vector<std::uint32_t> odrive_ids(const can::CanSettings& can) {
   std::vector<std::uint32_t> ids;
   for (const int node : can.node) {
     for (const OdriveCommand one :
@@ -241,14 +247,14 @@ std::vector<std::uint32_t> odrive_ids(const model::CanSettings& can) {
   return ids;
 }
 
-int odrive_cycle_bits(const model::CanSettings& can) {
-  const int torque_bytes = static_cast<int>(odrive_torque_length(can));
+int odrive_cycle_bits(const OdriveSettings& settings) {
+  const int torque_bytes = static_cast<int>(odrive_torque_length(settings));
   return 3 * (can::most_can_bits(torque_bytes) + can::most_can_bits(8));
 }
 
-Result<OdriveStart> bring_up_odrives(can::CanBus& bus, const model::CanSettings& can,
+Result<OdriveStart> bring_up_odrives(can::CanBus& bus, const model::DeviceSettings& settings,
                                      double rate_Hz) {
-  for (const int node : can.node) {
+  for (const int node : settings.of<can::CanSettings>().node) {
     if (node <= kOdriveLargestNode) continue;
     return Error{fmt::format("device.can.node has {}, but an ODrive's node is 0 to {}", node,
                              kOdriveLargestNode)};
@@ -259,7 +265,7 @@ Result<OdriveStart> bring_up_odrives(can::CanBus& bus, const model::CanSettings&
                     "a second; set rate_Hz to {} or less",
                     rate_Hz, kMaxRate_Hz, kMaxRate_Hz)};
   }
-  return BringUp(bus, can, rate_Hz).run();
+  return BringUp(bus, settings, rate_Hz).run();
 }
 
 }  // namespace tact::hal::odrive

@@ -18,8 +18,8 @@
 
 #include "hal/can/can_bus.h"
 #include "hal/delta/delta_kinematics.h"
+#include "hal/odrive/odrive_delta.h"
 #include "hal/odrive/odrive_errors.h"
-#include "model/device_settings.h"
 #include "model/result.h"
 
 namespace tact::hal::odrive {
@@ -35,11 +35,11 @@ struct OdriveStart {
 };
 
 /// What the device needs to hear.
-std::vector<std::uint32_t> odrive_ids(const model::CanSettings& can);
+std::vector<std::uint32_t> odrive_ids(const can::CanSettings& can);
 /// Of all frames of a tick at worst stuffing.
-int odrive_cycle_bits(const model::CanSettings& can);
+int odrive_cycle_bits(const OdriveSettings& settings);
 
-model::Result<OdriveStart> bring_up_odrives(can::CanBus& bus, const model::CanSettings& can,
+model::Result<OdriveStart> bring_up_odrives(can::CanBus& bus, const model::DeviceSettings& settings,
                                             double rate_Hz);
 
 }  // namespace tact::hal::odrive

@@ -10,6 +10,7 @@
 
 #include "hal/can/can_device.h"
 #include "hal/can/can_open.h"
+#include "hal/lines_settings.h"
 #include "hal/odrive/odrive_axis.h"
 #include "hal/odrive/odrive_bring_up.h"
 #include "hal/odrive/odrive_errors.h"
@@ -59,8 +60,10 @@ const char* state_name(std::uint32_t state) {
 
 class Odrives final : public can::CanDrives {
  public:
-  Odrives(const model::CanSettings& can, OdriveGeneration generation)
-      : nodes_(can.node), torque_length_(odrive_torque_length(can)), generation_(generation) {}
+  Odrives(const model::DeviceSettings& settings, OdriveGeneration generation)
+      : nodes_(settings.of<can::CanSettings>().node),
+        torque_length_(odrive_torque_length(settings.of<OdriveSettings>())),
+        generation_(generation) {}
 
   int node_of(const can::CanFrame& frame) const RT_SAFE override {
     return odrive_address(frame).node;
@@ -132,7 +135,7 @@ class Odrives final : public can::CanDrives {
     return step < 2;
   }
 
-  std::string words(const can::FaultCause& cause) const override {
+  std::string words(const FaultCause& cause) const override {
     switch (static_cast<OdriveCause>(cause.kind)) {
       case OdriveCause::kErrors05:
         return odrive_error_message(OdriveGeneration::k05, cause.code, 0);
@@ -215,15 +218,16 @@ class Odrives final : public can::CanDrives {
 Result<std::unique_ptr<Device>> start_odrive_delta(std::unique_ptr<can::CanBus> bus,
                                                    const model::DeviceSettings& settings,
                                                    double rate_Hz) {
-  const bool powered_by_lines = settings.lines.wired() && settings.lines.enable >= 0;
-  if (settings.can.homing == model::Homing::kIndex && powered_by_lines) {
+  const auto& lines = settings.of<LinesSettings>();
+  const bool powered_by_lines = lines.wired() && lines.enable >= 0;
+  if (settings.of<can::CanSettings>().homing == can::Homing::kIndex && powered_by_lines) {
     return Error{
         "device.can.homing \"index\" turns the motors before the loop runs, but "
         "device.lines.enable gives them power only then: use \"absolute\" or \"jig\""};
   }
   const auto caution = check_odrive_velocity_limit(settings);
   if (!caution) return caution.error();
-  const auto start = bring_up_odrives(*bus, settings.can, rate_Hz);
+  const auto start = bring_up_odrives(*bus, settings, rate_Hz);
   if (!start) return start.error();
   // A position is up to a period old (the drive's own clock); then three positions and three
   // torques on the bus.
@@ -231,23 +235,24 @@ Result<std::unique_ptr<Device>> start_odrive_delta(std::unique_ptr<can::CanBus> 
   const can::CanRate rate = bus->rate();
   return can::start_can_device(
       std::move(bus), settings, rate_Hz,
-      {.drives = std::make_unique<Odrives>(settings.can, start->generation),
+      {.drives = std::make_unique<Odrives>(settings, start->generation),
        .name = "delta with three ODrives on CAN",
        .position = "new position",
        .one_sync = false,
        .most_silent_ns = kOdriveSilence_ns,
-       .counts_per_turn = settings.delta.counts_per_turn,
-       .delay_s = 1e-9 * period_ns + can::bus_time_s(odrive_cycle_bits(settings.can), rate),
+       .counts_per_turn = settings.of<can::DeltaSettings>().counts_per_turn,
+       .delay_s = 1e-9 * period_ns +
+                  can::bus_time_s(odrive_cycle_bits(settings.of<OdriveSettings>()), rate),
        .motor_turns = start->motor_turns,
        .caution = *caution});
 }
 
 Result<std::unique_ptr<Device>> open_can_odrive(const model::DeviceSettings& settings,
                                                 double rate_Hz) {
-  const model::CanSettings& can = settings.can;
+  const can::CanSettings& can = settings.of<can::CanSettings>();
   if (auto error = can::lock_drives(can, /*gives_sync=*/false)) return *error;
-  auto socket =
-      can::open_checked_can(can.interface, odrive_cycle_bits(can), rate_Hz, odrive_ids(can));
+  auto socket = can::open_checked_can(
+      can.interface, odrive_cycle_bits(settings.of<OdriveSettings>()), rate_Hz, odrive_ids(can));
   if (!socket) return socket.error();
   return start_odrive_delta(std::make_unique<can::CanBus>(std::move(*socket)), settings, rate_Hz);
 }

@@ -13,11 +13,34 @@
 #include <memory>
 
 #include "hal/can/can_bus.h"
+#include "hal/can/can_settings.h"
 #include "hal/device.h"
 #include "model/device_settings.h"
 #include "model/result.h"
 
 namespace tact::hal::odrive {
+
+struct OdriveSettings {
+  double max_velocity_turns_per_s = 0.0;  // of the motor, where the drive gives up
+  double max_current_A = 0.0;             // both or none; 0: the drive's own limits stay
+  bool short_torque = true;               // 4 bytes of torque, not 8: 32 us less on the bus
+
+  template <class Keys>
+  void visit(Keys& k, const model::DeviceSettings& device) {
+    k.number("max_velocity_turns_per_s", {0.0, 1000.0}, "of an ODrive's motor; 0: the drive's own",
+             max_velocity_turns_per_s, Keys::kOptional);
+    k.number("max_current_A", {0.0, 200.0}, "of an ODrive's motor; 0: the drive's own",
+             max_current_A, Keys::kOptional);
+    if ((max_velocity_turns_per_s == 0.0) != (max_current_A == 0.0))
+      k.refuse({"max_velocity_turns_per_s", "max_current_A"},
+               "device.can needs both max_velocity_turns_per_s and max_current_A, or none: an "
+               "ODrive takes them in one message");
+    k.flag("short_torque", "ODrive: torque in 4 bytes, 32 us less on the bus", short_torque,
+           Keys::kOptional);
+    if (max_current_A != 0.0)
+      can::refuse_of_others(k, device, "can-odrive", "max_current_A", "an ODrive");
+  }
+};
 
 /// From a bus that is open: what remains when interface and socket are checked.
 model::Result<std::unique_ptr<Device>> start_odrive_delta(std::unique_ptr<can::CanBus> bus,

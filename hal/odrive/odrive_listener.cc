@@ -15,13 +15,15 @@ constexpr int kFeed_ms = 5;
 
 }  // namespace
 
-OdriveTorqueLength odrive_torque_length(const model::CanSettings& can) {
-  return can.short_torque ? OdriveTorqueLength::kShort : OdriveTorqueLength::kPadded;
+OdriveTorqueLength odrive_torque_length(const OdriveSettings& settings) {
+  return settings.short_torque ? OdriveTorqueLength::kShort : OdriveTorqueLength::kPadded;
 }
 
-OdriveListener::OdriveListener(can::CanBus& bus, const model::CanSettings& can)
-    : bus_(bus), can_(can) {
-  for (std::size_t i = 0; i < 3; ++i) axes[i].node = can.node[i];
+OdriveListener::OdriveListener(can::CanBus& bus, const model::DeviceSettings& settings)
+    : bus_(bus),
+      can_(settings.of<can::CanSettings>()),
+      torque_length_(odrive_torque_length(settings.of<OdriveSettings>())) {
+  for (std::size_t i = 0; i < 3; ++i) axes[i].node = can_.node[i];
 }
 
 bool OdriveListener::run_until(const Condition& fits, int time_ms) {
@@ -35,7 +37,7 @@ bool OdriveListener::run_until(const Condition& fits, int time_ms) {
     if (now_ns >= end_ns) return false;
     if (now_ns >= feed_ns_) {
       feed_ns_ = now_ns + kFeed_ms * model::kMillisecond_ns;
-      each([this](int node) { return odrive_input_torque(node, 0.0, odrive_torque_length(can_)); });
+      each([this](int node) { return odrive_input_torque(node, 0.0, torque_length_); });
     }
     socket.wait(kFeed_ms);
   }

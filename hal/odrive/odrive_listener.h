@@ -10,13 +10,13 @@
 #include <optional>
 
 #include "hal/can/can_bus.h"
+#include "hal/odrive/odrive_delta.h"
 #include "hal/odrive/odrive_errors.h"
-#include "model/device_settings.h"
 #include "model/result.h"
 
 namespace tact::hal::odrive {
 
-OdriveTorqueLength odrive_torque_length(const model::CanSettings& can);
+OdriveTorqueLength odrive_torque_length(const OdriveSettings& settings);
 
 /// One axis, as its frames tell it.
 struct OdriveHeard {
@@ -41,7 +41,7 @@ class OdriveListener {
  public:
   using Condition = std::function<bool(const OdriveHeard&)>;
 
-  OdriveListener(can::CanBus& bus, const model::CanSettings& can);
+  OdriveListener(can::CanBus& bus, const model::DeviceSettings& settings);
 
   std::array<OdriveHeard, 3> axes;
   OdriveGeneration generation = OdriveGeneration::k05;
@@ -76,7 +76,8 @@ class OdriveListener {
   void take_heartbeat(OdriveHeard& axis, const can::CanFrame& frame, const OdriveHeartbeat& beat);
 
   can::CanBus& bus_;
-  const model::CanSettings& can_;
+  const can::CanSettings& can_;
+  OdriveTorqueLength torque_length_;
   std::int64_t feed_ns_ = 0;
 };
 

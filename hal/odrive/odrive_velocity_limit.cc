@@ -17,8 +17,8 @@ constexpr double kVendorsLimit_turns_per_s = 2.0, kVendorsGain_Nms_per_turn = 1.
 constexpr double kOverspeed = 1.2, kHand_mps = 1.0;
 
 /// Of the fastest motor for the hand's worst direction, in the middle of the workspace.
-double motor_turns_per_m(const model::DeltaSettings& settings) {
-  const delta::DeltaKinematics delta(can::delta_geometry(settings));
+double motor_turns_per_m(const can::DeltaSettings& settings) {
+  const delta::DeltaKinematics delta(settings);
   const Vec3 middle_m{0.0, 0.0, settings.middle_m};
   const auto inverse = delta.inverse(middle_m);
   if (!inverse.reachable) return 0.0;
@@ -34,7 +34,7 @@ double motor_turns_per_m(const model::DeltaSettings& settings) {
 
 }  // namespace
 
-OdriveVelocityLimit odrive_velocity_limit(const model::DeltaSettings& delta,
+OdriveVelocityLimit odrive_velocity_limit(const can::DeltaSettings& delta,
                                           double limit_turns_per_s) {
   const double turns_per_m = std::max(motor_turns_per_m(delta), 1e-9);
   const double torque_Nm = delta.max_joint_torque_Nm / delta.gear_ratio;
@@ -47,10 +47,10 @@ OdriveVelocityLimit odrive_velocity_limit(const model::DeltaSettings& delta,
 }
 
 model::Result<std::string> check_odrive_velocity_limit(const model::DeviceSettings& settings) {
-  const double own_turns_per_s = settings.can.max_velocity_turns_per_s;
+  const double own_turns_per_s = settings.of<OdriveSettings>().max_velocity_turns_per_s;
   const bool own = own_turns_per_s > 0.0;
   const double limit_turns_per_s = own ? own_turns_per_s : kVendorsLimit_turns_per_s;
-  const auto limit = odrive_velocity_limit(settings.delta, limit_turns_per_s);
+  const auto limit = odrive_velocity_limit(settings.of<can::DeltaSettings>(), limit_turns_per_s);
   const std::string remedy = fmt::format(
       "set controller.config.enable_torque_mode_vel_limit = False in odrivetool, and "
       "device.can.max_velocity_turns_per_s = {:g} or more, with max_current_A",

@@ -10,6 +10,7 @@
 
 #include <string>
 
+#include "hal/odrive/odrive_delta.h"
 #include "model/device_settings.h"
 #include "model/result.h"
 
@@ -23,7 +24,7 @@ struct OdriveVelocityLimit {
   double least_turns_per_s = 0.0;  // V that lets all torque pass at 1 m/s of the hand
 };
 /// For a limit V of the motors, turn/s, > 0.
-OdriveVelocityLimit odrive_velocity_limit(const model::DeltaSettings& delta,
+OdriveVelocityLimit odrive_velocity_limit(const can::DeltaSettings& delta,
                                           double limit_turns_per_s);
 
 /// What a person should know, with numbers and the remedy; empty: nothing. An error for a scene

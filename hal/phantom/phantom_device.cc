@@ -13,7 +13,7 @@ namespace {
 constexpr double kDelay_s = 2.5e-3;
 constexpr const char* kDampingKey = "device.phantom.damping_Ns_per_m";
 
-std::string caution_of(const PhantomSession& session, const model::PhantomSettings& settings) {
+std::string caution_of(const PhantomSession& session, const PhantomSettings& settings) {
   const std::string for_long = session.continuous_force_N > 0.0
                                    ? fmt::format("{:g} N", session.continuous_force_N)
                                    : "not told, so choose limits.continuous_force_N yourself";
@@ -24,10 +24,10 @@ std::string caution_of(const PhantomSession& session, const model::PhantomSettin
       "{}; what its motors bear for long: {}; the stiffest law that its vendor advises: {}{}",
       vendor_sdk::kNoGuardian, for_long, stiffness,
       vendor_sdk::assumed_damping_text(settings.damping_Ns_per_m,
-                                       model::PhantomSettings{}.damping_Ns_per_m, kDampingKey));
+                                       PhantomSettings{}.damping_Ns_per_m, kDampingKey));
 }
 
-DeviceInfo info_of(const PhantomSession& session, const model::PhantomSettings& settings) {
+DeviceInfo info_of(const PhantomSession& session, const PhantomSettings& settings) {
   const std::string name = session.model.empty() ? "PHANTOM" : session.model;
   return {.name = session.serial_number.empty()
                       ? name
@@ -56,12 +56,12 @@ model::Result<std::unique_ptr<Device>> open_phantom(const model::DeviceSettings&
         fmt::format("rate_Hz is {:g}, but the vendor SDK serves a PHANTOM {:g} times a second: set "
                     "rate_Hz to {:g} or less",
                     rate_Hz, kPhantomRate_Hz, kPhantomRate_Hz)};
-  const auto session = open_phantom_session(settings.phantom, settings.trust_library);
+  const auto session = open_phantom_session(settings.of<PhantomSettings>(), settings.trust_library);
   if (!session) return session.error();
   auto worker = PhantomWorker::start(*session, rate_Hz);
   if (!worker) return worker.error();
   return std::unique_ptr<Device>(
-      new vendor_sdk::LibraryDevice(info_of(*session, settings.phantom), *worker));
+      new vendor_sdk::LibraryDevice(info_of(*session, settings.of<PhantomSettings>()), *worker));
 }
 
 }  // namespace tact::hal::phantom

@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "hal/device_lock.h"
-#include "hal/udev_rules.h"
 
 namespace tact::hal::phantom {
 namespace {
@@ -69,13 +68,12 @@ std::optional<Error> ask_limits(PhantomSession& s) {
 
 }  // namespace
 
-Result<PhantomSession> open_phantom_session(const model::PhantomSettings& settings,
-                                            bool trust_library, const SystemRoots& roots) {
+Result<PhantomSession> open_phantom_session(const PhantomSettings& settings, bool trust_library,
+                                            const SystemRoots& roots) {
   const auto hd = load_hd(settings.library, trust_library);
   if (!hd) return hd.error();
   const std::string name = settings.name.empty() ? "Default Device" : settings.name;
-  auto refusal = refused_usb_device("2988", nullptr, kPhantomRule, roots);
-  if (!refusal) refusal = refused_usb_device("0301", "2988", kOldPhantomRule, roots);
+  const auto refusal = refused_usb_device(kPhantomParts, roots);
   // Before the library looks at it: its forces may be another program's.
   if (auto error = lock_device(fmt::format("the PHANTOM \"{}\"", name))) return *error;
   take_hd_errors(*hd);  // of before

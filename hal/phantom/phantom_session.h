@@ -10,7 +10,7 @@
 
 #include "hal/permission.h"
 #include "hal/phantom/hd_library.h"
-#include "model/device_settings.h"
+#include "hal/phantom/phantom_device.h"
 #include "model/types.h"
 
 namespace tact::hal::phantom {
@@ -28,7 +28,7 @@ struct PhantomSession {
 };
 
 /// Its scheduler does not run yet. Leaves nothing open when it fails.
-model::Result<PhantomSession> open_phantom_session(const model::PhantomSettings& settings,
+model::Result<PhantomSession> open_phantom_session(const PhantomSettings& settings,
                                                    bool trust_library,
                                                    const SystemRoots& roots = {});
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <thread>
@@ -84,23 +85,18 @@ std::optional<Error> PhantomWorker::wait_until_calibrated() {
 }
 
 std::string PhantomWorker::trouble_text() const {
-  const auto reported = first_trouble();
-  switch (static_cast<Source>(reported.source)) {
-    case Source::kNone:
-      return {};
-    case Source::kError:
-      return fmt::format("the PHANTOM failed: {}", text_of_hd_error(reported.code));
-    case Source::kForceOff:
-      return "the PHANTOM's force output is off; end other programs that use the device, then "
-             "start tactd again";
-    case Source::kPose:
-      return "the PHANTOM tells a pose that is no number; check its cable, calibrate it, then "
-             "start tactd again";
-    case Source::kCalibration:
-      break;
-  }
-  return fmt::format("the PHANTOM has lost its calibration; {}, then start tactd again",
-                     calibration_remedy(session_));
+  // What and remedy, by Source; {} is what the library or its model tells.
+  constexpr std::array kTexts{
+      "", "the PHANTOM failed: {}",
+      "the PHANTOM's force output is off; end other programs that use the device, then start tactd "
+      "again",
+      "the PHANTOM has lost its calibration; {}, then start tactd again",
+      "the PHANTOM tells a pose that is no number; check its cable, calibrate it, then start tactd "
+      "again"};
+  const FaultCause reported = first_trouble();
+  const bool failed = static_cast<Source>(reported.kind) == Source::kError;
+  return fmt::format(fmt::runtime(kTexts.at(reported.kind)),
+                     failed ? text_of_hd_error(reported.code) : calibration_remedy(session_));
 }
 
 unsigned PhantomWorker::on_cycle(void* of) {
@@ -215,9 +211,7 @@ void PhantomWorker::close() {
 
 /// False, for the caller to pass on.
 bool PhantomWorker::fail(Fault fault, Source source, unsigned code) {
-  keep({.fault = fault,
-        .source = static_cast<std::uint8_t>(source),
-        .code = static_cast<std::uint16_t>(std::min(code, 0xFFFFu))});
+  keep({.fault = fault, .kind = static_cast<std::uint8_t>(source), .code = code});
   return false;
 }
 

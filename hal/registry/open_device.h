@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// open_device.h - from the scene's device.kind to a device: the one place in hal that knows
-// the names.
+// open_device.h - from the scene's device.kind to a device: the one place that knows the names.
+//
+// A device has one row in open_device.cc: name, function that opens it, keys, simulated or not, how
+// it looks when it is plugged in. All of that is written in its own folder.
 #pragma once
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "hal/device.h"
+#include "hal/device_facts.h"
+#include "hal/lines_settings.h"
 #include "hal/sim/hand_socket.h"
 #include "model/result.h"
 #include "model/scene/scene.h"
@@ -18,6 +23,17 @@ struct StopAndDelete {
   void operator()(Device* device) const;
 };
 using OpenDevice = std::unique_ptr<Device, StopAndDelete>;
+
+/// Reads [device], or describes its keys.
+void visit_device(model::reader::Keys& keys, model::DeviceSettings& out);
+/// A scene with its device.
+model::Result<model::scene::Scene> load_scene(const std::string& path,
+                                              const std::vector<std::string>& overrides);
+
+/// What device.kind may be.
+std::vector<std::string> device_kinds();
+/// Of all devices that are on USB, for hal/list.
+std::vector<UsbPart> usb_parts();
 
 /// Opens what scene.device names. Set-up only; may take as long as the hardware needs.
 model::Result<OpenDevice> open_device(const model::scene::Scene& scene);

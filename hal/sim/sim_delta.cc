@@ -45,7 +45,7 @@ Vec3 inside_workspace_m(const Vec3& p_W) RT_SAFE {
 
 }  // namespace
 
-SimDelta::SimDelta(const model::SimDeviceSettings& device, const model::HandSettings& hand,
+SimDelta::SimDelta(const SimDeviceSettings& device, const model::HandSettings& hand,
                    const Mounting& mounting)
     : settings_(device),
       mounting_(mounting),
@@ -236,29 +236,17 @@ void SimDelta::stop() {
   wrist_Nm_ = {};
 }
 
-model::Result<std::unique_ptr<SimDelta>> make_sim_delta(const model::SimDeviceSettings& device,
+model::Result<std::unique_ptr<SimDelta>> make_sim_delta(SimDeviceSettings device,
                                                         const model::HandSettings& hand,
                                                         const Mounting& mounting) {
-  // What the device cannot work with; a scene's own ranges are narrower (model/scene).
-  const auto refuse = [](const char* key, double value, const char* allowed) {
-    return model::Error{fmt::format("{} is {}; it must be {}", key, value, allowed)};
-  };
-  const std::pair<const char*, double> above_zero[] = {
-      {"counts_per_turn", device.counts_per_turn},
-      {"observer_bandwidth_Hz", device.observer_bandwidth_Hz}};
-  for (const auto& [key, value] : above_zero)
-    if (!model::is_positive(value)) return refuse(key, value, "above 0");
-  const std::pair<const char*, double> zero_or_above[] = {
-      {"sample_delay_s", device.sample_delay_s},
-      {"joint_friction_Nm", device.joint_friction_Nm},
-      {"joint_damping_Nms_per_rad", device.joint_damping_Nms_per_rad},
-      {"hand.mass_kg", hand.mass_kg},
-      {"hand.stiffness_N_per_m", hand.stiffness_N_per_m},
-      {"hand.damping_Ns_per_m", hand.damping_Ns_per_m}};
-  for (const auto& [key, value] : zero_or_above)
-    if (!model::is_not_negative(value)) return refuse(key, value, "0 or above");
-  if (device.sample_delay_s > kMaxDelay_s)
-    return refuse("sample_delay_s", device.sample_delay_s, "at most 0.1 s");
+  RangeCheck check;
+  device.visit(check);
+  if (!check.refusal().empty()) return model::Error{check.refusal()};
+  for (const auto& [key, value] : {std::pair{"mass_kg", hand.mass_kg},
+                                   {"stiffness_N_per_m", hand.stiffness_N_per_m},
+                                   {"damping_Ns_per_m", hand.damping_Ns_per_m}})
+    if (!model::is_not_negative(value))
+      return model::Error{fmt::format("hand.{} is {}; it must be 0 or above", key, value)};
   if (hand.path.empty()) return model::Error{"the hand has no waypoint; give it at least one"};
   return std::make_unique<SimDelta>(device, hand, mounting);
 }

@@ -14,6 +14,7 @@
 
 #include "hal/delta/delta_kinematics.h"
 #include "hal/device.h"
+#include "hal/device_facts.h"
 #include "hal/latest_slot.h"
 #include "hal/mounting.h"
 #include "hal/sim/delta_plant.h"
@@ -21,7 +22,6 @@
 #include "hal/sim/sim_hand.h"
 #include "hal/sim/sim_wrist.h"
 #include "hal/velocity_observer.h"
-#include "model/device_settings.h"
 #include "model/result.h"
 
 namespace tact::hal::sim {
@@ -33,12 +33,37 @@ struct SimFaults {
   std::atomic<Fault> device{Fault::kNone};  // read and write return this while set
 };
 
+/// Its imperfections; its geometry is in sim_delta_model.h. Required, all of them: a simulated
+/// device that is perfect by default would hide what a real one cannot show.
+struct SimDeviceSettings {
+  static constexpr Section kSection{"sim", "imperfections of the simulated device", true};
+
+  double counts_per_turn = 0.0;            // of a joint
+  double sample_delay_s = 0.0;             // age of a sample when the loop gets it
+  double joint_friction_Nm = 0.0;          // Coulomb, per joint
+  double joint_damping_Nms_per_rad = 0.0;  // viscous, per joint
+  double observer_bandwidth_Hz = 0.0;      // of the velocity observer
+
+  template <class Keys>
+  void visit(Keys& k) {
+    k.number("counts_per_turn", {100.0, 1e8}, "encoder counts of one turn of a joint",
+             counts_per_turn);
+    k.number("sample_delay_s", {0.0, 0.005}, "age of a sample when the loop gets it",
+             sample_delay_s);
+    k.number("joint_friction_Nm", {0.0, 1.0}, "Coulomb friction of each joint", joint_friction_Nm);
+    k.number("joint_damping_Nms_per_rad", {0.0, 1.0}, "viscous friction of each joint",
+             joint_damping_Nms_per_rad);
+    k.number("observer_bandwidth_Hz", {1.0, 500.0}, "of the velocity observer",
+             observer_bandwidth_Hz);
+  }
+};
+
 class SimDelta final : public Device {
  public:
   /// Settings as checked by make_sim_delta().
   /// The hand is led in W. Its base stands as mounted, and MountedDevice turns what it tells; how
   /// the handle is turned stays as the scene says.
-  SimDelta(const model::SimDeviceSettings& device, const model::HandSettings& hand,
+  SimDelta(const SimDeviceSettings& device, const model::HandSettings& hand,
            const Mounting& mounting = {});
 
   DeviceInfo info() const override;
@@ -77,7 +102,7 @@ class SimDelta final : public Device {
   void step_physics(double dt_s) RT_SAFE;
   bool measure(const State& state, Tool& tool) RT_SAFE;
 
-  model::SimDeviceSettings settings_;
+  SimDeviceSettings settings_;
   Mounting mounting_;
   Vec3 gravity_D_mps2_;
   delta::DeltaKinematics delta_;
@@ -105,7 +130,7 @@ class SimDelta final : public Device {
 };
 
 /// Refuses settings that no device can have.
-model::Result<std::unique_ptr<SimDelta>> make_sim_delta(const model::SimDeviceSettings& device,
+model::Result<std::unique_ptr<SimDelta>> make_sim_delta(SimDeviceSettings device,
                                                         const model::HandSettings& hand,
                                                         const Mounting& mounting = {});
 

@@ -17,7 +17,6 @@ namespace tact::hal::vendor_sdk {
 namespace {
 
 using namespace std::chrono_literals;
-using model::Fault;
 
 constexpr int kPriority = 78;                             // the loop has 80
 constexpr std::int64_t kZeroFirst_ns = 2'000'000;         // of zero force after the forces went on
@@ -77,20 +76,6 @@ bool LibraryWorker::follow_power(bool wanted) {
 
 bool LibraryWorker::powered_for_sure() const {
   return powered_cycles_.load(std::memory_order_relaxed) * cycle_ns_ >= kPoweredForSure_ns;
-}
-
-void LibraryWorker::keep(const LibraryTrouble& t) {
-  std::uint64_t none = 0;  // the first one is the cause
-  // One word, so that the first trouble is kept whole by one exchange.
-  const auto packed = static_cast<std::uint64_t>(t.fault) << 32 |
-                      static_cast<std::uint64_t>(t.source) << 16 | std::uint64_t{t.code};
-  trouble_.compare_exchange_strong(none, packed, std::memory_order_acq_rel);
-}
-
-LibraryTrouble LibraryWorker::first_trouble() const RT_SAFE {
-  const std::uint64_t packed = trouble_.load(std::memory_order_acquire);
-  return {static_cast<Fault>(packed >> 32), static_cast<std::uint8_t>(packed >> 16 & 0xFF),
-          static_cast<std::uint16_t>(packed & 0xFFFF)};
 }
 
 std::string LibraryWorker::words(std::int64_t now_ns) const {

@@ -20,8 +20,8 @@
 #include <optional>
 #include <string>
 
+#include "hal/fault_latch.h"
 #include "hal/latest_slot.h"
-#include "model/fault.h"
 #include "model/types.h"
 
 namespace tact::hal::vendor_sdk {
@@ -47,13 +47,6 @@ struct LibraryCommand {
   bool powered = false;
 };
 
-/// One atomic word: fault, who found it (a number of the device's room), and the library's code.
-struct LibraryTrouble {
-  model::Fault fault = model::Fault::kNone;
-  std::uint8_t source = 0;
-  std::uint16_t code = 0;
-};
-
 /// How long a sample is good, and a command at least.
 inline constexpr std::int64_t kOldest_ns = 5'000'000;
 /// A library whose last cycle is older than this has fallen silent.
@@ -67,7 +60,8 @@ class LibraryWorker {
 
   LatestSlot<LibraryPose>& poses() RT_SAFE { return poses_; }
   LatestSlot<LibraryCommand>& commands() RT_SAFE { return commands_; }
-  LibraryTrouble first_trouble() const RT_SAFE;
+  /// Its kind is that of the device's folder, its code the library's.
+  FaultCause first_trouble() const RT_SAFE { return trouble_.cause(); }
   /// For a person: the first trouble, and a library that has fallen silent; empty without either.
   std::string words(std::int64_t now_ns) const;
 
@@ -106,7 +100,7 @@ class LibraryWorker {
   bool quits() const { return quit_.load(std::memory_order_relaxed); }
   /// The forces are on for so long that "off" is news.
   bool powered_for_sure() const;
-  void keep(const LibraryTrouble& trouble);
+  void keep(const FaultCause& trouble) { trouble_.set(trouble); }
   /// So many threads will call the library: said before the first begins, as stop() waits for them.
   void expect_threads(int threads) { running_ = threads; }
   void thread_ends();
@@ -124,7 +118,7 @@ class LibraryWorker {
   Power power_ = Power::kOff;
   std::atomic<std::int64_t> powered_cycles_{0};  // since the forces were switched on
   std::atomic<std::int64_t> last_cycle_ns_{0};   // CLOCK_MONOTONIC; 0: none is due
-  std::atomic<std::uint64_t> trouble_{0};
+  FaultLatch trouble_;
   std::atomic<bool> quit_{false}, given_up_{false};
   std::atomic<int> running_{0};
 };

@@ -81,7 +81,7 @@ class LiveView {
 
   record::RunHeader header_;
   std::shared_ptr<const record::MeshBytes> mesh_;
-  std::uint64_t scene_number_ = 0;  // grows with every RunHeader: the page loads the scene again
+  std::uint64_t scene_number_ = 0;  // grows with every run: the page loads the scene again
   Link link_ = Link::kWaiting;
   std::string detail_;  // of the link
   Text replay_;         // playback state; null for a live view

@@ -138,6 +138,12 @@ TextPosition SceneDocument::position_of(const toml::node& node) const {
   return {.where = fmt::format("{}:{}", path, source.begin.line), .line = source.begin.line};
 }
 
+std::string path_beside(const std::string& document, const std::string& file) {
+  std::error_code failed;
+  const auto folder = std::filesystem::absolute(document, failed).parent_path();
+  return (folder / file).lexically_normal().string();
+}
+
 Result<SceneDocument> load_scene_document(const std::string& path,
                                           const std::vector<std::string>& overrides) {
   const Result<std::string> text = io::read_file(path, remedy(), kMaxFile_bytes);

@@ -30,6 +30,9 @@ struct SceneDocument {
   TextPosition position_of(const toml::node& node) const;
 };
 
+/// A file that a document names: absolute, or from the folder of the document.
+std::string path_beside(const std::string& document, const std::string& file);
+
 /// Parse the file and lay the overrides over it in order; the meaning of keys is not looked at.
 Result<SceneDocument> load_scene_document(const std::string& path,
                                           const std::vector<std::string>& overrides);

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <functional>
 #include <initializer_list>
 #include <optional>
@@ -60,18 +61,33 @@ class SceneVisit {
 class Keys final : public ParameterVisitor {
  public:
   using Inside = std::function<void(Keys&)>;
+  // For visits that are templates, as those of devices: they need no other name of this file.
+  using Choice = model::Choice;
+  static constexpr Need kRequired = Need::kRequired, kOptional = Need::kOptional;
 
   /// Visits the whole document, or describes it.
   static void visit_root(SceneVisit& visit, const Inside& inside);
 
   void text(std::string_view key, std::string_view meaning, std::string& out,
             Need need = Need::kRequired) override;
+  /// A file, absolute or from the folder of the document; `out` becomes its absolute path.
+  void file(std::string_view key, std::string_view meaning, std::string& out, Need need) {
+    text(key, meaning, out, need);
+    if (table_ && !out.empty()) out = path_beside(visit_.document()->path, out);
+  }
   void flag(std::string_view key, std::string_view meaning, bool& out,
             Need need = Need::kRequired) override;
   void number(std::string_view key, Range range, std::string_view meaning, double& out,
               Need need = Need::kRequired) override;
   void count(std::string_view key, CountRange range, std::string_view meaning, std::size_t& out,
              Need need = Need::kRequired) override;
+  /// A whole number that may be negative; optional.
+  void whole(std::string_view key, Range range, std::string_view meaning, int& out) {
+    double value = out;
+    number(key, range, meaning, value, Need::kOptional);
+    if (value != std::floor(value)) refuse({key}, std::string(key) + " takes a whole number");
+    out = static_cast<int>(value);
+  }
   void vector(std::string_view key, Range each, std::string_view meaning, Vec3& out,
               Need need = Need::kRequired);
   void per_arm(std::string_view key, Range each, std::string_view meaning,
@@ -108,6 +124,9 @@ class Keys final : public ParameterVisitor {
   /// The value of `key` decides which further keys the section has; describing visits them all.
   void one_of(std::string_view key, std::span<const Choice> choices,
               const std::function<void(std::size_t)>& further);
+
+  /// All other keys of this section are for another reader: none is unknown.
+  void leave_others() { all_named_ = false; }
 
   /// Where a key stands, or else its section.
   TextPosition position_of(std::string_view key) const;

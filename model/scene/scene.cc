@@ -17,13 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A mesh file is named from the folder of the scene, wherever the program was started.
-std::string absolute_path(const std::string& scene_path, const std::string& file) {
-  std::error_code failed;
-  const fs::path folder = fs::absolute(scene_path, failed).parent_path();
-  return (folder / file).lexically_normal().string();
-}
-
 /// The mesh's own error names its file and line; one that is not there is the scene's error.
 Result<mesh::ObjMesh> load_mesh(const MeshText& text, const std::string& path) {
   std::error_code failed;
@@ -36,8 +29,8 @@ Result<mesh::ObjMesh> load_mesh(const MeshText& text, const std::string& path) {
 }
 
 std::optional<Error> load_meshes(const SceneText& text, Scene& scene) {
-  scene.organ.mesh_path = absolute_path(scene.path, text.organ_mesh.file);
-  scene.tool.mesh_path = absolute_path(scene.path, text.tool_mesh.file);
+  scene.organ.mesh_path = reader::path_beside(scene.path, text.organ_mesh.file);
+  scene.tool.mesh_path = reader::path_beside(scene.path, text.tool_mesh.file);
   Result<mesh::ObjMesh> organ = load_mesh(text.organ_mesh, scene.organ.mesh_path);
   if (!organ) return organ.error();
   Result<mesh::ObjMesh> tool = load_mesh(text.tool_mesh, scene.tool.mesh_path);
@@ -101,6 +94,10 @@ std::string whole_hash(const std::string& text_hash, const Scene& scene) {
   return hash.hex();
 }
 
+void visit_all(reader::SceneVisit& visit, DeviceKeys device_keys, SceneText& text) {
+  Keys::visit_root(visit, [&](Keys& root) { visit_scene(root, device_keys, text); });
+}
+
 /// The reference, indented as a scene is; `margin` is that of the row before.
 std::string reference_line(const reader::ReferenceRow& row, std::string& margin) {
   const std::string times = row.fallback.empty() ? "" : "; " + row.fallback;
@@ -118,18 +115,19 @@ std::string reference_line(const reader::ReferenceRow& row, std::string& margin)
 
 }  // namespace
 
-Result<Scene> load_scene(const std::string& path, const std::vector<std::string>& overrides) {
+Result<Scene> load_scene(const std::string& path, const std::vector<std::string>& overrides,
+                         DeviceKeys device_keys) {
   const Result<reader::SceneDocument> document = reader::load_scene_document(path, overrides);
   if (!document) return document.error();
   SceneText text;
   reader::SceneVisit visit(&*document);
-  Keys::visit_root(visit, [&](Keys& root) { visit_scene(root, text); });
+  visit_all(visit, device_keys, text);
   if (auto problem = visit.problem()) return *problem;
 
   Scene& scene = text.scene;
   scene.path = path;
-  for (std::string* file : {&scene.compliance.map_path, &scene.device.falcon.firmware_path})
-    if (!file->empty()) *file = absolute_path(path, *file);
+  if (!scene.compliance.map_path.empty())
+    scene.compliance.map_path = reader::path_beside(path, scene.compliance.map_path);
   scene.hand_site_m = text.script.site_m;
   scene.hand_inward = normalized(text.script.inward);
   // Strokes before meshes: what is wrong in the text is told before files are read that take long.
@@ -146,10 +144,10 @@ bool Scene::describes(std::string_view law_name) const {
   return std::ranges::find(described, law_name) != described.end();
 }
 
-std::string scene_reference() {
+std::string scene_reference(DeviceKeys device_keys) {
   SceneText text;
   reader::SceneVisit visit(nullptr);
-  Keys::visit_root(visit, [&](Keys& root) { visit_scene(root, text); });
+  visit_all(visit, device_keys, text);
   std::string reference =
       "A scene is a TOML file. Numbers are SI; a key ends in its unit. The columns are key, "
       "allowed,\n"

@@ -22,6 +22,10 @@
 #include "model/result.h"
 #include "model/scene/law_settings.h"
 
+namespace tact::model::reader {
+class Keys;
+}
+
 namespace tact::model::scene {
 
 struct OrganSettings {
@@ -80,10 +84,15 @@ struct Scene {
   bool describes(std::string_view law_name) const;
 };
 
-/// Read a scene and its meshes. `overrides` are "key.path=value" as TOML writes values.
-Result<Scene> load_scene(const std::string& path, const std::vector<std::string>& overrides);
+/// Visits the keys of [device], which hal/registry knows.
+using DeviceKeys = void (*)(reader::Keys& section, DeviceSettings& out);
+
+/// Read a scene and its meshes. `overrides` are "key.path=value" as TOML writes values. A caller
+/// that opens no device passes no keys: [device] is not looked at, and Scene::device is empty.
+Result<Scene> load_scene(const std::string& path, const std::vector<std::string>& overrides,
+                         DeviceKeys device_keys = nullptr);
 
 /// Every key with unit, range, default or "required", and meaning: a page for people.
-std::string scene_reference();
+std::string scene_reference(DeviceKeys device_keys);
 
 }  // namespace tact::model::scene

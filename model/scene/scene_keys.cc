@@ -126,7 +126,7 @@ void visit_hand(Keys& k, SceneText& out) {
 
 }  // namespace
 
-void visit_scene(Keys& k, SceneText& out) {
+void visit_scene(Keys& k, DeviceKeys device_keys, SceneText& out) {
   Scene& scene = out.scene;
   k.text("name", "of the scene, shown by the viewer", scene.name);
   k.number("rate_Hz", {100.0, 10000.0}, "ticks of the control loop", scene.rate_Hz);
@@ -144,7 +144,10 @@ void visit_scene(Keys& k, SceneText& out) {
   k.section("tool", "what touches it", visit_tool, out);
   k.section("look", "what the viewer paints; no force depends on it", visit_look, out, kOptional);
   k.section("contact", "between tool and organ", visit_contact, scene);
-  k.section("device", "what the hand holds", visit_device, scene.device);
+  k.section("device", "what the hand holds", [&](Keys& device) {
+    if (device_keys == nullptr) return device.leave_others();
+    device_keys(device, scene.device);
+  });
   k.section("hand", "the simulated hand", visit_hand, out);
   k.section("limits", "what the gate lets through",
             [&](Keys& limits) { visit_limits(limits, scene.rate_Hz, scene.limits); });

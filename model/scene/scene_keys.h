@@ -36,11 +36,9 @@ struct SceneText {
 };
 
 /// Reads every key into `out`, or describes them all.
-void visit_scene(reader::Keys& root, SceneText& out);
+void visit_scene(reader::Keys& root, DeviceKeys device_keys, SceneText& out);
 
-// Of that, in scene_device.cc:
-void visit_device(reader::Keys& keys, DeviceSettings& out);
-// In scene_laws.cc. `law` and the sections of all laws; the chosen one must be there.
+// Of that, in scene_laws.cc. `law` and the sections of all laws; the chosen one must be there.
 void visit_laws(reader::Keys& root, Scene& scene);
 /// [pull] and [relaxation], of any law.
 void visit_law_options(reader::Keys& root, Scene& scene);

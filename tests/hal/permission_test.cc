@@ -7,10 +7,11 @@
 
 #include <filesystem>
 
-#include "hal/udev_rules.h"
 #include "tests/support/usb_folders.h"
 
 namespace tact::hal::permission_test {
+
+constexpr const char* kRule = "SUBSYSTEM==\"haptics\"";
 
 TEST(Permission, ARefusalThatUdevEndsWithin200MsIsNone) {
   int opens = 0;
@@ -35,21 +36,22 @@ class PermissionOfNode : public testing::Test {
 
 TEST_F(PermissionOfNode, TheRuleIsMissingUnlessTheNodeIsOfTheGroup) {
   const gid_t own = getegid();
-  const Refusal of_root = why_refused(node, kGpioRule, own + 1);
-  EXPECT_NE(of_root.lacking.find(kGpioRule), std::string::npos) << of_root.lacking;
+  const Refusal of_root = why_refused(node, kRule, own + 1);
+  EXPECT_NE(of_root.lacking.find(kRule), std::string::npos) << of_root.lacking;
   EXPECT_EQ(of_root.remedy, kRuleRemedy);
-  const Refusal of_group = why_refused(node, kGpioRule, own);
+  const Refusal of_group = why_refused(node, kRule, own);
   EXPECT_EQ(of_group.lacking.find("rule"), std::string::npos) << of_group.lacking;
   EXPECT_NE(of_group.lacking.find("group haptics"), std::string::npos);
   EXPECT_EQ(of_group.remedy, "sudo adduser $USER haptics, and log in again");
-  EXPECT_NE(why_refused(node, kGpioRule, std::nullopt).lacking.find("rule"), std::string::npos);
+  EXPECT_NE(why_refused(node, kRule, std::nullopt).lacking.find("rule"), std::string::npos);
   chmod(node.c_str(), 0640);
-  EXPECT_NE(why_refused(node, kGpioRule, own).lacking.find("rule is missing"), std::string::npos);
+  EXPECT_NE(why_refused(node, kRule, own).lacking.find("rule is missing"), std::string::npos);
 }
 
 TEST_F(PermissionOfNode, AUsbDeviceThatALibraryLooksForIsRefusedByItsNodeAlone) {
   const auto ask = [&](const char* vendor, const char* product) {
-    return refused_usb_device(vendor, product, kForceDimensionRule, usb.roots());
+    const UsbPart part{.kind = "", .vendor = vendor, .product = product, .name = "", .rule = kRule};
+    return refused_usb_device({&part, 1}, usb.roots());
   };
   EXPECT_FALSE(ask("1451", nullptr)) << "it may be opened";
   EXPECT_FALSE(ask("2988", nullptr)) << "it is not there";
@@ -71,8 +73,8 @@ TEST(Permission, ADeviceWithASerialPortIsJudgedByThatPortAlone) {
     usb.add_node(usb.node, 0);
     usb.add_node(port, 0666);
     tests::become_nobody();
-    const auto ask = [&] { return refused_usb_device("2988", nullptr, kPhantomRule, usb.roots()); };
-    _exit(ask() ? 8 : 7);
+    const UsbPart part{.kind = "", .vendor = "2988", .name = "", .rule = kRule};
+    _exit(refused_usb_device({&part, 1}, usb.roots()) ? 8 : 7);
   };
   EXPECT_EXIT(see_refusals(), testing::ExitedWithCode(7), "");
   EXPECT_EQ(usb_node(usb.device, usb.roots()), port);

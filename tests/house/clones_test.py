@@ -19,10 +19,6 @@ SHIPPED, TESTS = ("model", "hal", "firmware", "host", "tools"), ("tests",)
 LIMITS = {SHIPPED: 100, TESTS: 200}
 # Pairs that share more, the tokens of all such runs together, and why that is no function of its own.
 EXCUSED = {
-    ("hal/moteus/moteus_delta.cc", "hal/odrive/odrive_delta.cc"):
-        (122, "each opens its bus with the bring-up, the listener and the words of its own drive"),
-    ("model/scene/scene_device.cc", "model/scene/scene_limits.cc"):
-        (238, "tables of keys: other names, bounds and words"),
     ("model/contact/moved_contact.h", "model/contact/rest_contact.h"):
         (140, "declare the same interface, two forms of an organ; each override is one line"),
     ("firmware/protocol/frame.cc", "host/record/operator_record.cc"):

@@ -24,6 +24,8 @@
 #include "firmware/run/loop_parts.h"
 #include "firmware/run/replay.h"
 #include "firmware/telemetry/force_hash.h"
+#include "hal/registry/open_device.h"
+#include "hal/sim/sim_delta.h"
 #include "model/scene/tissue.h"
 #include "model/time_ns.h"
 #include "tests/soak/fault_injection.h"
@@ -78,7 +80,8 @@ model::Result<Outcome> soak(const model::scene::Scene& scene, std::uint64_t tick
                             std::uint64_t seed) {
   const auto tissue = model::scene::make_tissue(scene);
   if (!tissue) return tissue.error();
-  auto device = hal::sim::make_sim_delta(scene.device.sim, scene.hand);
+  auto device =
+      hal::sim::make_sim_delta(scene.device.of<hal::sim::SimDeviceSettings>(), scene.hand);
   if (!device) return device.error();
   hal::sim::SimLines lines;
   firmware::loop::SimulatedClock clock;
@@ -168,7 +171,7 @@ std::string complaint(const Outcome& outcome, bool every_stage) {
 
 model::Result<Outcome> soak_with(const std::vector<std::string>& limits, const std::string& path,
                                  std::uint64_t ticks, std::uint64_t seed) {
-  const auto scene = model::scene::load_scene(path, limits);
+  const auto scene = hal::registry::load_scene(path, limits);
   if (!scene) return scene.error();
   return soak(*scene, ticks, seed);
 }

@@ -16,6 +16,7 @@
 
 #include "hal/can/can_bus.h"
 #include "hal/can/can_delta.h"
+#include "hal/can/can_settings.h"
 #include "hal/device.h"
 #include "model/device_settings.h"
 #include "model/result.h"
@@ -41,9 +42,9 @@ inline DeltaPoseCase published_pose(std::size_t index = 0) {
 
 inline model::DeviceSettings jig_settings(const DeltaPoseCase& pose) {
   model::DeviceSettings settings = example_delta();
-  settings.can.homing = model::Homing::kJig;
-  settings.can.home_rad = pose.theta_rad;
-  settings.can.direction = {1.0, -1.0, 1.0};
+  settings.of<hal::can::CanSettings>().homing = hal::can::Homing::kJig;
+  settings.of<hal::can::CanSettings>().home_rad = pose.theta_rad;
+  settings.of<hal::can::CanSettings>().direction = {1.0, -1.0, 1.0};
   return settings;
 }
 
@@ -51,15 +52,16 @@ inline model::DeviceSettings jig_settings(const DeltaPoseCase& pose) {
 inline hal::delta::Joints expected_motor_Nm(const model::DeviceSettings& settings,
                                             const DeltaPoseCase& pose,
                                             const model::Vec3& force_W_N) {
-  const hal::delta::DeltaKinematics delta(hal::can::delta_geometry(settings.delta));
+  const hal::delta::DeltaKinematics delta(settings.of<hal::can::DeltaSettings>());
   const auto at = delta.pose(pose.position_D_m, pose.theta_rad);
   const model::Vec3 force_D{force_W_N.z, -force_W_N.y, force_W_N.x};  // W x is D z, W z is D x
   const auto push = hal::delta::joint_torques_Nm(at, force_D);
   const auto hold = hal::delta::gravity_torques_Nm(
-      delta.geometry(), hal::can::delta_masses(settings.delta), at, {-9.81, 0.0, 0.0});
+      delta.geometry(), settings.of<hal::can::DeltaSettings>(), at, {-9.81, 0.0, 0.0});
   hal::delta::Joints out{};
   for (std::size_t i = 0; i < 3; ++i)
-    out[i] = settings.can.direction[i] * (push[i] + hold[i]) / settings.delta.gear_ratio;
+    out[i] = settings.of<hal::can::CanSettings>().direction[i] * (push[i] + hold[i]) /
+             settings.of<hal::can::DeltaSettings>().gear_ratio;
   return out;
 }
 

@@ -19,7 +19,7 @@ namespace tact::tests {
 
 inline model::scene::Scene shipped_scene(const std::string& name) {
   const auto scene =
-      model::scene::load_scene(TACT_SOURCE_DIR "/model/scenes/" + name + ".toml", {});
+      hal::registry::load_scene(TACT_SOURCE_DIR "/model/scenes/" + name + ".toml", {});
   EXPECT_TRUE(scene) << scene.error().message;
   return *scene;
 }

@@ -2,6 +2,7 @@
 // test_scene.h - a small scene in memory: a plate, one or two spheres, a hand that waits above it.
 #pragma once
 
+#include "hal/sim/sim_delta.h"
 #include "model/indent/disc_stack.h"
 #include "model/indent/rhombus_patch.h"
 #include "model/scene/scene.h"
@@ -28,11 +29,11 @@ inline model::scene::Scene make_plate_scene() {
   scene.contact.tear_force_N = 0.6;
   scene.tool.spheres = {{{}, 0.004}};
   scene.device.kind = "sim-delta";
-  scene.device.sim = {.counts_per_turn = 100000.0,
-                      .sample_delay_s = 0.0005,
-                      .joint_friction_Nm = 0.01,
-                      .joint_damping_Nms_per_rad = 0.02,
-                      .observer_bandwidth_Hz = 40.0};
+  scene.device.of<hal::sim::SimDeviceSettings>() = {.counts_per_turn = 100000.0,
+                                                    .sample_delay_s = 0.0005,
+                                                    .joint_friction_Nm = 0.01,
+                                                    .joint_damping_Nms_per_rad = 0.02,
+                                                    .observer_bandwidth_Hz = 40.0};
   scene.hand.mass_kg = 0.15;
   scene.hand.stiffness_N_per_m = 600.0;
   scene.hand.damping_Ns_per_m = 15.0;

@@ -16,6 +16,7 @@
 #include "firmware/run/loop_parts.h"
 #include "hal/falcon/falcon_device.h"
 #include "hal/odrive/odrive_delta.h"
+#include "hal/registry/open_device.h"
 #include "hal/sim/sim_delta.h"
 #include "hal/sim/sim_lines.h"
 #include "model/scene/tissue.h"
@@ -55,10 +56,11 @@ class Counted final : public hal::Device {
 
 // The same laws, loop and gate drive every device.
 int reach_sim(const std::string& path) {
-  const auto scene = model::scene::load_scene(path, {});
+  const auto scene = hal::registry::load_scene(path, {});
   if (!scene) return fmt::print(stderr, "tact-tick-reach: {}\n", scene.error().message), 2;
   const auto tissue = model::scene::make_tissue(*scene);
-  auto device = hal::sim::make_sim_delta(scene->device.sim, scene->hand);
+  auto device =
+      hal::sim::make_sim_delta(scene->device.of<hal::sim::SimDeviceSettings>(), scene->hand);
   if (!tissue || !device) return 2;
   Counted counted(**device);
   hal::sim::SimLines lines;

@@ -275,7 +275,7 @@ int fail(const std::string& message) {
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv, print_help);
   if (argc != 2) return fail("give one SCENE and options of Google Benchmark; see --help");
-  const auto scene = tact::model::scene::load_scene(argv[1], {});
+  const auto scene = tact::hal::registry::load_scene(argv[1], {});
   if (!scene) return fail(scene.error().message);
   const auto motion = scene_motion(*scene);
   if (!motion) return fail(motion.error().message);

@@ -11,7 +11,9 @@
 #include "firmware/loop/clock.h"
 #include "hal/falcon/falcon_balance.h"
 #include "hal/falcon/falcon_calibration.h"
+#include "hal/falcon/falcon_device.h"
 #include "hal/falcon_usb/falcon_open.h"
+#include "hal/registry/open_device.h"
 #include "model/io/program/within.h"
 #include "tools/calibrate/gated_run.h"
 #include "tools/program/program.h"
@@ -140,7 +142,7 @@ Result<std::vector<FalconBalance>> measure(FalconDevice& device, const Options& 
 }
 
 Result<tact::hal::falcon::FalconCalibration> find_calibration(
-    const Options& o, tact::model::FalconSettings settings) {
+    const Options& o, tact::hal::falcon::FalconSettings settings) {
   settings.moving_mass_kg = 0.0;  // the words shall be those of the load alone
   settings.dead_band_words = {};
   auto device = tact::hal::falcon_usb::open_falcon_device(settings);
@@ -166,11 +168,11 @@ int main(int argc, char** argv) {
   if (const auto status = program.parse(argc, argv)) return *status;
   if (isatty(STDIN_FILENO) == 0 || isatty(STDOUT_FILENO) == 0)
     return program.fail({"asks before anything moves, so it needs a terminal: start it from one"});
-  const auto scene = o.scene.load();
+  const auto scene = o.scene.load(tact::hal::registry::visit_device);
   if (!scene) return program.fail(scene.error());
   ask("The grip will move by itself, with at most 6 N. Keep faces and cups away. Go on (yes)?");
   if (!read_yes()) return program.fail({"not agreed to: nothing moved"});
-  const auto found = find_calibration(o, scene->device.falcon);
+  const auto found = find_calibration(o, scene->device.of<tact::hal::falcon::FalconSettings>());
   if (!found) return program.fail(found.error(), "no force is left");
   fmt::print("\n# {} masses at {} poses; the fit leaves {:.0f} words\n{}", o.masses_kg.size(),
              o.poses, found->residual_words, tact::hal::falcon::scene_lines(*found));

@@ -12,6 +12,7 @@
 
 #include "firmware/pc/pc_check.h"
 #include "firmware/pc/rt_setup.h"
+#include "hal/registry/open_device.h"
 #include "model/io/json.h"
 #include "model/io/program/within.h"
 #include "tools/program/program.h"
@@ -74,7 +75,9 @@ int main(int argc, char** argv) {
   if (const auto status = program.parse(argc, argv)) return *status;
   if (!options.root.empty() && !std::filesystem::is_directory(options.root + "/proc"))
     return program.fail(Error{options.root + ": has no proc/ below it; name a folder that has"});
-  PcQuestion question{.files = PcFiles(options.root), .core = options.core};
+  PcQuestion question{.files = PcFiles(options.root),
+                      .usb = tact::hal::registry::usb_parts(),
+                      .core = options.core};
   // Of a copy the rows choose by its own files.
   if (options.root.empty()) question.core = choose_core({.core = options.core});
   const auto rows = check_pc(question);

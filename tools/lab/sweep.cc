@@ -155,7 +155,7 @@ std::string command_for(const Options& o) {
 }
 
 Result<int> run(const program::Program&, Options& o) {
-  const auto scene = o.scene.load();
+  const auto scene = o.scene.load(hal::registry::visit_device);
   if (!scene) return scene.error();
   if (!o.reference.empty()) {
     const auto presses = sweep::press_reference(*scene, o.reference);

@@ -7,6 +7,8 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "hal/lines_settings.h"
+#include "hal/registry/open_device.h"
 #include "model/io/json.h"
 #include "tools/limits/real_device/consent.h"
 #include "tools/limits/run_plan.h"
@@ -65,9 +67,10 @@ std::optional<Error> ask_for_consent(const Options& o, const Scene& scene) {
         "drives a real device to its limits, so it asks on a terminal first: start it from one "
         "(--help names the flag for a bench that nobody holds)"};
   const double force_N = scene.limits.force_N;
-  fmt::print(stderr, "{}Type: {}\n> ",
-             warning_text(scene.device.kind, force_N, scene.device.lines.wired()),
-             consent_text(force_N));
+  fmt::print(
+      stderr, "{}Type: {}\n> ",
+      warning_text(scene.device.kind, force_N, scene.device.of<tact::hal::LinesSettings>().wired()),
+      consent_text(force_N));
   std::fflush(stderr);
   return read_consent(std::cin, force_N);
 }
@@ -82,7 +85,7 @@ int test_limits(const program::Program& program, const Options& o) {
   if (const auto error = check_number(o.people.number)) return program.fail(*error);
   const auto cases = choose_cases(o.plan);
   if (!cases) return program.fail(cases.error());
-  const auto scene = o.scene.load();
+  const auto scene = o.scene.load(tact::hal::registry::visit_device);
   if (!scene) return program.fail(scene.error());
   // Before the run: a file that changes meanwhile must not get its digest into the report.
   auto evidence = collect_evidence(o.scene.path, o.scene.overrides, o.people);

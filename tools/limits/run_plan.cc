@@ -15,6 +15,7 @@
 #include "firmware/watch/call_filter.h"
 #include "firmware/watch/runaway.h"
 #include "hal/gpio/gpio_lines.h"
+#include "hal/lines_settings.h"
 #include "tools/limits/real_device/guarded_play.h"
 #include "tools/program/interrupt.h"
 #include "tools/program/run_program.h"
@@ -112,7 +113,7 @@ Result<LimitsReport> run_simulated(const model::scene::Scene& scene, const hal::
 
 Result<LimitsReport> run_real(const model::scene::Scene& scene, hal::Device& device,
                               const PlanOptions& options) {
-  auto lines = hal::gpio::open_safety_lines(scene.device.lines);
+  auto lines = hal::gpio::open_safety_lines(scene.device.of<hal::LinesSettings>());
   if (!lines) return Error{fmt::format("{}: {}", scene.path, lines.error().message)};
   std::vector<firmware::pc::Shortfall> shortfalls;
   firmware::pc::use_small_thread_stacks();
@@ -136,7 +137,9 @@ Result<LimitsReport> run_real(const model::scene::Scene& scene, hal::Device& dev
                           .guardian = guardian->get(),
                           .gate_limits = options.gate_limits};
   LimitsReport report = begin_report(scene, info);
-  const auto why = [&scene](const Case& c) { return why_left_out(c, scene.device.lines); };
+  const auto why = [&scene](const Case& c) {
+    return why_left_out(c, scene.device.of<hal::LinesSettings>());
+  };
   const std::vector<Case> cases = possible(options.cases, why, report);
   if (options.wall) report.not_run.push_back({.name = std::string(kWallName), .why = kNeedsHand});
   name_the_rest(report, options);
@@ -155,7 +158,7 @@ Result<LimitsReport> run_real(const model::scene::Scene& scene, hal::Device& dev
 
 }  // namespace
 
-const char* why_left_out(const Case& c, const model::LinesSettings& lines) {
+const char* why_left_out(const Case& c, const hal::LinesSettings& lines) {
   // Nobody can be asked to tear at a device by so many m/s in a given tick.
   if (c.hand != HandMove::kStill || c.grip == Grip::kJaws) return kNeedsHand;
   const bool has_estop = lines.wired() && (lines.estop_a >= 0 || lines.estop_b >= 0);

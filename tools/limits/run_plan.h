@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "hal/lines_settings.h"
 #include "model/result.h"
 #include "tools/limits/real_device/guarded_play.h"
 #include "tools/limits/report/report.h"
@@ -21,7 +22,7 @@ struct PlanOptions {
 
 /// Why a real device cannot play this case; null: it can. A line that is not wired cannot open, so
 /// a fault told in its place would prove nothing.
-const char* why_left_out(const Case& c, const model::LinesSettings& lines);
+const char* why_left_out(const Case& c, const hal::LinesSettings& lines);
 
 /// Opens the device, plays and judges. A real device is played in real time, guarded as tactd's is
 /// (guarded_play.h); the consent comes before (consent.h). An error: the device did not open, or

@@ -68,8 +68,8 @@ void SceneArguments::add_to(CLI::App& options, const std::string& needs) {
   options.add_option("--set", overrides, "one key of the scene, as KEY=VALUE; repeatable");
 }
 
-Result<model::scene::Scene> SceneArguments::load() const {
-  auto scene = model::scene::load_scene(path, overrides);
+Result<model::scene::Scene> SceneArguments::load(model::scene::DeviceKeys device_keys) const {
+  auto scene = model::scene::load_scene(path, overrides, device_keys);
   if (scene) scene->device.trust_library = trust_library;
   return scene;
 }

@@ -79,7 +79,8 @@ struct SceneArguments {
   bool trust_library = false;  // the vendor's, whichever user owns the file
 
   void add_to(CLI::App& options, const std::string& needs = "");
-  model::Result<model::scene::Scene> load() const;
+  /// A program that opens no device needs no keys of devices.
+  model::Result<model::scene::Scene> load(model::scene::DeviceKeys device_keys = nullptr) const;
 };
 
 /// Makes the folder and tries to write there, before an hour of work; an error says what to do.

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "firmware/admission/notes.h"
+#include "hal/lines_settings.h"
 #include "tests/support/test_scene.h"
 
 namespace tact::firmware::admission::grip_note_test {
@@ -32,12 +33,12 @@ TEST(GripNote, IsEmptyOnADeviceThatGripsInAnyWay) {
 
 TEST(GripNote, IsEmptyWhereTheGripLineIsWiredAndOnlyThere) {
   model::scene::Scene scene = gripping_scene();
-  scene.device.lines.grip = 0;
+  scene.device.of<hal::LinesSettings>().grip = 0;
   EXPECT_NE(grip_note(scene, kCannot), "") << "a line without a chip";
-  scene.device.lines.chip = "board";
+  scene.device.of<hal::LinesSettings>().chip = "board";
   EXPECT_EQ(grip_note(scene, kCannot), "");
-  scene.device.lines.grip = -1;
-  scene.device.lines.dead_man = 3;
+  scene.device.of<hal::LinesSettings>().grip = -1;
+  scene.device.of<hal::LinesSettings>().dead_man = 3;
   EXPECT_NE(grip_note(scene, kCannot), "") << "another line";
 }
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "firmware/admission/refusals.h"
+#include "hal/can/can_settings.h"
 
 namespace tact::firmware::admission::unattended_test {
 
@@ -9,7 +10,7 @@ TEST(Unattended, AServiceDoesNotHomeOnAJigThatNobodySees) {
   model::scene::Scene scene;
   for (const char* kind : {"can-odrive", "can-cia402", "can-moteus"}) {
     scene.device.kind = kind;
-    scene.device.can.homing = model::Homing::kJig;
+    scene.device.of<hal::can::CanSettings>().homing = hal::can::Homing::kJig;
     const auto refused = why_not_unattended(scene, true);
     ASSERT_TRUE(refused) << kind;
     EXPECT_NE(refused->message.find("\"absolute\""), std::string::npos) << "the remedy";
@@ -17,11 +18,11 @@ TEST(Unattended, AServiceDoesNotHomeOnAJigThatNobodySees) {
               scene.device.kind == "can-odrive")
         << "the others cannot";
     EXPECT_FALSE(why_not_unattended(scene, false)) << "a person sees the arms";
-    scene.device.can.homing = model::Homing::kAbsolute;
+    scene.device.of<hal::can::CanSettings>().homing = hal::can::Homing::kAbsolute;
     EXPECT_FALSE(why_not_unattended(scene, true));
   }
   scene.device.kind = "sim-delta";
-  scene.device.can.homing = model::Homing::kJig;
+  scene.device.of<hal::can::CanSettings>().homing = hal::can::Homing::kJig;
   EXPECT_FALSE(why_not_unattended(scene, true)) << "has no drives";
 }
 

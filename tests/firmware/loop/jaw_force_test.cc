@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "firmware/loop/rt_loop.h"
+#include "hal/registry/open_device.h"
 #include "hal/safety_lines.h"
 #include "hal/sim/sim_delta.h"
 #include "model/scene/scene.h"
@@ -76,9 +77,9 @@ class LiverJaws : public testing::Test {
   }
 
   const model::scene::Scene scene_ =
-      std::move(*model::scene::load_scene(TACT_SOURCE_DIR "/model/scenes/liver.toml", {}));
+      std::move(*hal::registry::load_scene(TACT_SOURCE_DIR "/model/scenes/liver.toml", {}));
   std::unique_ptr<model::scene::Tissue> tissue_ = std::move(*model::scene::make_tissue(scene_));
-  hal::sim::SimDelta device_{scene_.device.sim, scene_.hand};
+  hal::sim::SimDelta device_{scene_.device.of<hal::sim::SimDeviceSettings>(), scene_.hand};
   hal::NoSafetyLines lines_;
   Controller controller_{tissue_->contact_scene(), gate::Gate(scene_.limits, 0.001, 1.0), true,
                          gate::GripGate::make(scene_.limits, 0.001, 1.0)};

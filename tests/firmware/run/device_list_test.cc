@@ -4,20 +4,20 @@
 #include <nlohmann/json.hpp>
 
 #include "firmware/run/lists.h"
+#include "hal/registry/open_device.h"
 #include "tests/support/program.h"
 
 namespace tact::firmware::run::device_list_test {
 
 using hal::list::FoundPart;
-using hal::list::PartKind;
 
-const std::vector<FoundPart> kParts{{.kind = PartKind::kCan,
+const std::vector<FoundPart> kParts{{.kind = "can",
                                      .name = "can0",
                                      .what = "CAN interface, down",
                                      .scene = "device.can.interface = \"can0\"",
                                      .lacking = "it is down",
                                      .remedy = "ip link set can0 up"},
-                                    {.kind = PartKind::kFalcon,
+                                    {.kind = "falcon",
                                      .name = "1-2",
                                      .what = "Novint Falcon",
                                      .scene = "device.kind = \"falcon\"",
@@ -30,7 +30,7 @@ bool has(const std::string& text, const std::string& part) {
 
 TEST(DeviceList, TellsWhatIsReadyWhatLacksAndWhatIsNotThere) {
   EXPECT_EQ(
-      devices_as_text(kParts),
+      devices_as_text(kParts, hal::registry::usb_parts()),
       "can0: CAN interface, down\n"
       "  not ready: it is down\n"
       "  remedy: ip link set can0 up\n"

@@ -18,6 +18,7 @@
 #include "firmware/gate/limits_for.h"
 #include "firmware/loop/rt_loop.h"
 #include "hal/mounting.h"
+#include "hal/phantom/phantom_device.h"
 #include "hal/registry/open_device.h"
 #include "model/scene/tissue.h"
 #include "model/time_ns.h"
@@ -74,8 +75,9 @@ class LedHd : public LedDevice {
  public:
   std::vector<std::string> keys() const override {
     const auto scene = tests::phantom_scene();
-    return {"device.kind=\"phantom\"", "device.phantom.library=\"" + tests::kStubHdLibrary + "\"",
-            "device.phantom.name=\"" + scene.device.phantom.name + "\""};
+    return {
+        "device.kind=\"phantom\"", "device.phantom.library=\"" + tests::kStubHdLibrary + "\"",
+        "device.phantom.name=\"" + scene.device.of<hal::phantom::PhantomSettings>().name + "\""};
   }
   void lead(const Vec3& at_m, const Rows& turn, double grip_ratio) override {
     constexpr unsigned kButtons = 0x2000;
@@ -135,7 +137,7 @@ class TwistOnRealDevices : public testing::TestWithParam<RealDevice> {
                                          turned_deg.y, turned_deg.z),
                              "organ.position_m=[0, 0, -0.123]", "hand.site_m=[0, 0, -0.093]",
                              "hand.home_m=[0, 0, -0.073]"});
-    auto loaded = model::scene::load_scene(TACT_SOURCE_DIR "/model/scenes/liver_twist.toml", keys);
+    auto loaded = hal::registry::load_scene(TACT_SOURCE_DIR "/model/scenes/liver_twist.toml", keys);
     ASSERT_EQ(tests::message_of(loaded), "");
     scene_ = std::move(*loaded);
     scene_.device.trust_library = true;

@@ -21,7 +21,7 @@ using tests::message_of;
 // other tells; what arrives names only what the organ has. (That no shape is half of another is for
 // latest_slot_test and, here, the thread sanitizer.)
 TEST(Telemetry, TheShapeOfAPatchReachesThePageWhole) {
-  const auto scene = model::scene::load_scene(TACT_SOURCE_DIR "/model/scenes/gum.toml", {});
+  const auto scene = hal::registry::load_scene(TACT_SOURCE_DIR "/model/scenes/gum.toml", {});
   ASSERT_TRUE(scene) << scene.error().message;
   const auto tissue = std::move(*model::scene::make_tissue(*scene));
   const auto device = std::move(*hal::registry::open_device(*scene));

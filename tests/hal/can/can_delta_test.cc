@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "hal/can/can_settings.h"
 #include "hal/mounting.h"
 #include "hal/sim/sim_delta_model.h"
 #include "model/units.h"
@@ -21,18 +22,20 @@ using tests::published_pose;
 
 /// Turns of the motors for these angles, by the header's first line.
 delta::Joints turns_for(const delta::Joints& theta_rad, const model::DeviceSettings& settings) {
-  const auto &zero = settings.can.zero_turns, &sign = settings.can.direction;
+  const auto &zero = settings.of<CanSettings>().zero_turns,
+             &sign = settings.of<CanSettings>().direction;
   delta::Joints out{};
   for (std::size_t i = 0; i < 3; ++i)
-    out[i] = zero[i] + sign[i] * theta_rad[i] * settings.delta.gear_ratio / 2 / std::numbers::pi;
+    out[i] = zero[i] + sign[i] * theta_rad[i] * settings.of<DeltaSettings>().gear_ratio / 2 /
+                           std::numbers::pi;
   return out;
 }
 
 model::DeviceSettings absolute_settings() {
   model::DeviceSettings settings = tests::example_delta();
-  settings.can.homing = model::Homing::kAbsolute;
-  settings.can.zero_turns = {0.25, -3.0, 100.0};
-  settings.can.direction = {1.0, -1.0, -1.0};
+  settings.of<CanSettings>().homing = Homing::kAbsolute;
+  settings.of<CanSettings>().zero_turns = {0.25, -3.0, 100.0};
+  settings.of<CanSettings>().direction = {1.0, -1.0, -1.0};
   return settings;
 }
 
@@ -40,7 +43,7 @@ TEST(CanDelta, TurnsBecomeThePublishedPoses) {
   const auto settings = absolute_settings();
   for (std::size_t index = 0; index < 5; ++index) {
     const auto pose = published_pose(index);
-    CanDelta delta(settings.delta, settings.can);
+    CanDelta delta(settings.of<DeltaSettings>(), settings.of<CanSettings>());
     Tool tool;
     ASSERT_FALSE(delta.measure(turns_for(pose.theta_rad, settings), 1'000'000, tool));
     EXPECT_NEAR(tool.position_m.x, pose.position_D_m.z - 0.345, 1e-9);
@@ -54,9 +57,9 @@ TEST(CanDelta, TurnsBecomeThePublishedPoses) {
 TEST(CanDelta, HoldsItsArmsAgainstGravityInSixMountings) {
   const auto settings = absolute_settings();
   const auto pose = published_pose();
-  const delta::DeltaKinematics kinematics(delta_geometry(settings.delta));
+  const delta::DeltaKinematics kinematics(settings.of<DeltaSettings>());
   for (const auto& one : tests::kMountings) {
-    CanDelta delta(settings.delta, settings.can,
+    CanDelta delta(settings.of<DeltaSettings>(), settings.of<CanSettings>(),
                    mounting_of(tests::settings_of(one)).gravity_in_base_mps2());
     Tool tool;
     ASSERT_FALSE(delta.measure(turns_for(pose.theta_rad, settings), 1'000'000, tool));
@@ -64,10 +67,12 @@ TEST(CanDelta, HoldsItsArmsAgainstGravityInSixMountings) {
     // Down in the axes of D, by hand: x of the base is z of D, z is x, y is -y.
     const Vec3 down_D{one.down_B.z, -one.down_B.y, one.down_B.x};
     const delta::Joints held_Nm = gravity_torques_Nm(
-        kinematics.geometry(), delta_masses(settings.delta),
+        kinematics.geometry(), settings.of<DeltaSettings>(),
         kinematics.pose(pose.position_D_m, pose.theta_rad), model::kGravity_mps2 * down_D);
     for (std::size_t i = 0; i < 3; ++i)
-      EXPECT_NEAR(motors_Nm[i], settings.can.direction[i] * held_Nm[i] / settings.delta.gear_ratio,
+      EXPECT_NEAR(motors_Nm[i],
+                  settings.of<CanSettings>().direction[i] * held_Nm[i] /
+                      settings.of<DeltaSettings>().gear_ratio,
                   1e-9)
           << one.words << ", arm " << i;
   }
@@ -76,7 +81,7 @@ TEST(CanDelta, HoldsItsArmsAgainstGravityInSixMountings) {
 TEST(CanDelta, AJigSetsTheZeroWhereverTheEncodersBegan) {
   const auto pose = published_pose();
   const auto settings = jig_settings(pose);
-  CanDelta delta(settings.delta, settings.can);
+  CanDelta delta(settings.of<DeltaSettings>(), settings.of<CanSettings>());
   const delta::Joints turns{12.5, -7.25, 1e4};
   delta.home_on_jig(turns);
   const delta::Joints theta = delta.theta_rad(turns);
@@ -91,7 +96,7 @@ TEST(CanDelta, MotorPowerIsThePowerAtTheHand) {
   // sum tau_motor omega_motor = F . v, gravity aside: gear and signs cannot both be wrong.
   const auto settings = absolute_settings();
   const auto pose = published_pose(2);
-  CanDelta delta(settings.delta, settings.can);
+  CanDelta delta(settings.of<DeltaSettings>(), settings.of<CanSettings>());
   const Vec3 force{2.0, -1.0, 3.0};
   const double h_s = 1e-3;
   const delta::Joints turns = turns_for(pose.theta_rad, settings);
@@ -111,7 +116,7 @@ TEST(CanDelta, MotorPowerIsThePowerAtTheHand) {
 
 TEST(CanDelta, ForceAboveTheLimitKeepsItsDirection) {
   const auto settings = absolute_settings();
-  CanDelta delta(settings.delta, settings.can);
+  CanDelta delta(settings.of<DeltaSettings>(), settings.of<CanSettings>());
   Tool tool;
   delta.measure(turns_for(published_pose().theta_rad, settings), 0, tool);
   const Vec3 along = normalized(Vec3{1.0, 2.0, -2.0});
@@ -122,8 +127,8 @@ TEST(CanDelta, ForceAboveTheLimitKeepsItsDirection) {
 
 TEST(CanDelta, NoTorqueIsEverAboveTheLimitOfAnArm) {
   auto settings = absolute_settings();
-  settings.delta.max_joint_torque_Nm = 0.3;  // less than gravity alone
-  CanDelta delta(settings.delta, settings.can);
+  settings.of<DeltaSettings>().max_joint_torque_Nm = 0.3;  // less than gravity alone
+  CanDelta delta(settings.of<DeltaSettings>(), settings.of<CanSettings>());
   Tool tool;
   delta.measure(turns_for(published_pose().theta_rad, settings), 0, tool);
   for (const double size_N : {0.0, 1.0, 20.0})
@@ -133,7 +138,7 @@ TEST(CanDelta, NoTorqueIsEverAboveTheLimitOfAnArm) {
 
 TEST(CanDelta, WithoutAPoseThereIsNoTorqueAndWithoutANumberNoForce) {
   const auto settings = absolute_settings();
-  CanDelta delta(settings.delta, settings.can);
+  CanDelta delta(settings.of<DeltaSettings>(), settings.of<CanSettings>());
   EXPECT_EQ(delta.motor_torques_Nm({1.0, 1.0, 1.0}), delta::Joints{});
   Tool tool;
   delta.measure(turns_for(published_pose().theta_rad, settings), 0, tool);
@@ -144,7 +149,7 @@ TEST(CanDelta, WithoutAPoseThereIsNoTorqueAndWithoutANumberNoForce) {
 
 TEST(CanDelta, AnglesThatCannotBeLoseTheHomingAndTouchNothing) {
   const auto settings = absolute_settings();
-  CanDelta delta(settings.delta, settings.can);
+  CanDelta delta(settings.of<DeltaSettings>(), settings.of<CanSettings>());
   Tool tool;
   tool.position_m = {1.0, 2.0, 3.0};
   const double nan = std::nan("");
@@ -153,7 +158,7 @@ TEST(CanDelta, AnglesThatCannotBeLoseTheHomingAndTouchNothing) {
     const auto lost = delta.measure(turns_for(theta, settings), 0, tool);
     ASSERT_TRUE(lost);
     EXPECT_EQ(lost->fault, Fault::kHomingLost);
-    EXPECT_FALSE(homing_trouble(*lost, settings.delta).empty());
+    EXPECT_FALSE(homing_trouble(*lost, settings.of<DeltaSettings>()).empty());
     EXPECT_TRUE(delta.check_home(turns_for(theta, settings)));
   }
   EXPECT_EQ(tool.position_m, (Vec3{1.0, 2.0, 3.0}));
@@ -164,8 +169,8 @@ TEST(CanDelta, AnglesThatCannotBeLoseTheHomingAndTouchNothing) {
 
 TEST(CanDelta, RodsThatCannotMeetLoseTheHoming) {
   auto settings = absolute_settings();
-  settings.delta.forearm_m = 0.2;
-  const CanDelta delta(settings.delta, settings.can);
+  settings.of<DeltaSettings>().forearm_m = 0.2;
+  const CanDelta delta(settings.of<DeltaSettings>(), settings.of<CanSettings>());
   const auto error = delta.check_home(turns_for({0.0, 0.0, 0.0}, settings));
   ASSERT_TRUE(error);
   EXPECT_NE(error->message.find("no platform can lie"), std::string::npos);
@@ -174,7 +179,7 @@ TEST(CanDelta, RodsThatCannotMeetLoseTheHoming) {
 TEST(CanDelta, VelocityStartsAnewAfterAGap) {
   const auto settings = absolute_settings();
   const auto pose = published_pose();
-  CanDelta delta(settings.delta, settings.can);
+  CanDelta delta(settings.of<DeltaSettings>(), settings.of<CanSettings>());
   delta::Joints theta = pose.theta_rad;
   Tool tool;
   std::int64_t now_ns = 0;
@@ -193,7 +198,8 @@ TEST(CanDelta, VelocityStartsAnewAfterAGap) {
 
 TEST(CanDelta, TellsWhatTheDeviceIsAtTheTool) {
   const auto settings = absolute_settings();
-  const auto info = CanDelta(settings.delta, settings.can).info("x", 100'000.0, 1.5e-3);
+  const auto info = CanDelta(settings.of<DeltaSettings>(), settings.of<CanSettings>())
+                        .info("x", 100'000.0, 1.5e-3);
   ASSERT_TRUE(info.at_tool);
   EXPECT_EQ(info.max_force_N, 20.0);
   EXPECT_EQ(info.at_tool->delay_s, 1.5e-3);

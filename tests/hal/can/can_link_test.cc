@@ -69,8 +69,8 @@ Bytes can_message(std::uint32_t bitrate, std::uint32_t state, std::uint32_t rest
 }
 
 std::string refusal(const CanLink& link, int bits = 690, double rate_Hz = 1000.0) {
-  const auto error = check_can_link(link, "can0", bits, rate_Hz);
-  return error ? error->message : "";
+  const auto why = check_can_link(link, "can0", bits, rate_Hz);
+  return why ? why->error(": ").message : "";
 }
 
 TEST(CanLink, ReadsWhatTheKernelTellsOfAController) {
@@ -163,8 +163,8 @@ TEST(CanLink, ReadsWhetherAnInterfaceCarriesCanFdAndHowFast) {
 
 TEST(CanLink, ALinkForCanFdIsHeldToMoreThanOneForClassicFrames) {
   const auto refusal_fd = [](const CanLink& link, double rate_Hz = 1000.0) {
-    const auto error = check_can_link(link, "can0", {.slow = 273, .fast = 1908}, rate_Hz);
-    return error ? error->message : std::string();
+    const auto why = check_can_link(link, "can0", {.slow = 273, .fast = 1908}, rate_Hz);
+    return why ? why->error(": ").message : std::string();
   };
   const CanLink good{.index = 7,
                      .is_can = true,

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "hal/can/can_open.h"
+#include "hal/can/can_settings.h"
 #include "tests/support/forked.h"
 #include "tests/support/message.h"
 
@@ -11,16 +12,16 @@ using tests::Forked;
 using tests::message_of;
 
 /// Of an interface that every machine has, with nodes that no other run of these tests takes.
-model::CanSettings drives(int first) {
+CanSettings drives(int first) {
   static const int mine = 10 * getpid();  // of the parent, in a child, too
-  model::CanSettings settings;
+  CanSettings settings;
   settings.interface = "lo";
   settings.node = {mine + first, mine + first + 1, mine + first + 2};
   return settings;
 }
 
 TEST(CanLock, ADriveOfAnotherProgramIsRefused) {
-  const model::CanSettings theirs = drives(1);
+  const CanSettings theirs = drives(1);
   const Forked other([&] { lock_drives(theirs, false); });
   EXPECT_EQ(message_of(lock_drives(drives(4), false)), "") << "drives of their own";
   const std::string said = message_of(lock_drives(drives(3), false));
@@ -29,14 +30,14 @@ TEST(CanLock, ADriveOfAnotherProgramIsRefused) {
 }
 
 TEST(CanLock, OnlyOneGivesSyncOnABus) {
-  const model::CanSettings theirs = drives(1);
+  const CanSettings theirs = drives(1);
   const Forked other([&] { lock_drives(theirs, true); });
   EXPECT_NE(message_of(lock_drives(drives(4), true)).find("the SYNC of lo"), std::string::npos);
   EXPECT_EQ(message_of(lock_drives(drives(4), false)), "");
 }
 
 TEST(CanLock, AnInterfaceThatIsNotThereIsNotItsMatter) {
-  model::CanSettings settings = drives(1);
+  CanSettings settings = drives(1);
   settings.interface = "can-none";
   EXPECT_EQ(message_of(lock_drives(settings, true)), "");
 }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "hal/can/can_settings.h"
 #include "hal/cia402/cia402_delta.h"
 #include "tests/hal/cia402/cia402_drives.h"
 #include "tests/support/can_bench.h"
@@ -25,7 +26,7 @@ struct Bench : tests::CanBench<tests::PlayedCia402s> {
 
 TEST(Cia402BringUp, WritesEverySettingToEveryDriveAndStartsThem) {
   Bench bench;
-  bench.settings.can.command_at_sync = true;
+  bench.settings.of<Cia402Settings>().command_at_sync = true;
   ASSERT_EQ(bench.open(500.0), "");
   for (auto& axis : bench.drives.axis) {
     const auto node = static_cast<std::uint32_t>(axis.node);
@@ -200,7 +201,7 @@ TEST(Cia402BringUp, ArmsAreHomedOrToldWhyNot) {
   Bench moving, beyond;
   moving.drives.axis[1].turns_per_s = 1.0;
   moving.expect_refused("arm 2 (node 2 on can0) moves");
-  beyond.settings.can.homing = model::Homing::kAbsolute;
+  beyond.settings.of<can::CanSettings>().homing = can::Homing::kAbsolute;
   beyond.drives.axis[0].turns = -4.0;
   beyond.expect_refused("the delta is not homed: arm 1 would be at -144 degrees");
 }
@@ -209,9 +210,9 @@ TEST(Cia402BringUp, NumbersThatCannotWorkAreRefusedAtOnce) {
   Bench fast, uneven, node, index;
   fast.expect_refused("rate_Hz is 2000", 2000.0);
   uneven.expect_refused("rate_Hz is 300", 300.0);
-  node.settings.can.node = {1, 2, 127};
+  node.settings.of<can::CanSettings>().node = {1, 2, 127};
   node.expect_refused("a CANopen drive's node is 1 to 126");
-  index.settings.can.homing = model::Homing::kIndex;
+  index.settings.of<can::CanSettings>().homing = can::Homing::kIndex;
   index.expect_refused("is for ODrives");
 }
 

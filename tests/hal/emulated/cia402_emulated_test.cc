@@ -4,7 +4,9 @@
 
 #include <utility>
 
+#include "hal/can/can_settings.h"
 #include "hal/cia402/cia402_cst.h"
+#include "hal/cia402/cia402_delta.h"
 #include "hal/cia402/cia402_state.h"
 #include "hal/cia402/heartbeat_guard.h"
 #include "tests/hal/emulated/cia402_emulated_bench.h"
@@ -171,14 +173,14 @@ TEST(Cia402Emulated, ARatedTorqueThatNoDriveTellsStandsInTheScene) {
                          "device.can.rated_torque_Nm"),
             std::string::npos)
       << message;
-  reported.settings.can.rated_torque_Nm = kRated_Nm;
+  reported.settings.of<cia402::Cia402Settings>().rated_torque_Nm = kRated_Nm;
   ASSERT_TRUE(reported.run());
   reported.expect_torques_of({1.0, -2.0, 3.0});
 }
 
 TEST(Cia402Emulated, ARatedTorqueOfTheSceneOverridesTheDrives) {
   Bench bench;
-  bench.settings.can.rated_torque_Nm = 2.0 * kRated_Nm;
+  bench.settings.of<cia402::Cia402Settings>().rated_torque_Nm = 2.0 * kRated_Nm;
   ASSERT_TRUE(bench.run());
   for (int i = 0; i < 3; ++i) bench.tick({1.0, -2.0, 3.0});
   const auto wanted = tests::expected_motor_Nm(bench.settings, published_pose(), {1.0, -2.0, 3.0});

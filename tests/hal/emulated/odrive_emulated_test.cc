@@ -10,7 +10,7 @@
 
 namespace tact::hal::emulated::odrive_emulated_test {
 
-using model::Homing;
+using can::Homing;
 using rig::OdriveGeneration;
 using tests::published_pose;
 
@@ -22,7 +22,7 @@ struct Bench : tests::CanBench<Drives> {
   explicit Bench(const rig::OdriveSettings& drive = {.generation = OdriveGeneration::k05},
                  Homing homing = Homing::kJig)
       : CanBench(tests::jig_settings(published_pose())) {
-    settings.can.homing = homing;
+    settings.of<can::CanSettings>().homing = homing;
     drives.install<rig::OdriveDrive>(drive);
     if (homing != Homing::kJig) put_arms_at(published_pose().theta_rad);
   }
@@ -30,8 +30,8 @@ struct Bench : tests::CanBench<Drives> {
   void put_arms_at(const delta::Joints& theta_rad) {
     for (std::size_t i = 0; i < 3; ++i) {
       const double sign = i == 1 ? -1.0 : 1.0;
-      drives.motor[i].position_turns =
-          sign * settings.delta.gear_ratio * theta_rad[i] / (2.0 * std::numbers::pi);
+      drives.motor[i].position_turns = sign * settings.of<can::DeltaSettings>().gear_ratio *
+                                       theta_rad[i] / (2.0 * std::numbers::pi);
     }
   }
   /// How far the tool is told from where the arms are, m.
@@ -191,7 +191,7 @@ TEST(OdriveEmulated, WhatTheVendorsVelocityLimitCutsIsToldWithTheDrivesOwnNumber
   Bench bench(kAsDelivered);
   ASSERT_EQ(bench.open(), "");
   const std::string caution = bench.device->info().caution;
-  const auto reported = odrive::odrive_velocity_limit(bench.settings.delta, 2.0);
+  const auto reported = odrive::odrive_velocity_limit(bench.settings.of<can::DeltaSettings>(), 2.0);
   EXPECT_NE(caution.find("may cut torque above 0.33 N m at rest, of the 0.74 N m"),
             std::string::npos)
       << caution;
@@ -209,9 +209,9 @@ TEST(OdriveEmulated, WhatTheVendorsVelocityLimitCutsIsToldWithTheDrivesOwnNumber
 
 TEST(OdriveEmulated, AVelocityLimitOfTheSceneLetsAllTorquePassAndIsNotWarnedOf) {
   Bench bench(kAsDelivered);
-  bench.settings.can.max_velocity_turns_per_s =
-      odrive::odrive_velocity_limit(bench.settings.delta, 2.0).least_turns_per_s;
-  bench.settings.can.max_current_A = 20.0;
+  bench.settings.of<odrive::OdriveSettings>().max_velocity_turns_per_s =
+      odrive::odrive_velocity_limit(bench.settings.of<can::DeltaSettings>(), 2.0).least_turns_per_s;
+  bench.settings.of<odrive::OdriveSettings>().max_current_A = 20.0;
   ASSERT_EQ(bench.open(), "");
   EXPECT_EQ(bench.device->info().caution, "");
   ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->trouble();
@@ -223,8 +223,8 @@ TEST(OdriveEmulated, AVelocityLimitOfTheSceneLetsAllTorquePassAndIsNotWarnedOf) 
 
 TEST(OdriveEmulated, AVelocityLimitOfTheSceneThatMayCutTorqueAtRestIsRefused) {
   Bench bench(kAsDelivered);
-  bench.settings.can.max_velocity_turns_per_s = 3.0;
-  bench.settings.can.max_current_A = 20.0;
+  bench.settings.of<odrive::OdriveSettings>().max_velocity_turns_per_s = 3.0;
+  bench.settings.of<odrive::OdriveSettings>().max_current_A = 20.0;
   const std::string message = bench.open();
   EXPECT_NE(message.find("max_velocity_turns_per_s = 3 may cut torque above 0.50 N m at rest"),
             std::string::npos)

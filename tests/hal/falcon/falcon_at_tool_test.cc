@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "hal/falcon/falcon_device.h"
 #include "hal/falcon/falcon_kinematics.h"
 #include "hal/falcon/falcon_packets.h"
 
@@ -12,8 +13,8 @@ namespace tact::hal::falcon::falcon_at_tool_test {
 
 const FalconKinematics kFalcon;
 
-model::FalconSettings settings() {
-  model::FalconSettings s;
+FalconSettings settings() {
+  FalconSettings s;
   s.joint_damping_Nms_per_rad = 0.01;
   s.joint_friction_Nm = 0.02;
   return s;
@@ -48,14 +49,14 @@ TEST(FalconAtTool, IsThatOfTheWorstPoseInTheWorkspace) {
 }
 
 TEST(FalconAtTool, TheChipsTimerCountsWhereTheEventCharacterIsOff) {
-  model::FalconSettings s = settings();
+  FalconSettings s = settings();
   EXPECT_EQ(falcon_at_tool(kFalcon, s).delay_s, 2e-3);
   s.event_character = false;
   EXPECT_EQ(falcon_at_tool(kFalcon, s).delay_s, 3e-3);
 }
 
 TEST(FalconAtTool, ForceGrowsWithSmallerGainsUpToThatOfTheDevice) {
-  model::FalconSettings s = settings();
+  FalconSettings s = settings();
   const double weak_N = falcon_max_force_N(kFalcon, s);  // 10 000 words per N m: 0.41 N m at most
   EXPECT_NEAR(weak_N, 4.52, 0.05);
   s.gain_words_per_Nm = {8000.0, 8000.0, 8000.0};

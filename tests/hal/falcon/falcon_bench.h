@@ -51,8 +51,8 @@ class ScriptedPipe final : public falcon::FalconPipe {
   int commands = 0, stops = 0, fd = -1;
 };
 
-inline model::FalconSettings falcon_settings() {
-  model::FalconSettings settings;
+inline hal::falcon::FalconSettings falcon_settings() {
+  hal::falcon::FalconSettings settings;
   settings.gain_words_per_Nm = {8000.0, 9000.0, 10000.0};
   return settings;
 }
@@ -67,7 +67,7 @@ inline falcon::FalconReport homed_at(const Vec3& p_W) {
 }
 
 /// What the hand feels of these words: K^T tau, tau = -(word / gain).
-inline Vec3 force_of(const falcon::FalconWords& words, const model::FalconSettings& s,
+inline Vec3 force_of(const falcon::FalconWords& words, const hal::falcon::FalconSettings& s,
                      const Vec3& p_W) {
   const falcon::FalconKinematics kinematics;
   const model::Mat3 k =
@@ -79,7 +79,7 @@ inline Vec3 force_of(const falcon::FalconWords& words, const model::FalconSettin
 }
 
 struct FalconBench {
-  explicit FalconBench(const model::FalconSettings& settings = falcon_settings())
+  explicit FalconBench(const hal::falcon::FalconSettings& settings = falcon_settings())
       : owned(std::make_unique<ScriptedPipe>()),
         pipe(owned.get()),
         device(settings, std::move(owned)) {}

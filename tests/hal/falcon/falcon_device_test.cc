@@ -51,7 +51,7 @@ TEST(FalconDevice, IsFreshWhenAllAxesAreHomedAndForgetsWhatWasBefore) {
 
 TEST(FalconDevice, KeepsTheHomingRequestOnlyIfItIsTold) {
   for (const bool keep : {true, false}) {
-    model::FalconSettings settings = falcon_settings();
+    hal::falcon::FalconSettings settings = falcon_settings();
     settings.keep_homing = keep;
     FalconBench bench(settings);
     bench.tick();
@@ -141,7 +141,7 @@ TEST(FalconDevice, ItsForceLimitCanBeMadeEverywhere) {
 }
 
 TEST(FalconDevice, TheDeadBandIsAddedAlongTheTorqueAndNotAtRest) {
-  model::FalconSettings settings = falcon_settings();
+  hal::falcon::FalconSettings settings = falcon_settings();
   FalconBench plain(settings);
   settings.dead_band_words = {150.0, 200.0, 250.0};
   FalconBench banded(settings);
@@ -163,7 +163,7 @@ TEST(FalconDevice, TheDeadBandIsAddedAlongTheTorqueAndNotAtRest) {
 }
 
 TEST(FalconDevice, HoldsItsOwnWeightUp) {
-  model::FalconSettings settings = falcon_settings();
+  hal::falcon::FalconSettings settings = falcon_settings();
   settings.moving_mass_kg = 0.1;
   FalconBench bench(settings);
   bench.home({0.01, 0.0, 0.0});
@@ -173,7 +173,7 @@ TEST(FalconDevice, HoldsItsOwnWeightUp) {
 }
 
 TEST(FalconDevice, ItsWeightIsHeldFirstAndTheForceKeepsItsDirectionBesideIt) {
-  model::FalconSettings settings = falcon_settings();
+  hal::falcon::FalconSettings settings = falcon_settings();
   settings.moving_mass_kg = 0.2;
   FalconBench bench(settings);
   bench.home();

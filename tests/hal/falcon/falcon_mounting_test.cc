@@ -2,6 +2,7 @@
 // A Falcon that hangs or stands holds its own weight along where down is.
 #include <gtest/gtest.h>
 
+#include "hal/falcon/falcon_device.h"
 #include "hal/mounting.h"
 #include "tests/hal/falcon/falcon_bench.h"
 #include "tests/support/mountings.h"
@@ -9,7 +10,7 @@
 namespace tact::tests::falcon_mounting_test {
 
 TEST(FalconMounting, HoldsItsOwnWeightInSixMountings) {
-  model::FalconSettings settings = falcon_settings();
+  hal::falcon::FalconSettings settings = falcon_settings();
   settings.moving_mass_kg = 0.1;
   for (const auto& one : kMountings) {
     FalconBench bench(settings);

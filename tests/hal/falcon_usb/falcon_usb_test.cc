@@ -8,8 +8,8 @@
 
 #include "hal/falcon/falcon_device.h"
 #include "hal/falcon_usb/falcon_open.h"
+#include "hal/permission.h"
 #include "hal/registry/open_device.h"
-#include "hal/udev_rules.h"
 #include "tests/hal/falcon_usb/fake_libusb.h"
 
 namespace tact::hal::falcon_usb::falcon_usb_test {
@@ -64,7 +64,7 @@ TEST_F(FalconUsbTest, SeveralNeedABusPath) {
 
 TEST_F(FalconUsbTest, WithoutPermissionTheRuleAndItsRemedyAreNamed) {
   usb.open_error = LIBUSB_ERROR_ACCESS;
-  expect_refusal({kFalconRule, kRuleRemedy, "/dev/bus/usb/001/004"});
+  expect_refusal({falcon::kFalconParts[0].rule, kRuleRemedy, "/dev/bus/usb/001/004"});
 }
 
 TEST_F(FalconUsbTest, ARefusalThatUdevEndsIsNotTold) {
@@ -182,7 +182,7 @@ TEST_F(FalconUsbTest, TheSceneIsNamedInWhatAPersonReads) {
 }
 
 TEST_F(FalconUsbTest, UsbfsTakesOverOnlyWhenLibusbHasLetGo) {
-  model::FalconSettings settings;  // the node of the fake does not exist
+  falcon::FalconSettings settings;  // the node of the fake does not exist
   const auto device = falcon_usb::open_falcon_device(settings);
   ASSERT_FALSE(device);
   EXPECT_NE(device.error().message.find("/dev/bus/usb/001/004"), std::string::npos);

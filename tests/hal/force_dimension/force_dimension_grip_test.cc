@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "hal/force_dimension/device_types.h"
+#include "hal/force_dimension/force_dimension_device.h"
 #include "tests/support/device_loop.h"
 #include "tests/support/stub_dhd/stub_client.h"
 
@@ -40,7 +41,7 @@ TEST_F(ForceDimensionGrip, AGripperTellsHowFarItIsClosedOnEitherHand) {
 TEST_F(ForceDimensionGrip, TheSceneMaySayHowFarTheGripperOpens) {
   stub.set_type(35);
   auto scene = tests::stub_scene();
-  scene.device.force_dimension.gripper_open_rad = 0.4;
+  scene.device.of<ForceDimensionSettings>().gripper_open_rad = 0.4;
   DeviceLoop::open(scene);
   stub.grip(0.1, 0);
   ASSERT_TRUE(ready());

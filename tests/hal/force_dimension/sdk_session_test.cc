@@ -5,6 +5,7 @@
 
 #include <cstring>
 
+#include "hal/force_dimension/force_dimension_device.h"
 #include "hal/force_dimension/sdk_library.h"
 #include "tests/support/stub_dhd/stub_client.h"
 #include "tests/support/usb_folders.h"
@@ -29,7 +30,7 @@ class Session : public testing::Test {
   }
 
   tests::StubDhd stub;
-  model::ForceDimensionSettings settings = tests::stub_scene().device.force_dimension;
+  ForceDimensionSettings settings = tests::stub_scene().device.of<ForceDimensionSettings>();
   bool trusted = true;
 };
 

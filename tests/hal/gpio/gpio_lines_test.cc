@@ -10,7 +10,7 @@
 #include <fstream>
 
 #include "hal/gpio/edge_monitor.h"
-#include "hal/udev_rules.h"
+#include "hal/lines_settings.h"
 #include "tests/support/no_alloc.h"
 
 namespace tact::hal::gpio::gpio_lines_test {
@@ -64,8 +64,8 @@ GpioChip board() {
           .bus = {},
           .error = 0};
 }
-model::LinesSettings wired() {
-  model::LinesSettings lines;
+LinesSettings wired() {
+  LinesSettings lines;
   lines.chip = "pci-idio-16";
   lines.estop_a = 16, lines.estop_b = 17, lines.enable = 0, lines.heartbeat = 1;
   return lines;

@@ -9,6 +9,7 @@
 
 #include "hal/gpio/gpio_lines.h"
 #include "hal/gpio/line_request.h"
+#include "hal/lines_settings.h"
 
 namespace tact::hal::gpio {
 namespace {
@@ -97,7 +98,7 @@ class GpioWiring : public testing::Test {
                          settings_);
   }
 
-  model::LinesSettings settings_;
+  LinesSettings settings_;
 };
 
 TEST_F(GpioWiring, ALineThatTheChipRefusesIsAnErrorAndNotAnUnwiredLine) {

@@ -8,7 +8,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "hal/udev_rules.h"
+#include "hal/falcon/falcon_device.h"
+#include "hal/force_dimension/force_dimension_device.h"
+#include "hal/phantom/phantom_device.h"
+#include "hal/registry/open_device.h"
 
 namespace tact::hal::list::list_devices_test {
 
@@ -39,6 +42,7 @@ class ListDevices : public testing::Test {
     fs::remove_all(root_);
     fs::create_directories(root_ + "/sys");
     probes.roots = {.sys = root_ + "/sys", .dev = root_ + "/dev"};
+    probes.usb = registry::usb_parts();
     probes.access_error = all_may;
   }
   ~ListDevices() override { fs::remove_all(root_); }
@@ -116,7 +120,7 @@ TEST_F(ListDevices, AFalconIsFoundAmongOtherFtdiAdapters) {
   usb("1-1", "0403", "6001", "ftdi_sio");
   usb("1-2.3", "0403", "cb48");
   const FoundPart part = only();
-  EXPECT_EQ(part.kind, PartKind::kFalcon);
+  EXPECT_EQ(part.kind, "falcon");
   EXPECT_EQ(part.what, "Novint Falcon, USB 0403:cb48");
   EXPECT_EQ(part.scene, "device.kind = \"falcon\", device.falcon.bus_path = \"1-2.3\"");
   EXPECT_EQ(part.lacking, "");
@@ -136,7 +140,7 @@ TEST_F(ListDevices, ADeviceInUseIsNotReady) {
 TEST_F(ListDevices, AForceDimensionDeviceShowsItsOwnWords) {
   usb("2-1", "1451", "0402");
   const FoundPart part = only();
-  EXPECT_EQ(part.kind, PartKind::kForceDimension);
+  EXPECT_EQ(part.kind, "force-dimension");
   EXPECT_EQ(part.what, "Force Dimension device \"omega.x haptic device\", USB 1451:0402");
 }
 
@@ -145,15 +149,16 @@ TEST_F(ListDevices, APhantomIsFoundByItsSerialPortOrItsHidNode) {
   const struct {
     const char *vendor, *product, *inside, *node, *rule;
   } cases[] = {
-      {"2988", "0302", "1-2:1.0/tty/ttyACM0", "/dev/ttyACM0", kPhantomRule},
-      {"2988", "0304", "1-2:1.0/0003:2988:0304.0001/hidraw/hidraw3", "/dev/hidraw3", kPhantomRule},
-      {"0301", "2988", "1-2:1.1/power", "/dev/bus/usb/001/007", kOldPhantomRule}};
+      {"2988", "0302", "1-2:1.0/tty/ttyACM0", "/dev/ttyACM0", phantom::kPhantomParts[0].rule},
+      {"2988", "0304", "1-2:1.0/0003:2988:0304.0001/hidraw/hidraw3", "/dev/hidraw3",
+       phantom::kPhantomParts[0].rule},
+      {"0301", "2988", "1-2:1.1/power", "/dev/bus/usb/001/007", phantom::kPhantomParts[1].rule}};
   for (const auto& c : cases) {
     fs::remove_all(root_ + "/sys/bus");
     usb("1-2", c.vendor, c.product, "cdc_acm");
     fs::create_directories(root_ + "/sys/bus/usb/devices/1-2/" + c.inside);
     const FoundPart part = only();
-    EXPECT_EQ(part.kind, PartKind::kPhantom);
+    EXPECT_EQ(part.kind, "phantom");
     EXPECT_EQ(part.what, std::string("PHANTOM \"omega.x haptic device\", USB ") + c.vendor + ":" +
                              c.product + ", bound to cdc_acm");
     EXPECT_EQ(part.scene, "device.kind = \"phantom\"");
@@ -167,11 +172,11 @@ TEST_F(ListDevices, APhantomIsFoundByItsSerialPortOrItsHidNode) {
 TEST_F(ListDevices, AMissingPermissionPrintsTheRuleOfThatDevice) {
   probes.access_error = nobody_may;
   usb("1-2", "0403", "cb48");
-  EXPECT_TRUE(has(only().lacking, kFalconRule));
+  EXPECT_TRUE(has(only().lacking, falcon::kFalconParts[0].rule));
   EXPECT_TRUE(has(only().lacking, "/dev/bus/usb/001/007"));
   EXPECT_TRUE(has(only().remedy, "adduser $USER haptics"));
   usb("1-2", "1451", "0402");
-  EXPECT_TRUE(has(only().lacking, kForceDimensionRule));
+  EXPECT_TRUE(has(only().lacking, force_dimension::kForceDimensionParts[0].rule));
 }
 
 TEST_F(ListDevices, ANodeThatIsGoneIsNoMatterOfRules) {

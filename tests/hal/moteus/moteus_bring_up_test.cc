@@ -5,11 +5,12 @@
 
 #include <memory>
 
+#include "hal/can/can_settings.h"
 #include "tests/hal/moteus/moteus_bench.h"
 
 namespace tact::hal::moteus::moteus_bring_up_test {
 
-using model::Homing;
+using can::Homing;
 using tests::MoteusBench;
 
 TEST(MoteusBringUp, OpensThreeDrivesWithoutPower) {
@@ -50,14 +51,14 @@ TEST(MoteusBringUp, AReplyThatLacksWhatEveryTickAsksForIsRefusedByName) {
 TEST(MoteusBringUp, AbsoluteHomingNeedsAnOutputReferenceAndIndexIsNone) {
   for (const int home_state : {0, 1}) {
     MoteusBench bench({.home_state = home_state});
-    bench.settings.can.homing = Homing::kAbsolute;
+    bench.settings.of<can::CanSettings>().homing = Homing::kAbsolute;
     bench.expect_refused("needs an encoder at the output");
   }
   MoteusBench index;
-  index.settings.can.homing = Homing::kIndex;
+  index.settings.of<can::CanSettings>().homing = Homing::kIndex;
   index.expect_refused("\"index\"");
   MoteusBench good;
-  good.settings.can.homing = Homing::kAbsolute;
+  good.settings.of<can::CanSettings>().homing = Homing::kAbsolute;
   for (auto& motor : good.drives.motor) motor.position_turns = 0.7;
   EXPECT_EQ(good.open(), "");
 }
@@ -65,7 +66,7 @@ TEST(MoteusBringUp, AbsoluteHomingNeedsAnOutputReferenceAndIndexIsNone) {
 TEST(MoteusBringUp, NodesThatNoMoteusHasAreRefused) {
   for (const int node : {0, 127}) {
     MoteusBench bench;
-    bench.settings.can.node[1] = node;
+    bench.settings.of<can::CanSettings>().node[1] = node;
     bench.expect_refused("a moteus' id.id is 1 to 126");
   }
 }

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "hal/can/can_settings.h"
 #include "hal/moteus/moteus_bring_up.h"
 #include "hal/moteus/moteus_protocol.h"
 #include "tests/hal/moteus/moteus_bench.h"
@@ -30,7 +31,7 @@ TEST(MoteusDelta, ASlowerBusIsALaterForce) {
   slow.drives.connect_again({.slow_bps = 1e6, .fast_bps = 2e6});
   ASSERT_EQ(fast.open(), "");
   ASSERT_EQ(slow.open(), "");
-  const can::CanFdBits bits = moteus_cycle_bits(fast.settings.can);
+  const can::CanFdBits bits = moteus_cycle_bits(fast.settings.of<can::CanSettings>());
   EXPECT_NEAR(fast.device->info().at_tool->delay_s, 1e-3 + bits.slow / 1e6 + bits.fast / 5e6,
               1e-12);
   EXPECT_NEAR(slow.device->info().at_tool->delay_s, 1e-3 + bits.slow / 1e6 + bits.fast / 2e6,
@@ -93,7 +94,7 @@ TEST(MoteusDelta, ThePoseIsThatOfTheArms) {
 
 TEST(MoteusDelta, TorqueIsLimitedByTheSceneAndKeepsTheForceDirection) {
   MoteusBench bench;
-  bench.settings.delta.max_joint_torque_Nm = 2.0;
+  bench.settings.of<can::DeltaSettings>().max_joint_torque_Nm = 2.0;
   bench.run();
   const Vec3 force{-6.0, 8.0, 12.0};
   bench.tick(force);

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "hal/can/can_settings.h"
+#include "hal/lines_settings.h"
 #include "hal/odrive/odrive_delta.h"
 #include "tests/hal/odrive/odrive_drives.h"
 #include "tests/support/can_bench.h"
@@ -26,8 +28,8 @@ struct Bench : tests::CanBench<tests::PlayedOdrives> {
 
 TEST(OdriveBringUp, SetsTorqueModeAndLimitsOnAllThreeWithoutPower) {
   Bench bench;
-  bench.settings.can.max_current_A = 12.5;
-  bench.settings.can.max_velocity_turns_per_s = 42.0;
+  bench.settings.of<OdriveSettings>().max_current_A = 12.5;
+  bench.settings.of<OdriveSettings>().max_velocity_turns_per_s = 42.0;
   ASSERT_EQ(bench.open(), "");
   for (const auto& axis : bench.drives.axis) {
     EXPECT_EQ(axis.control, 1u);
@@ -159,16 +161,16 @@ TEST(OdriveBringUp, ArmsThatMoveAreNotOnTheJig) {
 
 TEST(OdriveBringUp, AnglesThatNoArmHasAreNotHomed) {
   Bench bench;
-  bench.settings.can.homing = model::Homing::kAbsolute;
-  bench.settings.can.direction = {1.0, 1.0, 1.0};
+  bench.settings.of<can::CanSettings>().homing = can::Homing::kAbsolute;
+  bench.settings.of<can::CanSettings>().direction = {1.0, 1.0, 1.0};
   bench.drives.axis[1].turns = 3.5;  // 126 degrees at 10:1
   bench.expect_refused("the delta is not homed: arm 2 would be at 126 degrees");
 }
 
 TEST(OdriveBringUp, AbsoluteEncodersNeedNoJig) {
   Bench bench;
-  bench.settings.can.homing = model::Homing::kAbsolute;
-  bench.settings.can.zero_turns = {0.25, -0.5, 1.0};
+  bench.settings.of<can::CanSettings>().homing = can::Homing::kAbsolute;
+  bench.settings.of<can::CanSettings>().zero_turns = {0.25, -0.5, 1.0};
   const auto pose = published_pose();
   const double sign[] = {1.0, -1.0, 1.0}, zero[] = {0.25, -0.5, 1.0};
   for (std::size_t i = 0; i < 3; ++i)
@@ -180,8 +182,8 @@ TEST(OdriveBringUp, AbsoluteEncodersNeedNoJig) {
 
 TEST(OdriveBringUp, TheIndexSearchEndsBeforePositionsCount) {
   Bench bench;
-  bench.settings.can.homing = model::Homing::kIndex;
-  bench.settings.can.direction = {1.0, 1.0, 1.0};
+  bench.settings.of<can::CanSettings>().homing = can::Homing::kIndex;
+  bench.settings.of<can::CanSettings>().direction = {1.0, 1.0, 1.0};
   bench.drives.axis[1].index_ms = 2000;
   for (auto& axis : bench.drives.axis) axis.turns = 7.0;  // no arm has 252 degrees
   EXPECT_EQ(bench.open(), "");
@@ -190,11 +192,11 @@ TEST(OdriveBringUp, TheIndexSearchEndsBeforePositionsCount) {
 
 TEST(OdriveBringUp, AnIndexThatIsNotFoundIsNamed) {
   Bench bench;
-  bench.settings.can.homing = model::Homing::kIndex;
+  bench.settings.of<can::CanSettings>().homing = can::Homing::kIndex;
   bench.drives.axis[1].index_ms = 1'000'000;
   bench.expect_refused("arm 2 (node 2 on can0) does not find its index pulse");
   Bench deaf;
-  deaf.settings.can.homing = model::Homing::kIndex;
+  deaf.settings.of<can::CanSettings>().homing = can::Homing::kIndex;
   deaf.drives.axis[0].obeys = false;  // idle all the time, which is no search
   deaf.expect_refused("arm 1 (node 1 on can0) does not find its index pulse");
 }
@@ -204,17 +206,17 @@ TEST(OdriveBringUp, NumbersThatCannotWorkAreRefusedAtOnce) {
   const std::string too_fast = fast.open(2000.0);
   EXPECT_NE(too_fast.find("rate_Hz is 2000"), std::string::npos) << too_fast;
   EXPECT_NE(too_fast.find("set rate_Hz to 1000 or less"), std::string::npos) << too_fast;
-  high.settings.can.node = {1, 2, 99};
+  high.settings.of<can::CanSettings>().node = {1, 2, 99};
   high.expect_refused("an ODrive's node is 0 to 63");
-  wired.settings.can.homing = model::Homing::kIndex;
-  wired.settings.lines.chip = "gpiochip0";
-  wired.settings.lines.enable = 3;
+  wired.settings.of<can::CanSettings>().homing = can::Homing::kIndex;
+  wired.settings.of<LinesSettings>().chip = "gpiochip0";
+  wired.settings.of<LinesSettings>().enable = 3;
   wired.expect_refused("device.lines.enable");
 }
 
 TEST(OdriveBringUp, TheCycleOfSixFramesFitsAMegabit) {
   EXPECT_EQ(odrive_cycle_bits({}), 3 * (95 + 135));
-  model::CanSettings padded;
+  OdriveSettings padded;
   padded.short_torque = false;
   EXPECT_EQ(odrive_cycle_bits(padded), 810);
 }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "hal/can/can_settings.h"
 #include "tests/hal/odrive/odrive_drives.h"
 #include "tests/support/can_bench.h"
 
@@ -48,7 +49,7 @@ TEST(OdriveDelta, ASlowerBusIsALaterForce) {
   slow.drives.bus.connect({.slow_bps = 500'000});
   ASSERT_EQ(fast.open(), "");
   ASSERT_EQ(slow.open(), "");
-  const double cycle_s = odrive_cycle_bits(fast.settings.can) / 1e6;
+  const double cycle_s = odrive_cycle_bits(fast.settings.of<OdriveSettings>()) / 1e6;
   EXPECT_NEAR(fast.device->info().at_tool->delay_s, 1e-3 + cycle_s, 1e-12);
   EXPECT_NEAR(slow.device->info().at_tool->delay_s, 1e-3 + 2.0 * cycle_s, 1e-12);
 }
@@ -125,7 +126,7 @@ TEST(OdriveDelta, ThePoseIsThatOfTheArms) {
 
 TEST(OdriveDelta, SaturationKeepsTheDirectionOfTheForce) {
   Bench bench;
-  bench.settings.delta.max_joint_torque_Nm = 2.0;
+  bench.settings.of<can::DeltaSettings>().max_joint_torque_Nm = 2.0;
   bench.run();
   const Vec3 force{-6.0, 8.0, 12.0};
   bench.tick(force);

@@ -239,7 +239,7 @@ TEST_F(Phantom, InfoIsWhatTheLibraryTells) {
 
 TEST_F(Phantom, ADampingOfTheSceneIsNotCalledAssumed) {
   auto scene = tests::phantom_scene();
-  scene.device.phantom.damping_Ns_per_m = 0.4;
+  scene.device.of<PhantomSettings>().damping_Ns_per_m = 0.4;
   DeviceLoop::open(scene);
   EXPECT_EQ(device->info().caution.find("assumed"), std::string::npos) << device->info().caution;
 }

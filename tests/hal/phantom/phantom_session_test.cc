@@ -37,14 +37,14 @@ class PhantomSessions : public testing::Test {
 
 TEST_F(PhantomSessions, OpensTheDeviceOfThatNameAndTheDefaultOneWithoutAName) {
   EXPECT_EQ(refusal(), "");
-  EXPECT_EQ(stub.name(), settings.phantom.name);
-  settings.phantom.name.clear();
+  EXPECT_EQ(stub.name(), settings.of<PhantomSettings>().name);
+  settings.of<PhantomSettings>().name.clear();
   EXPECT_EQ(refusal(), "");
   EXPECT_STREQ(stub.name(), "(default)");
 }
 
 TEST_F(PhantomSessions, AMissingLibraryIsToldWithWhereToGetIt) {
-  settings.phantom.library = "libHD-that-is-not-here.so";
+  settings.of<PhantomSettings>().library = "libHD-that-is-not-here.so";
   settings.trust_library = false;
   expect_refusal({"3D Systems' library cannot be loaded", "OpenHaptics at 3dsystems.com",
                   "let device.phantom.library name its libHD.so"});
@@ -56,13 +56,13 @@ TEST_F(PhantomSessions, ALibraryOfAnybodyIsNotLoadedWithoutATrustingPerson) {
 }
 
 TEST_F(PhantomSessions, AnotherLibraryIsRefusedByTheFunctionThatItLacks) {
-  settings.phantom.library = "libm.so.6";
+  settings.of<PhantomSettings>().library = "libm.so.6";
   expect_refusal({"libm.so.6 has no function hdInitDevice", "device.phantom.library"});
 }
 
 TEST_F(PhantomSessions, ADeviceThatIsNotThereIsToldWithItsName) {
   stub.fail("hdInitDevice", 0x0302);
-  expect_refusal({"the PHANTOM \"" + settings.phantom.name + "\" does not open",
+  expect_refusal({"the PHANTOM \"" + settings.of<PhantomSettings>().name + "\" does not open",
                   "the device does not answer", "device.phantom.name"});
 }
 
@@ -71,7 +71,9 @@ TEST_F(PhantomSessions, ARefusedNodeIsToldOnlyWhereTheLibraryOpensNothing) {
   const auto see_refusals = [&] {
     usb.add_node(usb.node, 0);
     tests::become_nobody();
-    const auto open = [&] { return open_phantom_session(settings.phantom, true, usb.roots()); };
+    const auto open = [&] {
+      return open_phantom_session(settings.of<PhantomSettings>(), true, usb.roots());
+    };
     if (!open()) _exit(8);  // it opens another one
     stub.fail("hdInitDevice", 0x0302);
     const auto failed = open();

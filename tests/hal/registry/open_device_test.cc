@@ -4,17 +4,19 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "hal/sim/sim_delta.h"
+
 namespace tact::hal::registry::open_device_test {
 
 model::scene::Scene scene(const char* kind) {
   model::scene::Scene scene;
   scene.path = "liver.toml";
-  scene.device = {.kind = kind,
-                  .sim = {.counts_per_turn = 100'000.0,
-                          .sample_delay_s = 0.3e-3,
-                          .joint_friction_Nm = 0.01,
-                          .joint_damping_Nms_per_rad = 0.002,
-                          .observer_bandwidth_Hz = 40.0}};
+  scene.device.kind = kind;
+  scene.device.of<sim::SimDeviceSettings>() = {.counts_per_turn = 100'000.0,
+                                               .sample_delay_s = 0.3e-3,
+                                               .joint_friction_Nm = 0.01,
+                                               .joint_damping_Nms_per_rad = 0.002,
+                                               .observer_bandwidth_Hz = 40.0};
   scene.hand.path = {{}};
   return scene;
 }
@@ -78,7 +80,7 @@ TEST(OpenDevice, AnUnknownKindListsTheKnownOnes) {
 
 TEST(OpenDevice, PassesOnWhatTheDeviceRefuses) {
   model::scene::Scene bad = scene("sim-delta");
-  bad.device.sim.counts_per_turn = -1.0;
+  bad.device.of<sim::SimDeviceSettings>().counts_per_turn = -1.0;
   const auto device = open_device(bad);
   ASSERT_FALSE(device);
   EXPECT_NE(device.error().message.find("liver.toml"), std::string::npos);

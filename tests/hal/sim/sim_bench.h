@@ -19,7 +19,7 @@ using model::Vec3;
 inline constexpr double kTick_s = 1e-3;
 inline constexpr std::int64_t kTick_ns = 1'000'000;
 
-inline model::SimDeviceSettings settings() {
+inline hal::sim::SimDeviceSettings settings() {
   return {.counts_per_turn = 100'000.0,
           .sample_delay_s = 0.3e-3,
           .joint_friction_Nm = 0.01,
@@ -42,7 +42,7 @@ inline model::HandSettings moving_hand() {
 }
 
 struct Bench {
-  explicit Bench(const model::SimDeviceSettings& device, const model::HandSettings& hand)
+  explicit Bench(const hal::sim::SimDeviceSettings& device, const model::HandSettings& hand)
       : delta(device, hand) {}
   Sample tick(const Wrench& wrench = {}) {
     delta.between_ticks(kTick_s);

@@ -68,7 +68,7 @@ TEST(SimDelta, FallsWhenItIsStopped) {
 
 TEST(SimDelta, AConstantForceMovesTheHandByForceOverStiffness) {
   const Vec3 force_N{1.2, -0.8, 2.0};
-  model::SimDeviceSettings smooth = settings();
+  SimDeviceSettings smooth = settings();
   smooth.joint_friction_Nm = 0.0;
   Bench bench(smooth, hand_at({}, 400.0));
   for (int i = 0; i < 4000; ++i) bench.tick({.force_N = force_N, .torque_Nm = {}});
@@ -76,7 +76,7 @@ TEST(SimDelta, AConstantForceMovesTheHandByForceOverStiffness) {
 }
 
 TEST(SimDelta, CountingErrsByAtMostTheHalfCount) {
-  model::SimDeviceSettings prompt = settings();
+  SimDeviceSettings prompt = settings();
   prompt.sample_delay_s = 0.0;
   Bench bench(prompt, moving_hand());
   double worst_m = 0.0;
@@ -89,7 +89,7 @@ TEST(SimDelta, CountingErrsByAtMostTheHalfCount) {
 }
 
 TEST(SimDelta, ShowsThePastExactlyAsOldAsTheDelay) {
-  model::SimDeviceSettings late = settings();
+  SimDeviceSettings late = settings();
   for (const double delay_s : {0.25e-3, 0.3e-3, 2e-3, 10e-3}) {
     late.sample_delay_s = delay_s;
     Bench prompt(settings(), moving_hand()), delayed(late, moving_hand());
@@ -217,7 +217,7 @@ TEST(SimDelta, TheSameCallsGiveTheSameBits) {
 TEST(SimDelta, WorkOfTheMotorsBoundsItsEnergy) {
   // No hand, no friction, a force that swings: energy is what the motors gave, to the integrator's
   // error, although torques are held for a tick and come from counted and late positions.
-  model::SimDeviceSettings smooth = settings();
+  SimDeviceSettings smooth = settings();
   smooth.joint_friction_Nm = 0.0;
   smooth.joint_damping_Nms_per_rad = 0.0;
   model::HandSettings none = hand_at({}, 0.0);
@@ -260,13 +260,18 @@ TEST(SimDelta, SurvivesOddTimes) {
 TEST(SimDelta, RefusesSettingsThatNoDeviceHas) {
   const model::HandSettings hand = hand_at({}, 300.0);
   EXPECT_TRUE(make_sim_delta(settings(), hand));
-  model::SimDeviceSettings bad = settings();
+  SimDeviceSettings bad = settings();
   bad.counts_per_turn = 0.0;
   ASSERT_FALSE(make_sim_delta(bad, hand));
   EXPECT_NE(make_sim_delta(bad, hand).error().message.find("counts_per_turn"), std::string::npos);
   bad = settings();
   bad.sample_delay_s = kNan;
   EXPECT_FALSE(make_sim_delta(bad, hand));
+  bad = settings();
+  bad.sample_delay_s = 0.006;
+  ASSERT_FALSE(make_sim_delta(bad, hand)) << "no more than a scene may say";
+  EXPECT_EQ(make_sim_delta(bad, hand).error().message,
+            "sample_delay_s is 0.006; allowed: 0 .. 0.005");
   bad = settings();
   bad.observer_bandwidth_Hz = -1.0;
   EXPECT_FALSE(make_sim_delta(bad, hand));

@@ -6,6 +6,7 @@
 
 #include "hal/mounted_device.h"
 #include "hal/mounting.h"
+#include "hal/sim/sim_delta.h"
 #include "tests/hal/sim/sim_bench.h"
 #include "tests/support/mountings.h"
 
@@ -19,7 +20,7 @@ using hal::mounting_of;
 TEST(SimMounting, StaysWhereItIsLetGoInSixMountings) {
   for (const auto& one : kMountings) {
     const Mounting mounting = mounting_of(settings_of(one));
-    model::SimDeviceSettings smooth = settings();
+    SimDeviceSettings smooth = settings();
     smooth.joint_friction_Nm = 0.0;  // else friction would hold it
     MountedDevice device(
         std::make_unique<SimDelta>(smooth, hand_at({0.02, 0.01, -0.02}, 0.0), mounting), mounting);

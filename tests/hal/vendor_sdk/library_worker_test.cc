@@ -114,10 +114,10 @@ TEST(LibraryWorker, TheForcesAreOnForSureAfterAHundredMilliseconds) {
 TEST(LibraryWorker, TheFirstTroubleIsKept) {
   Worker worker;
   EXPECT_EQ(worker.words(worker.now_ns), "");
-  worker.keep({.fault = Fault::kForceOff, .source = 3, .code = 0x0203});
-  worker.keep({.fault = Fault::kDeviceFailed, .source = 1, .code = 7});
+  worker.keep({.fault = Fault::kForceOff, .kind = 3, .code = 0x0203});
+  worker.keep({.fault = Fault::kDeviceFailed, .kind = 1, .code = 7});
   EXPECT_EQ(worker.first_trouble().fault, Fault::kForceOff);
-  EXPECT_EQ(worker.first_trouble().source, 3);
+  EXPECT_EQ(worker.first_trouble().kind, 3);
   EXPECT_EQ(worker.first_trouble().code, 0x0203);
 }
 
@@ -130,7 +130,7 @@ TEST(LibraryWorker, ALibraryWithoutACycleForTwentyMillisecondsMayStillPush) {
   EXPECT_EQ(said,
             "the library has made no call for more than 20 ms: the device may still push; switch "
             "its supply off");
-  worker.keep({.fault = Fault::kDeviceFailed, .source = 1, .code = 7});
+  worker.keep({.fault = Fault::kDeviceFailed, .kind = 1, .code = 7});
   EXPECT_EQ(worker.words(worker.now_ns + 21 * kMs), "it failed; " + said) << "both are true";
   worker.cycles_ended();
   EXPECT_EQ(worker.words(worker.now_ns + 21 * kMs), "it failed") << "forces off, nothing is due";

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "hal/registry/open_device.h"
 #include "model/scene/scene.h"
 
 namespace tact::model::reader::scene_document_test {
@@ -19,9 +20,9 @@ std::string complaint(const std::vector<std::string>& overrides) {
 
 TEST(Override, SetsNumbersTextFlagsAndArrays) {
   const Result<scene::Scene> scene =
-      scene::load_scene(kPlain, {"rate_Hz=2000", "name=a word", "name=\"two words\"",
-                                 "hand.repeat=true", "organ.position_m=[0.01, 0, -2e-2]",
-                                 "table_knots=129", "device.kind=none/of-this.world"});
+      hal::registry::load_scene(kPlain, {"rate_Hz=2000", "name=a word", "name=\"two words\"",
+                                         "hand.repeat=true", "organ.position_m=[0.01, 0, -2e-2]",
+                                         "table_knots=129", "device.kind=none/of-this.world"});
   ASSERT_TRUE(scene) << scene.error().message;
   EXPECT_EQ(scene->rate_Hz, 2000.0);
   EXPECT_EQ(scene->name, "two words") << "the last one counts";

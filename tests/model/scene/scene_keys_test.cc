@@ -12,11 +12,10 @@
 #include <optional>
 #include <set>
 
+#include "hal/registry/open_device.h"
 #include "model/reader/scene_text.h"
 #include "model/scene/laws.h"
 #include "model/scene/tissue.h"
-#include "tests/support/device_scene.h"
-#include "tests/support/example_delta.h"
 #include "tests/support/extent.h"
 
 namespace tact::model::scene::scene_keys_test {
@@ -27,7 +26,8 @@ const std::string kDevices = TACT_SOURCE_DIR "/tools/deploy/devices.toml";
 std::vector<reader::ReferenceRow> reference_rows() {
   SceneText text;
   reader::SceneVisit visit(nullptr);
-  reader::Keys::visit_root(visit, [&](reader::Keys& root) { visit_scene(root, text); });
+  reader::Keys::visit_root(
+      visit, [&](reader::Keys& root) { visit_scene(root, hal::registry::visit_device, text); });
   EXPECT_FALSE(visit.problem());
   return visit.rows();
 }
@@ -72,34 +72,6 @@ TEST(SceneReference, HasEveryKeyOfTheShippedScenesAndTheyHaveEveryKey) {
   EXPECT_GT(reference.size(), 45u);
 }
 
-TEST(SceneReference, TheSectionsOfRealDevicesHoldTheDefaultsAndFitAScene) {
-  const std::string path = testing::TempDir() + "on_real_devices.toml";
-  std::ofstream(path) << tests::scene_on_real_devices();
-  const Result<Scene> scene = load_scene(path, {});
-  ASSERT_TRUE(scene) << scene.error().message;
-  const DeviceSettings fresh;
-  EXPECT_EQ(scene->device.kind, "can-odrive");
-  const DeltaSettings& said = scene->device.delta;
-  const DeltaSettings simulated = tests::example_delta().delta;
-  EXPECT_EQ(said.base_radius_m, simulated.base_radius_m);
-  EXPECT_EQ(said.platform_radius_m, simulated.platform_radius_m);
-  EXPECT_EQ(said.upper_arm_m, simulated.upper_arm_m);
-  EXPECT_EQ(said.forearm_m, simulated.forearm_m);
-  EXPECT_NEAR(said.theta_min_rad, simulated.theta_min_rad, 1e-4);
-  EXPECT_NEAR(said.theta_max_rad, simulated.theta_max_rad, 1e-4);
-  for (std::size_t i = 0; i < 3; ++i)
-    EXPECT_NEAR(said.azimuth_rad[i], simulated.azimuth_rad[i], 1e-7);
-  EXPECT_EQ(said.platform_kg, simulated.platform_kg);
-  EXPECT_EQ(said.forearm_kg, simulated.forearm_kg);
-  EXPECT_EQ(said.max_joint_torque_Nm, simulated.max_joint_torque_Nm);
-  EXPECT_EQ(scene->device.can.node, fresh.can.node);
-  EXPECT_EQ(scene->device.can.homing, fresh.can.homing);
-  EXPECT_EQ(scene->device.falcon.gain_words_per_Nm, fresh.falcon.gain_words_per_Nm);
-  EXPECT_EQ(scene->device.force_dimension.watchdog_s, fresh.force_dimension.watchdog_s);
-  EXPECT_EQ(scene->device.phantom.position_step_m, fresh.phantom.position_step_m);
-  EXPECT_FALSE(scene->device.lines.wired());
-}
-
 TEST(SceneReference, SaysOfEveryKeyWhatIsAllowedAndWhatItMeans) {
   for (const reader::ReferenceRow& row : reference_rows()) {
     EXPECT_FALSE(row.allowed.empty() || row.meaning.empty()) << row.section << "." << row.key;
@@ -116,7 +88,7 @@ TEST(SceneReference, SaysOfEveryKeyWhatIsAllowedAndWhatItMeans) {
 }
 
 TEST(SceneReference, IsAPageWithEveryRow) {
-  const std::string page = scene_reference();
+  const std::string page = scene_reference(hal::registry::visit_device);
   for (const reader::ReferenceRow& row : reference_rows()) {
     const auto at = page.find(row.key.empty() ? "\n" + row.allowed : row.key + " ");
     EXPECT_NE(at, page.npos) << row.section << "." << row.key;
@@ -137,7 +109,7 @@ TEST(Scene, CutAtAnyByteNeverCrashesAndSaysOneLine) {
   const std::string path = std::string(TACT_BINARY_DIR) + "/scene_cut.toml";
   for (std::size_t length = 0; length < text.size(); length += 3) {
     std::ofstream(path, std::ios::binary) << text.substr(0, length);
-    const Result<Scene> scene = load_scene(path, {});
+    const Result<Scene> scene = hal::registry::load_scene(path, {});
     ASSERT_FALSE(scene) << "its meshes are not here, cut at " << length;
     ASSERT_TRUE(scene.error().message.starts_with(path + ":")) << scene.error().message;
     ASSERT_EQ(scene.error().message.find('\n'), std::string::npos) << scene.error().message;
@@ -153,7 +125,7 @@ TEST(Scene, WithAnyByteSpoiltNeverCrashesAndSaysOneLine) {
     std::string spoilt = text;
     spoilt[i] = spoilers[(7 * i) % spoilers.size()];
     std::ofstream(path, std::ios::binary) << spoilt;
-    const Result<Scene> scene = load_scene(path, {});
+    const Result<Scene> scene = hal::registry::load_scene(path, {});
     ASSERT_FALSE(scene) << "its meshes are not here, spoilt at " << i;
     ASSERT_EQ(scene.error().message.find('\n'), std::string::npos) << scene.error().message;
   }

@@ -12,6 +12,8 @@
 #include <iterator>
 #include <regex>
 
+#include "hal/registry/open_device.h"
+#include "hal/sim/sim_delta.h"
 #include "model/indent/rhombus_patch.h"
 #include "model/scene/compliance_file.h"
 
@@ -30,7 +32,7 @@ std::string text_of(const std::string& path) {
 
 /// The error of a scene, without the folder of the file; "" where it loads.
 std::string complaint(const std::string& path, const Overrides& overrides = {}) {
-  const Result<Scene> scene = load_scene(path, overrides);
+  const Result<Scene> scene = hal::registry::load_scene(path, overrides);
   if (scene) return "";
   const std::string& message = scene.error().message;
   EXPECT_EQ(message.find('\n'), message.npos) << "one line: " << message;
@@ -54,7 +56,7 @@ std::string edited(const std::string& from, const std::string& to) {
 std::string name_of(const std::string& path) { return std::filesystem::path(path).filename(); }
 
 TEST(Scene, HasWhatItsFileSays) {
-  const Result<Scene> scene = load_scene(kPlain, {});
+  const Result<Scene> scene = hal::registry::load_scene(kPlain, {});
   ASSERT_TRUE(scene) << scene.error().message;
   EXPECT_EQ(scene->path, kPlain);
   EXPECT_EQ(scene->name, "plain");
@@ -74,11 +76,11 @@ TEST(Scene, HasWhatItsFileSays) {
   EXPECT_EQ(scene->contact.sliding_stiffness_N_per_m, 100.0);
   EXPECT_EQ(scene->contact.tear_force_N, 0.6);
   EXPECT_EQ(scene->device.kind, "sim-delta");
-  EXPECT_EQ(scene->device.sim.counts_per_turn, 100000.0);
-  EXPECT_EQ(scene->device.sim.sample_delay_s, 0.0005);
-  EXPECT_EQ(scene->device.sim.joint_friction_Nm, 0.01);
-  EXPECT_EQ(scene->device.sim.joint_damping_Nms_per_rad, 0.02);
-  EXPECT_EQ(scene->device.sim.observer_bandwidth_Hz, 40.0);
+  EXPECT_EQ(scene->device.of<hal::sim::SimDeviceSettings>().counts_per_turn, 100000.0);
+  EXPECT_EQ(scene->device.of<hal::sim::SimDeviceSettings>().sample_delay_s, 0.0005);
+  EXPECT_EQ(scene->device.of<hal::sim::SimDeviceSettings>().joint_friction_Nm, 0.01);
+  EXPECT_EQ(scene->device.of<hal::sim::SimDeviceSettings>().joint_damping_Nms_per_rad, 0.02);
+  EXPECT_EQ(scene->device.of<hal::sim::SimDeviceSettings>().observer_bandwidth_Hz, 40.0);
   EXPECT_EQ(scene->hand.mass_kg, 0.15);
   EXPECT_EQ(scene->hand.stiffness_N_per_m, 600.0);
   EXPECT_EQ(scene->hand.damping_Ns_per_m, 15.0);
@@ -93,7 +95,7 @@ TEST(Scene, HasWhatItsFileSays) {
 }
 
 TEST(Scene, FillsInDefaults) {
-  const Result<Scene> scene = load_scene(kPlain, {});
+  const Result<Scene> scene = hal::registry::load_scene(kPlain, {});
   ASSERT_TRUE(scene) << scene.error().message;
   EXPECT_EQ(scene->table_knots, 65u);
   EXPECT_EQ(scene->contact.grip_close_ratio, 0.7);
@@ -101,7 +103,7 @@ TEST(Scene, FillsInDefaults) {
 }
 
 TEST(Scene, BringsItsMeshesInMetresAndTheOrganWhereItLies) {
-  const Result<Scene> scene = load_scene(kPlain, {"tool.mesh_unit_m=0.0001"});
+  const Result<Scene> scene = hal::registry::load_scene(kPlain, {"tool.mesh_unit_m=0.0001"});
   ASSERT_TRUE(scene) << scene.error().message;
   const mesh::MeshSummary organ = summarize(scene->organ_mesh), tool = summarize(scene->tool_mesh);
   EXPECT_EQ(organ.triangles, 12u);
@@ -115,7 +117,7 @@ TEST(Scene, BringsItsMeshesInMetresAndTheOrganWhereItLies) {
 TEST(Scene, FindsItsMeshesFromItsOwnFolder) {
   const auto here = std::filesystem::current_path();
   std::filesystem::current_path(kData);
-  const Result<Scene> scene = load_scene("plain.toml", {});
+  const Result<Scene> scene = hal::registry::load_scene("plain.toml", {});
   std::filesystem::current_path(here);
   ASSERT_TRUE(scene) << scene.error().message;
   EXPECT_EQ(scene->organ.mesh_path, kData + "box.obj");
@@ -200,7 +202,7 @@ TEST(Scene, RefusesAMeshThatIsNoneAtTheLineThatNamesIt) {
 
 TEST(Scene, HashChangesWithTheTextAndWithEachOverride) {
   const auto hash = [](const std::string& path, const Overrides& overrides) {
-    const Result<Scene> scene = load_scene(path, overrides);
+    const Result<Scene> scene = hal::registry::load_scene(path, overrides);
     EXPECT_TRUE(scene) << scene.error().message;
     return scene ? scene->hash : "";
   };
@@ -214,7 +216,7 @@ TEST(Scene, HashChangesWithTheTextAndWithEachOverride) {
 
 TEST(Scene, HashChangesWithTheComplianceMapThatIsFelt) {
   const std::string path = std::string(TACT_BINARY_DIR) + "/scene_hash.compliance";
-  const auto own = load_scene(kLiver, {});
+  const auto own = hal::registry::load_scene(kLiver, {});
   ASSERT_TRUE(own) << own.error().message;
   const auto hash = [&](float give, const std::string& law) {
     const tissue::ComplianceMap map{.poisson_ratio = 0.45,
@@ -226,7 +228,7 @@ TEST(Scene, HashChangesWithTheComplianceMapThatIsFelt) {
                                     .sideways_times_E_per_m = {{1.0F, 2.0F, 3.0F, 4.0F}},
                                     .ring_times_E_per_m = {1.0F}};
     EXPECT_TRUE(write_compliance_map(map, path));
-    const auto scene = load_scene(kLiver, {"compliance.map=" + path, law});
+    const auto scene = hal::registry::load_scene(kLiver, {"compliance.map=" + path, law});
     EXPECT_TRUE(scene) << scene.error().message;
     return scene ? scene->hash : "";
   };
@@ -239,16 +241,16 @@ TEST(Scene, HashChangesWithTheComplianceMapThatIsFelt) {
 }
 
 TEST(Scene, VariesByPlaceOnItsOwnOrganAloneAndSaysSo) {
-  const auto own = load_scene(kLiver, {});
+  const auto own = hal::registry::load_scene(kLiver, {});
   ASSERT_TRUE(own) << own.error().message;
   EXPECT_TRUE(own->varies_by_place);
   EXPECT_EQ(own->note, "");
-  const auto other = load_scene(kLiver, {"organ.mesh=meshes/heart_10026.obj"});
+  const auto other = hal::registry::load_scene(kLiver, {"organ.mesh=meshes/heart_10026.obj"});
   ASSERT_TRUE(other) << other.error().message;
   EXPECT_FALSE(other->varies_by_place);
   EXPECT_NE(other->note.find("is of another organ than"), std::string::npos) << other->note;
   EXPECT_NE(other->note.find("tact-lab condense " + kLiver), std::string::npos) << "the remedy";
-  const auto unread = load_scene(kLiver, {"compliance.map=none.compliance"});
+  const auto unread = hal::registry::load_scene(kLiver, {"compliance.map=none.compliance"});
   ASSERT_TRUE(unread) << unread.error().message;
   EXPECT_TRUE(unread->varies_by_place) << "a file that is not there is an error of the law";
 }
@@ -258,7 +260,7 @@ TEST(Scene, RefusesKeysThatDoNothing) {
       complaint(kLiver, {"tool.blade.from_m=[0, 0, 0]", "tool.blade.to_m=[0, 0, 0.02]"});
   EXPECT_NE(blade.find("tool.blade cuts nothing with law = \"rhombus\"; write law = "), blade.npos)
       << blade;
-  EXPECT_TRUE(load_scene(
+  EXPECT_TRUE(hal::registry::load_scene(
       kLiver, {"law=spring_patch", "tool.blade.from_m=[0, 0, 0]", "tool.blade.to_m=[0, 0, 0.02]"}));
 }
 

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "hal/force_dimension/force_dimension_device.h"
 #include "model/scene/scene.h"
 #include "tests/support/stub_dhd/stub_dhd.h"
 #include "tests/support/stub_library.h"
@@ -64,7 +65,7 @@ inline model::scene::Scene stub_scene() {
   scene.path = "liver.toml";
   scene.rate_Hz = 1000.0;
   scene.device.kind = "force-dimension";
-  scene.device.force_dimension.library = kStubLibrary;
+  scene.device.of<hal::force_dimension::ForceDimensionSettings>().library = kStubLibrary;
   scene.device.trust_library = true;
   return scene;
 }

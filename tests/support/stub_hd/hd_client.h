@@ -6,6 +6,7 @@
 
 #include <string>
 
+#include "hal/phantom/phantom_device.h"
 #include "model/scene/scene.h"
 #include "tests/support/stub_hd/stub_hd.h"
 #include "tests/support/stub_library.h"
@@ -67,8 +68,8 @@ inline model::scene::Scene phantom_scene() {
   scene.rate_Hz = 1000.0;
   scene.device.kind = "phantom";
   scene.device.trust_library = true;
-  scene.device.phantom.library = kStubHdLibrary;
-  scene.device.phantom.name = "stub " + std::to_string(getpid());
+  scene.device.of<hal::phantom::PhantomSettings>().library = kStubHdLibrary;
+  scene.device.of<hal::phantom::PhantomSettings>().name = "stub " + std::to_string(getpid());
   return scene;
 }
 

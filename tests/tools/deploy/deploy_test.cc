@@ -10,7 +10,8 @@
 #include <string>
 #include <utility>
 
-#include "hal/udev_rules.h"
+#include "hal/gpio/gpio_chips.h"
+#include "hal/registry/open_device.h"
 #include "tests/support/files.h"
 #include "tests/support/program.h"
 
@@ -45,10 +46,11 @@ class Deploy : public testing::Test {
 
 TEST_F(Deploy, TheRulesAreThoseThatTheSentencesPrint) {
   const std::string rules = content(kDeploy + "60-tact.rules");
-  for (const char* rule :
-       {tact::hal::kFalconRule, tact::hal::kForceDimensionRule, tact::hal::kPhantomRule,
-        tact::hal::kOldPhantomRule, tact::hal::kGpioRule})
-    EXPECT_NE(rules.find(std::string("\n") + rule + "\n"), std::string::npos) << rule;
+  const auto expect = [&](const std::string& rule) {
+    EXPECT_NE(rules.find("\n" + rule + "\n"), std::string::npos) << rule;
+  };
+  for (const tact::hal::UsbPart& part : tact::hal::registry::usb_parts()) expect(part.rule);
+  expect(tact::hal::gpio::kGpioRule);
   EXPECT_NE(rules.find("\nKERNEL==\"cpu_dma_latency\", GROUP=\"haptics\""), std::string::npos);
 }
 

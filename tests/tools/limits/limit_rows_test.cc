@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "hal/lines_settings.h"
 #include "tests/support/program.h"
 #include "tests/support/test_scene.h"
 #include "tools/limits/run_plan.h"
@@ -136,7 +137,7 @@ TEST(LimitRows, ALimitIsPassedWhereACaseReachedItAndATighterOneIsShownAsSuch) {
 }
 
 TEST(LimitRows, ALineIsTestedWhereItIsWiredAndNowhereElse) {
-  model::LinesSettings wired;
+  hal::LinesSettings wired;
   wired.chip = "lines";
   for (const Case& c : all_cases()) {
     EXPECT_EQ(why_left_out(c, {}) != nullptr,

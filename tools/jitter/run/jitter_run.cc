@@ -79,7 +79,8 @@ class Run {
     return !options_.bare && !hal::registry::is_simulated(scene_->device);
   }
   // Drives and safety lines hold a pause for a fault.
-  bool in_one_piece() const { return is_hardware() || (scene_ && scene_->device.lines.wired()); }
+  bool in_one_piece() const { return is_hardware() || (scene_ && lines().wired()); }
+  const hal::LinesSettings& lines() const { return scene_->device.of<hal::LinesSettings>(); }
   std::int64_t loop_period_ns() const { return model::period_ns(result_.rate_Hz); }
   firmware::loop::TickRing& ring() { return options_.bare ? *bare_ring_ : *parts_.ring; }
 
@@ -123,7 +124,7 @@ Result<JitterResult> Run::run() {
     return Error{
         "/sys/kernel/tracing/trace_marker cannot be written; be root and mount tracefs: "
         "sudo mount -t tracefs tracefs /sys/kernel/tracing"};
-  result_.pc = firmware::pc::check_pc({.files = files_, .core = result_.core});
+  result_.pc = firmware::pc::check_pc({files_, hal::registry::usb_parts(), result_.core});
   result_.environment = firmware::pc::read_environment(result_.scene_hash);
   if (auto error = measure()) return *error;
   if (loop_back_) result_.pin.emplace(loop_back_->stop());
@@ -149,7 +150,7 @@ std::optional<Error> Run::open() {
     arguments.overrides.push_back(fmt::format("rate_Hz={}", options_.rate_Hz));
   if (options_.scope_pin >= 0)
     arguments.overrides.push_back(fmt::format("device.lines.scope={}", options_.scope_pin));
-  auto scene = arguments.load();
+  auto scene = arguments.load(hal::registry::visit_device);
   if (!scene) return scene.error();
   scene_ = std::move(*scene);
   auto parts = firmware::run::open_loop_parts(*scene_, {.non_rt = result_.non_rt, .rt = rt_});
@@ -160,8 +161,7 @@ std::optional<Error> Run::open() {
   result_.subject = fmt::format("{} on {}, law {}", scene_->name, parts_.device->info().name,
                                 parts_.tissue->law().title());
   if (options_.loop_back >= 0) {
-    auto edges =
-        hal::gpio::open_edge_monitor(scene_->device.lines.chip, options_.loop_back, "tact-jitter");
+    auto edges = hal::gpio::open_edge_monitor(lines().chip, options_.loop_back, "tact-jitter");
     if (!edges) return edges.error();
     loop_back_.emplace(std::move(*edges), loop_period_ns());
   }

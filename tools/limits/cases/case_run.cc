@@ -148,7 +148,8 @@ CaseRun::CaseRun(const Case& c, const LimitsBench& bench)
   hal::Device* device = bench.device;
   hal::SafetyLines* lines = bench.lines;
   if (device == nullptr) {
-    simulated_device_.reset(new hal::sim::SimDelta(bench.scene.device.sim, hand_of(c, limits_)));
+    simulated_device_.reset(new hal::sim::SimDelta(
+        bench.scene.device.of<hal::sim::SimDeviceSettings>(), hand_of(c, limits_)));
     device = simulated_device_.get();
     // without lines the watch of the loop is alone: with them a paused heartbeat stops it before
     if (c.trouble == Trouble::kLateTick)

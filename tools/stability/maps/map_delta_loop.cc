@@ -70,7 +70,7 @@ model::mesh::SurfaceMesh make_plate() {
 
 /// One rhombus without tangential spring is a linear spring: a wall of kN.
 model::scene::Scene wall_scene(double stiffness_N_per_m, double rate_Hz,
-                               const model::SimDeviceSettings& device) {
+                               const hal::sim::SimDeviceSettings& device) {
   model::scene::Scene scene;
   scene.path = "wall";
   scene.rate_Hz = rate_Hz;
@@ -84,7 +84,7 @@ model::scene::Scene wall_scene(double stiffness_N_per_m, double rate_Hz,
   scene.contact.tear_force_N = 1.0;
   scene.tool.spheres = {{{}, kRadius_m}};
   scene.device.kind = "sim-delta";
-  scene.device.sim = device;
+  scene.device.of<hal::sim::SimDeviceSettings>() = device;
   // Their energy budget has no end: the passivity stage must not hide the limit (gate_monitor.h).
   scene.limits = kSceneLimits;
   scene.organ_mesh = make_plate();
@@ -113,10 +113,11 @@ struct ControllerRun {
 };
 
 ControllerRun run_controller(double stiffness_N_per_m, double rate_Hz,
-                             const model::SimDeviceSettings& device_settings) {
+                             const hal::sim::SimDeviceSettings& device_settings) {
   const model::scene::Scene scene = wall_scene(stiffness_N_per_m, rate_Hz, device_settings);
   const auto tissue = model::scene::make_tissue(scene);
-  const auto device = hal::sim::make_sim_delta(scene.device.sim, scene.hand);
+  const auto device =
+      hal::sim::make_sim_delta(scene.device.of<hal::sim::SimDeviceSettings>(), scene.hand);
   if (!tissue || !device) {  // the scene is ours, above: a map of nothing would prove nothing
     fmt::print(stderr, "tact-lab stability: {}\n",
                tissue ? device.error().message : tissue.error().message);
@@ -143,7 +144,7 @@ ControllerRun run_controller(double stiffness_N_per_m, double rate_Hz,
   return out;
 }
 
-double largest_by_controller(double rate_Hz, const model::SimDeviceSettings& device, double low,
+double largest_by_controller(double rate_Hz, const hal::sim::SimDeviceSettings& device, double low,
                              double high, double precision) {
   // No limit within the bounds: 0 says so.
   if (run_controller(low, rate_Hz, device).grows) return 0.0;
@@ -178,11 +179,12 @@ report::Row run(std::size_t job, Grid grid) {
   const Settings s = settings(grid);
   const auto [rate, delay, damping] = axes(s).at(job);
   // Hardly any encoder step, and no friction: HL-1 alone is the limit.
-  const model::SimDeviceSettings device{.counts_per_turn = 1e7,
-                                        .sample_delay_s = s.delay_s[delay],
-                                        .joint_friction_Nm = 0.0,
-                                        .joint_damping_Nms_per_rad = s.damping_Nms_per_rad[damping],
-                                        .observer_bandwidth_Hz = 40.0};
+  const hal::sim::SimDeviceSettings device{
+      .counts_per_turn = 1e7,
+      .sample_delay_s = s.delay_s[delay],
+      .joint_friction_Nm = 0.0,
+      .joint_damping_Nms_per_rad = s.damping_Nms_per_rad[damping],
+      .observer_bandwidth_Hz = 40.0};
   const AtTool tool = at_tool(device.joint_damping_Nms_per_rad);
   LoopCase loop;
   loop.device = {.damping_Ns_per_m = tool.damping_Ns_per_m, .delay_s = device.sample_delay_s};

@@ -7,11 +7,18 @@
 #include <string>
 #include <vector>
 
-#include "model/scene/scene.h"
+#include "hal/can/can_settings.h"
+#include "hal/falcon/falcon_device.h"
+#include "hal/force_dimension/force_dimension_device.h"
+#include "hal/phantom/phantom_device.h"
+#include "hal/registry/open_device.h"
 #include "tests/support/device_scene.h"
+#include "tests/support/example_delta.h"
 
-namespace tact::model::scene::scene_device_test {
+namespace tact::hal::registry::scene_device_test {
 
+using model::Result;
+using model::scene::Scene;
 using tests::scene_on_real_devices;
 using tests::without_line;
 using Overrides = std::vector<std::string>;
@@ -31,6 +38,37 @@ std::string why_refused(const std::string& text, const Overrides& overrides = {}
 
 bool is_reported(const std::string& message, const std::string& words) {
   return message.find(words) != std::string::npos;
+}
+
+TEST(SceneDevice, TheSectionsOfRealDevicesHoldTheDefaultsAndFitAScene) {
+  const Result<Scene> scene = load(scene_on_real_devices());
+  ASSERT_TRUE(scene) << scene.error().message;
+  const model::DeviceSettings fresh;
+  EXPECT_EQ(scene->device.kind, "can-odrive");
+  const auto& said = scene->device.of<can::DeltaSettings>();
+  const auto simulated = tests::example_delta().of<can::DeltaSettings>();
+  EXPECT_EQ(said.base_radius_m, simulated.base_radius_m);
+  EXPECT_EQ(said.platform_radius_m, simulated.platform_radius_m);
+  EXPECT_EQ(said.upper_arm_m, simulated.upper_arm_m);
+  EXPECT_EQ(said.forearm_m, simulated.forearm_m);
+  EXPECT_NEAR(said.theta_min_rad, simulated.theta_min_rad, 1e-4);
+  EXPECT_NEAR(said.theta_max_rad, simulated.theta_max_rad, 1e-4);
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_NEAR(said.azimuth_rad[i], simulated.azimuth_rad[i], 1e-7);
+  EXPECT_EQ(said.platform_kg, simulated.platform_kg);
+  EXPECT_EQ(said.forearm_kg, simulated.forearm_kg);
+  EXPECT_EQ(said.max_joint_torque_Nm, simulated.max_joint_torque_Nm);
+  const auto& can = scene->device.of<can::CanSettings>();
+  EXPECT_EQ(can.node, fresh.of<can::CanSettings>().node);
+  EXPECT_EQ(can.homing, fresh.of<can::CanSettings>().homing);
+  const auto& falcon = scene->device.of<falcon::FalconSettings>();
+  EXPECT_EQ(falcon.gain_words_per_Nm, fresh.of<falcon::FalconSettings>().gain_words_per_Nm);
+  using force_dimension::ForceDimensionSettings, phantom::PhantomSettings;
+  EXPECT_EQ(scene->device.of<ForceDimensionSettings>().watchdog_s,
+            fresh.of<ForceDimensionSettings>().watchdog_s);
+  EXPECT_EQ(scene->device.of<PhantomSettings>().position_step_m,
+            fresh.of<PhantomSettings>().position_step_m);
+  EXPECT_FALSE(scene->device.of<LinesSettings>().wired());
 }
 
 TEST(SceneDevice, RefusesALimitThatItsDrivesWouldNotKeep) {
@@ -100,6 +138,16 @@ TEST(SceneDevice, ASceneOfTheSimulationSetToDrivesNeedsTheirSections) {
       << scene.error().message;
 }
 
+TEST(SceneDevice, IsReadWithTheKeysOfDevicesAlone) {
+  const std::string liver = TACT_SOURCE_DIR "/model/scenes/liver.toml";
+  const Overrides wrong{"device.sim.joint_friction_Nm=7", "device.colour=1"};
+  EXPECT_FALSE(load_scene(liver, wrong));
+  const Result<Scene> without = model::scene::load_scene(liver, wrong);
+  ASSERT_TRUE(without) << without.error().message;
+  EXPECT_EQ(without->device.kind, "") << "so it opens none";
+  EXPECT_FALSE(open_device(*without));
+}
+
 TEST(SceneDevice, OneValueAnArmIsThreeNumbersAndSaysWhichIsWrong) {
   const std::string can = scene_on_real_devices();
   EXPECT_TRUE(is_reported(why_refused(can, {"device.can.home_rad=[0.0, 9.0, 0.0]"}),
@@ -112,4 +160,4 @@ TEST(SceneDevice, OneValueAnArmIsThreeNumbersAndSaysWhichIsWrong) {
                           "takes 1 or -1 for each arm"));
 }
 
-}  // namespace tact::model::scene::scene_device_test
+}  // namespace tact::hal::registry::scene_device_test

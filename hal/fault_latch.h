@@ -1,34 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // fault_latch.h - the first fault of a device stays, with its cause, for the loop and for words.
 //
-// The loop's thread sets it; any thread may read it. A cause is one atomic of 64 bits, so a
-// reader never sees half of it.
+// Any thread may set and read it. A cause is one atomic of 64 bits: nobody sees half of it.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
+#include <type_traits>
 
 #include "model/fault.h"
 
-namespace tact::hal::can {
-
-/// Kinds of FaultCause that all CAN devices have; the drives' own begin at kFirstOwn.
-enum class CanCause : std::uint8_t {
-  kCall = 1,        // of the bus; code: errno
-  kNoRoom,          // twenty batches in a row
-  kErrorFrame,      // code: classes, controller state << 16
-  kBeyondStop = 8,  // of a lost homing; code: the arm's angle, mrad, two's complement
-  kRodsApart,
-  kSilent = 12,  // of a drive; code: for how long, ms
-  kNoPosition,   // code: for how long, ms
-  kJumped,       // position without motion
-  kFirstOwn = 16,
-};
+namespace tact::hal {
 
 struct FaultCause {
   model::Fault fault = model::Fault::kNone;
   std::uint8_t axis = 0;   // 0, 1, 2
-  std::uint8_t kind = 0;   // a CanCause, or of the drives' own list
+  std::uint8_t kind = 0;   // of the device's own list; 0: none
   std::uint32_t code = 0;  // means what the kind says
 };
 
@@ -38,7 +25,8 @@ class FaultLatch {
 
   /// Keeps the first one.
   void set(const FaultCause& cause) RT_SAFE {
-    if (fault() == model::Fault::kNone) cause_.store(cause, std::memory_order_relaxed);
+    FaultCause none;
+    cause_.compare_exchange_strong(none, cause, std::memory_order_relaxed);
   }
   /// The same fault, better known: a code often comes a frame later than the state.
   void explain(const FaultCause& cause) RT_SAFE {
@@ -50,6 +38,7 @@ class FaultLatch {
 
  private:
   static_assert(std::atomic<FaultCause>::is_always_lock_free);
+  static_assert(std::has_unique_object_representations_v<FaultCause>);  // compared bit by bit
   std::atomic<FaultCause> cause_{};
 };
 
@@ -65,4 +54,4 @@ class WaitNote {
   std::atomic<FaultCause> cause_{};
 };
 
-}  // namespace tact::hal::can
+}  // namespace tact::hal
