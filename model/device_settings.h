@@ -5,34 +5,12 @@
 // keys (hal/device_facts.h); it is kept here by its type. Set-up code only.
 #pragma once
 
-#include <any>
-#include <map>
 #include <string>
-#include <typeindex>
 
+#include "model/settings_by_type.h"
 #include "model/types.h"
 
 namespace tact::model {
-
-/// One value of each type that was asked for; of any other, its defaults.
-class SettingsByType {
- public:
-  template <typename T>
-  T& of() {
-    std::any& own = own_[typeid(T)];
-    if (!own.has_value()) own = T{};
-    return *std::any_cast<T>(&own);
-  }
-  template <typename T>
-  const T& of() const {
-    static const T kDefaults{};
-    const auto own = own_.find(typeid(T));
-    return own == own_.end() ? kDefaults : *std::any_cast<T>(&own->second);
-  }
-
- private:
-  std::map<std::type_index, std::any> own_;
-};
 
 struct DeviceSettings : SettingsByType {
   std::string kind;             // "sim-delta", or another that hal/registry knows

@@ -6,40 +6,18 @@
 // type, so it includes no law; laws.h lists them.
 #pragma once
 
-#include <any>
 #include <cstddef>
-#include <map>
 #include <string>
 #include <string_view>
-#include <typeindex>
 
 #include "model/parameters.h"
+#include "model/settings_by_type.h"
 #include "model/types.h"
 
 namespace tact::model::scene {
 
 /// The least law that meets [tolerance], by tact-lab plan.
 inline constexpr std::string_view kAutoLaw = "auto";
-
-class LawSettings {
- public:
-  /// The parameters of this type, made where they are not there yet.
-  template <typename Parameters>
-  Parameters& of() {
-    std::any& one = by_type_[typeid(Parameters)];
-    if (!one.has_value()) one = Parameters{};
-    return *std::any_cast<Parameters>(&one);
-  }
-  template <typename Parameters>
-  const Parameters& of() const {
-    static const Parameters fallback{};
-    const auto found = by_type_.find(typeid(Parameters));
-    return found == by_type_.end() ? fallback : *std::any_cast<Parameters>(&found->second);
-  }
-
- private:
-  std::map<std::type_index, std::any> by_type_;
-};
 
 /// The organ as a linear elastic body; the box is in the mesh's own frame, before organ.position_m.
 struct ElasticSettings {

@@ -19,12 +19,9 @@
 #include "model/limits.h"
 #include "model/mesh/mesh.h"
 #include "model/mesh/rgb.h"
+#include "model/reader/keys_fwd.h"
 #include "model/result.h"
 #include "model/scene/law_settings.h"
-
-namespace tact::model::reader {
-class Keys;
-}
 
 namespace tact::model::scene {
 
@@ -55,7 +52,7 @@ struct Scene {
   double rate_Hz = 0.0;
   std::string law = "rhombus";         // a name of laws.h, or kAutoLaw
   std::vector<std::string> described;  // laws that have a section
-  LawSettings laws;
+  SettingsByType laws;
   ComplianceSettings compliance;
   std::size_t table_knots = 65;
   bool varies_by_place = false;  // by [compliance]: closed-form laws in series, anchors
