@@ -116,7 +116,7 @@ std::optional<double> Recording::body_height_m() const {
 }
 
 ReadResult read_recording(const std::string& path) {
-  const auto unusable = [&path](const Error& error) {
+  const auto unusable = [](const Error& error) {
     return ReadResult{.recording = {}, .usable = false, .damage = error.message};
   };
   auto file = RunReader::open(path, "check the name");
