@@ -126,10 +126,10 @@ def messages(port, token, seconds=20):
 def one_of_each_kind(port, token):
     seen = {}
     for message in messages(port, token):
-        sites = message.get("sites") if message["kind"] == "frame" else "-"
-        if sites or message["kind"] not in seen:
+        contacts = message.get("contacts") if message["kind"] == "frame" else "-"
+        if contacts or message["kind"] not in seen:
             seen[message["kind"]] = message
-        if len(seen) == len(KINDS) and seen["frame"].get("sites"):
+        if len(seen) == len(KINDS) and seen["frame"].get("contacts"):
             return list(seen.values())
     raise ValueError(f"/live sent {sorted(seen)} alone")
 
