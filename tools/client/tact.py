@@ -87,7 +87,7 @@ def default_socket():
 
 
 class live:  # noqa: N801  # an iterator with a header
-    """Frames as they come, each one FRAME; ends when tactd is gone, however it went. header, fields, organ and tool are there at once.
+    """Frames as they come; ends when tactd is gone, however it went. header, fields, organ and tool are there at once.
     For a slow reader the kernel keeps about 50 frames and drops newer ones; newest=True gives the last of those that wait."""
 
     def __init__(self, path=None, timeout_s=5.0, newest=False):
@@ -216,8 +216,8 @@ class _File:
                 bad.setdefault(kind, []).append(at)
             at += CHUNK.size + size
         for kind, places in bad.items():
-            yield (f"{len(places)} of {len(places) + good.get(kind, 0)} {KIND_NAMES.get(kind, 'parts')} are damaged, the first at "
-                   f"byte {places[0]}")
+            whole, name = len(places) + good.get(kind, 0), KIND_NAMES.get(kind, "parts")
+            yield f"{len(places)} of {whole} {name} are damaged, the first at byte {places[0]}"
         if lost:
             yield f"{lost} bytes belong to no whole part, the first at byte {first_lost}"
         elif at < len(data):

@@ -78,7 +78,8 @@ class Client(unittest.TestCase):
         data[first + 200 * size + 3] ^= 1  # of its header
         broken.write_bytes(data)
         self.assertEqual(len(tact.read_ticks(broken).ticks), 4998)
-        self.assertIn(f"{size} bytes belong to no whole part, the first at byte {first + 200 * size}", tact.read_ticks(broken).damage)
+        self.assertIn(f"{size} bytes belong to no whole part, the first at byte {first + 200 * size}",
+                      tact.read_ticks(broken).damage)
         broken.write_bytes(data[:first + 150 * size + 9])
         self.assertRegex(tact.read_ticks(broken).damage, "it has no end.*; 1 of 150 .*; cut off at byte")
         broken.write_bytes(b"tactlog6" + data[8:])
