@@ -40,7 +40,7 @@ void sleep_until_ns(std::int64_t deadline_ns) {
 }  // namespace
 
 std::string text_of_sdk_trouble(const FaultCause& t) {
-  constexpr std::array kRefused{"",
+  constexpr std::array kDoesNot{"",
                                 "tell its pose",
                                 "tell its gripper",
                                 "take a force",
@@ -52,7 +52,7 @@ std::string text_of_sdk_trouble(const FaultCause& t) {
   if (source == SdkTroubleSource::kForceOff)
     return fmt::format("the device switched its forces off: {}", force_off_text(code));
   if (source != SdkTroubleSource::kStatus)
-    return fmt::format("the device does not {}: {}", kRefused.at(t.kind), text_of_sdk_error(code));
+    return fmt::format("the device does not {}: {}", kDoesNot.at(t.kind), text_of_sdk_error(code));
   if (t.fault == Fault::kHomingLost)
     return "the device has lost its calibration; calibrate it, then start tactd again";
   if (t.fault == Fault::kDeviceUnplugged)
