@@ -20,9 +20,9 @@ class SettingsByType {
   }
   template <typename T>
   const T& of() const {
-    static const T kDefaults{};
+    static const T defaults{};
     const auto own = own_.find(typeid(T));
-    return own == own_.end() ? kDefaults : *std::any_cast<T>(&own->second);
+    return own == own_.end() ? defaults : *std::any_cast<T>(&own->second);
   }
 
  private:

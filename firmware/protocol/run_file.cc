@@ -95,7 +95,7 @@ Result<RunReader> RunReader::of_bytes(std::string bytes) {
 }
 
 std::optional<Error> RunReader::read_head() {
-  const Error damaged{"its head is damaged, so nothing of it can be used; record it again"};
+  Error damaged{"its head is damaged, so nothing of it can be used; record it again"};
   Chunk chunk;
   if (!next(chunk) || chunk.kind != ChunkKind::kHead || skipped()) return damaged;
   auto head = model::io::parse_json(chunk.content, "its head");
