@@ -3,15 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <boost/crc.hpp>
 #include <cstddef>
 #include <cstring>
 
 namespace tact::firmware::protocol {
 namespace {
-
-// Chosen: more than the meshes of 4 million elements each (host/record/telemetry_check.cc).
-constexpr std::uint32_t kMaxContentBytes = 1 << 28;
 
 std::uint32_t own_crc_of(const ChunkHeader& header) {
   return crc_of({reinterpret_cast<const char*>(&header), offsetof(ChunkHeader, header_crc)});
@@ -74,8 +72,7 @@ bool ChunkReader::read_header(ChunkHeader& header) {
   bool is_whole = read(&header, sizeof header);
   if (!is_whole && at_bytes_ > start_bytes)
     cut_off_ = fmt::format("the file is cut off at byte {}; ", at_bytes_);
-  while (is_whole &&
-         (own_crc_of(header) != header.header_crc || header.content_bytes > kMaxContentBytes)) {
+  while (is_whole && own_crc_of(header) != header.header_crc) {
     ++lost_bytes;
     char* const bytes = reinterpret_cast<char*>(&header);
     std::memmove(bytes, bytes + 1, sizeof header - 1);
@@ -96,9 +93,12 @@ bool ChunkReader::next(Chunk& chunk) {
     ChunkHeader header;
     if (!read_header(header)) return false;
     const std::uint64_t start_bytes = at_bytes_ - sizeof header;
+    // Compared before allocating, because a length in a file may be wrong.
+    const std::uint64_t left_bytes = size_bytes_ - std::min(size_bytes_, at_bytes_);
     chunk.kind = header.kind;
-    chunk.content.resize(header.content_bytes);
-    if (!read(chunk.content.data(), chunk.content.size())) {
+    chunk.content.resize(std::min<std::uint64_t>(header.content_bytes, left_bytes));
+    if (!read(chunk.content.data(), chunk.content.size()) ||
+        chunk.content.size() < header.content_bytes) {
       cut_off_ = fmt::format("the file is cut off at byte {}, within one of its {}; ", at_bytes_,
                              name_of(header.kind));
       return false;

@@ -51,8 +51,9 @@ class ChunkReader {
   /// Reads at most `size` bytes and returns how many; fewer only at the end.
   using Source = std::function<std::size_t(void* to, std::size_t size)>;
 
-  explicit ChunkReader(Source source, std::uint64_t start_bytes = 0)
-      : source_(std::move(source)), at_bytes_(start_bytes) {}
+  /// `size_bytes`: of all that the source has, with the `start_bytes` that were read before.
+  ChunkReader(Source source, std::uint64_t size_bytes, std::uint64_t start_bytes = 0)
+      : source_(std::move(source)), size_bytes_(size_bytes), at_bytes_(start_bytes) {}
 
   /// The next good chunk; false at the end. Those that are damaged are counted.
   bool next(Chunk& chunk);
@@ -69,7 +70,7 @@ class ChunkReader {
   bool read_header(ChunkHeader& header);
 
   Source source_;
-  std::uint64_t at_bytes_;
+  std::uint64_t size_bytes_, at_bytes_;
   std::map<ChunkKind, Count> counts_;
   std::uint64_t lost_bytes_ = 0, first_lost_at_bytes_ = 0;
   std::string cut_off_;  // how the last chunk ends too early

@@ -10,13 +10,13 @@ namespace tact::firmware::protocol {
 namespace {
 
 const char* contact_state(std::uint64_t number) {
-  static constexpr std::array kNames{"free", "touching", "held", "inside"};
+  static constexpr std::array kNames{"free", "contact", "held", "inside"};
   return number < kNames.size() ? kNames[number] : "unknown";
 }
 
 #define FIELD(member, meaning) TACT_FIELD(FrameContact, member, #member, meaning)
 constexpr std::array kContact{
-    FIELD(surface_point_m, "touched or held point of the undeformed surface"),
+    FIELD(surface_point_m, "contact point on the undeformed surface"),
     FIELD(normal, "outward unit normal there"),
     FIELD(shift_m, "tangential displacement of the tissue"),
     FIELD(depth_m, "press positive, pull negative"),

@@ -36,7 +36,7 @@ constexpr std::array<TypeEntry, 11> kTypes{{{"bool", 1},
 static_assert(kTypes.size() == static_cast<std::size_t>(FieldType::kRecord) + 1);
 
 // Chosen; bounds what a damaged table can ask for.
-constexpr std::size_t kMaxRecordBytes = 1 << 20;
+constexpr std::size_t kMaxRecordBytes = 1 << 16;
 constexpr int kMaxDepth = 4;  // of records in records
 
 /// A row of a table in a file.
@@ -53,7 +53,8 @@ model::Result<Stored> stored_of(const json& row) {
   Stored out{.name = row["name"], .type = FieldType::kRecord, .count = 1, .record = nullptr};
   if (row.contains("fields")) {
     out.record = &row["fields"];
-    if (!out.record->is_array()) return invalid;
+    // Each element has a byte at least, so kMaxRecordBytes bounds their number, too.
+    if (!out.record->is_array() || out.record->empty()) return invalid;
   } else {
     const std::string type = row.value("type", json()).is_string() ? row["type"] : json("");
     const auto* const entry = std::ranges::find(kTypes, type, &TypeEntry::name);
@@ -85,14 +86,6 @@ std::string_view unit_of(std::string_view name) {
         name[name.size() - unit.size() - 1] == '_')
       return unit;
   return {};
-}
-
-std::size_t packed_bytes(FieldTable fields) {
-  std::size_t sum = 0;
-  for (const Field& field : fields)
-    sum += field.count() *
-           (field.record != nullptr ? packed_bytes(field.record()) : size_bytes_of(field.type));
-  return sum;
 }
 
 void pack(FieldTable fields, const void* record, std::string& out) {

@@ -3,7 +3,7 @@
 // JSON, the page's types and the reader in Python are made.
 //
 // A record is packed field by field in the order of its table, little-endian, without padding. The
-// table of the program that wrote a file stands in the file (run_file.h), so a reader matches
+// table of the program that wrote a file is in the file (run_file.h), so a reader matches
 // fields by name: missing fields keep their defaults, unknown fields are skipped.
 #pragma once
 
@@ -141,15 +141,13 @@ std::size_t size_bytes_of(FieldType type);  // of one element; 0 for kRecord
 /// Unit at the end of a name, as "m" or "N_per_m"; empty if it has none.
 std::string_view unit_of(std::string_view name);
 
-/// Bytes of a packed record.
-std::size_t packed_bytes(FieldTable fields);
 /// Appends the packed record.
 void pack(FieldTable fields, const void* record, std::string& out);
 
-/// The table as it stands in a file: a list of {name, type, shape, unit, meaning, values, fields}.
+/// The table as a file has it: a list of {name, type, shape, unit, meaning, values, fields}.
 nlohmann::json json_of(FieldTable fields);
 
-/// Unpacks records of the table that stands in a file into this program's struct.
+/// Unpacks records into this program's struct, by the table of the file.
 class Unpacker {
  public:
   /// An error if the table is invalid, or a field has another type than here.

@@ -7,6 +7,8 @@
 #include <cstring>
 #include <iterator>
 
+#include "model/io/one_line.h"
+
 namespace tact::firmware::protocol {
 namespace {
 
@@ -102,6 +104,17 @@ void add_cells(std::string& out, const Field& field, const char* from,
 }
 
 }  // namespace
+
+std::string csv_facts(std::string_view title, const RunHeader& header) {
+  using model::io::on_one_line;
+  return fmt::format(
+      "# {}\n# scene: {}\n# scene_hash: {}\n# law: {}\n# device: {}\n# revision: {}\n# began: {}\n"
+      "# host: {}\n# rate_Hz: {:.10g}\n# frame_rate_Hz: {:.10g}\n",
+      title, on_one_line(header.scene_name), on_one_line(header.scene_hash),
+      on_one_line(header.law_name), on_one_line(header.device_name), on_one_line(header.revision),
+      on_one_line(header.began_utc), on_one_line(header.host_name), header.rate_Hz,
+      header.frame_rate_Hz);
+}
 
 std::string csv_columns(FieldTable fields, const ElementLimit& limit_of) {
   std::string out;

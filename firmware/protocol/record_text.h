@@ -9,13 +9,18 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "firmware/protocol/record_fields.h"
+#include "firmware/protocol/run_header.h"
 
 namespace tact::firmware::protocol {
 
 /// Maximum number of elements of a field to write; empty: all.
 using ElementLimit = std::function<std::optional<std::size_t>(const Field&)>;
+
+/// What ran, in lines that begin with '#'; the first one has the title.
+std::string csv_facts(std::string_view title, const RunHeader& header);
 
 /// Names with commas between them. A record in a record has its name and number before its fields,
 /// from 1 on: contact1_depth_m.

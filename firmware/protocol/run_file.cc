@@ -73,7 +73,7 @@ Result<RunReader> RunReader::open(const std::string& path, std::string_view reme
   auto file = std::make_unique<model::io::SealedFile>(std::move(*opened));
   model::io::SealedFile* const in = file.get();
   RunReader reader([in](void* to, std::size_t size) { return in->read(to, size); },
-                   std::move(file));
+                   in->size_bytes(), std::move(file));
   std::string magic(kMagic.size(), '\0');
   magic.resize(in->read(magic.data(), magic.size()));
   if (auto error = check_magic(magic)) return Error{path + ": " + error->message};
@@ -83,13 +83,14 @@ Result<RunReader> RunReader::open(const std::string& path, std::string_view reme
 
 Result<RunReader> RunReader::of_bytes(std::string bytes) {
   if (auto error = check_magic(std::string_view(bytes).substr(0, kMagic.size()))) return *error;
+  const std::uint64_t size_bytes = bytes.size();
   auto source = [all = std::move(bytes), at = kMagic.size()](void* to, std::size_t size) mutable {
     const std::size_t got = std::min(size, all.size() - at);
     std::memcpy(to, all.data() + at, got);
     at += got;
     return got;
   };
-  RunReader reader(std::move(source), nullptr);
+  RunReader reader(std::move(source), size_bytes, nullptr);
   if (auto error = reader.read_head()) return *error;
   return reader;
 }

@@ -81,7 +81,7 @@ class RunReader {
   static model::Result<RunReader> of_bytes(std::string bytes);
 
   const RunHeader& header() const { return header_; }
-  /// Without fields where no record of that kind can be in the file.
+  /// All fields are missing() where the file has no records of that kind.
   template <typename Record>
   model::Result<Unpacker> unpacker() const {
     return make_unpacker(schema_of<Record>());
@@ -93,8 +93,9 @@ class RunReader {
   std::string damage();
 
  private:
-  RunReader(ChunkReader::Source source, std::unique_ptr<model::io::SealedFile> file)
-      : file_(std::move(file)), chunks_(std::move(source), kMagic.size()) {}
+  RunReader(ChunkReader::Source source, std::uint64_t size_bytes,
+            std::unique_ptr<model::io::SealedFile> file)
+      : file_(std::move(file)), chunks_(std::move(source), size_bytes, kMagic.size()) {}
   std::optional<model::Error> read_head();
   model::Result<Unpacker> make_unpacker(const RecordSchema& type) const;
 

@@ -1,24 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/telemetry/tick_csv.h"
 
-#include <fmt/format.h>
-
 #include "firmware/protocol/record_text.h"
 #include "model/io/file_writer.h"
-#include "model/io/one_line.h"
 
 namespace tact::firmware::telemetry {
 
 using protocol::LoggedTick;
 
 std::string tick_csv_head(const protocol::RunHeader& header) {
-  using model::io::on_one_line;
-  return fmt::format(
-      "# tact ticks\n# scene: {}\n# scene_hash: {}\n# law: {}\n# revision: {}\n# began: {}\n"
-      "# host: {}\n# rate_Hz: {:.10g}\n{}\n",
-      on_one_line(header.scene_name), on_one_line(header.scene_hash), on_one_line(header.law_name),
-      on_one_line(header.revision), on_one_line(header.began_utc), on_one_line(header.host_name),
-      header.rate_Hz, protocol::csv_columns(LoggedTick::fields()));
+  return protocol::csv_facts("tact ticks", header) + protocol::csv_columns(LoggedTick::fields()) +
+         '\n';
 }
 
 std::string tick_csv_row(const LoggedTick& tick) {

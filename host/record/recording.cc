@@ -34,7 +34,7 @@ class RecordingReader {
     return RecordingReader(std::move(*frames), std::move(*operators), recording);
   }
 
-  /// `skipped`: what stands before it in the file is damaged. An error if nothing can be shown.
+  /// `skipped`: the bytes before it in the file are damaged. An error if nothing can be shown.
   std::optional<Error> add(const Chunk& chunk, bool skipped) {
     if (chunk.kind == ChunkKind::kMeshes) {
       recording_.mesh.resize(chunk.content.size());

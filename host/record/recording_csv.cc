@@ -12,7 +12,6 @@
 #include "firmware/protocol/record_text.h"
 #include "host/record/operator_record.h"
 #include "host/tracking/tracking_setup.h"
-#include "model/io/one_line.h"
 
 namespace tact::host::record {
 namespace {
@@ -65,14 +64,10 @@ class Present {
 }  // namespace
 
 std::string csv_facts(const RunHeader& header) {
-  using model::io::on_one_line;
-  return fmt::format(
-      "# tact frames\n# scene: {}\n# law: {}\n# device: {}\n# rate_Hz: {:.10g}\n"
-      "# frame_rate_Hz: {:.10g}\n"
-      "# row: the newest tick of each frame; margin, median and peak are over all ticks since the "
-      "row before. Every tick: tactd --record LOG, then tactd --replay LOG --csv FILE\n",
-      on_one_line(header.scene_name), on_one_line(header.law_name), on_one_line(header.device_name),
-      header.rate_Hz, header.frame_rate_Hz);
+  return firmware::protocol::csv_facts("tact frames", header) +
+         "# row: the newest tick of each frame; margin, median and peak are over all ticks since "
+         "the "
+         "row before. Every tick: tactd --record LOG, then tactd --replay LOG --csv FILE\n";
 }
 
 std::string csv_header(const RunHeader& header, const std::vector<tracking::BodyRole>& bodies) {

@@ -14,13 +14,14 @@
 namespace tact::firmware::protocol::chunks_test {
 
 ChunkReader reader_of(std::string bytes) {
-  return ChunkReader(
-      [all = std::move(bytes), at = std::size_t{0}](void* to, std::size_t size) mutable {
-        const std::size_t got = std::min(size, all.size() - at);
-        std::memcpy(to, all.data() + at, got);
-        at += got;
-        return got;
-      });
+  const std::size_t size_bytes = bytes.size();
+  auto source = [all = std::move(bytes), at = std::size_t{0}](void* to, std::size_t size) mutable {
+    const std::size_t got = std::min(size, all.size() - at);
+    std::memcpy(to, all.data() + at, got);
+    at += got;
+    return got;
+  };
+  return {std::move(source), size_bytes};
 }
 
 /// Chunk i has the content i, of a length of its own.
@@ -77,6 +78,17 @@ TEST(Chunks, CutAnywhereWhatIsBeforeIsWhole) {
     const bool is_at_an_end = size == 0 || std::ranges::count(ends, size) > 0;
     EXPECT_EQ(read.damage.empty(), is_at_an_end) << size << ": " << read.damage;
   }
+}
+
+TEST(Chunks, ALengthBeyondTheFileAllocatesNoMoreThanTheFileHas) {
+  ChunkHeader header{.kind = ChunkKind::kTick, .content_bytes = UINT32_MAX};
+  header.header_crc = crc_of({reinterpret_cast<const char*>(&header), 12});
+  std::string bytes(reinterpret_cast<const char*>(&header), sizeof header);
+  ChunkReader reader = reader_of(bytes += "abc");
+  Chunk chunk;
+  EXPECT_FALSE(reader.next(chunk));
+  EXPECT_LE(chunk.content.capacity(), 100u);
+  EXPECT_NE(reader.damage().find("cut off at byte 19"), std::string::npos) << reader.damage();
 }
 
 TEST(Chunks, AMessageIsOneChunk) {

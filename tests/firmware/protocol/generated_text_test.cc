@@ -15,6 +15,7 @@
 #include "firmware/protocol/run_file.h"
 #include "hal/sim/hand_target.h"
 #include "host/record/operator_record.h"
+#include "host/server/frame_json.h"
 
 namespace tact::firmware::protocol::generated_text_test {
 
@@ -67,9 +68,11 @@ std::string markdown_rows(FieldTable fields, const std::string& prefix = "") {
 
 template <typename Record>
 std::string markdown() {
+  const Record record;
   return fmt::format(
              "\n### {}, kind {}, {} bytes\n\n| field | type | unit | what |\n|---|---|---|---|\n",
-             Record::kName, static_cast<int>(Record::kKind), packed_bytes(Record::fields())) +
+             Record::kName, static_cast<int>(Record::kKind),
+             chunk_of(record).size() - sizeof(ChunkHeader)) +
          markdown_rows(Record::fields());
 }
 
@@ -123,8 +126,7 @@ TEST(Generated, ThePageHasTheTypesOfFrameAndHead) {
   header.overrides = {"law=\"rhombus\""};
   header.spheres.resize(1);
   header.piece_color_ratio.resize(1);
-  json scene = json_of(header);
-  scene.erase("hand_socket");  // host/server/frame_json.cc
+  const json scene = json::parse(host::server::scene_json(header));
   std::string text =
       "// SPDX-License-Identifier: Apache-2.0\n"
       "// records.ts - made from the tables of firmware/protocol by firmware_protocol_test: change "

@@ -28,6 +28,14 @@ void mark(FieldTable fields, std::size_t at, std::vector<int>& named) {
     }
 }
 
+std::size_t packed_bytes(FieldTable fields) {
+  std::size_t sum = 0;
+  for (const Field& field : fields)
+    sum += field.count() *
+           (field.record != nullptr ? packed_bytes(field.record()) : size_bytes_of(field.type));
+  return sum;
+}
+
 /// A member without a row is a hole that alignment does not explain.
 template <typename Record>
 void expect_all_named() {
@@ -122,6 +130,15 @@ TEST(Records, ADamagedTableIsAnError) {
                           json::array({{{"name", "a"}, {"type", "u8"}, {"shape", {1u << 30}}}}),
                           json::array({{{"name", "a"}, {"fields", 1}}})})
     EXPECT_FALSE(Unpacker::make(bad, Frame::fields())) << bad;
+  // 65 536 times 65 536 elements, each of them nothing: must not be counted one by one.
+  json many = json::array();
+  for (int i = 0; i < 3; ++i)
+    many = json::array({{{"name", "a"}, {"shape", {256, 256}}, {"fields", many}}});
+  EXPECT_FALSE(Unpacker::make(many, Frame::fields()));
+  many = json::array({{{"name", "b"}, {"type", "u8"}, {"shape", {256, 256}}}});
+  for (int i = 0; i < 3; ++i)
+    many = json::array({{{"name", "a"}, {"shape", {256, 256}}, {"fields", many}}});
+  EXPECT_FALSE(Unpacker::make(many, Frame::fields()));
   json deep = good;
   for (int i = 0; i < 9; ++i) deep = json::array({{{"name", "a"}, {"fields", deep}}});
   EXPECT_FALSE(Unpacker::make(deep, Frame::fields()));

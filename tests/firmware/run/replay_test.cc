@@ -161,7 +161,7 @@ TEST_F(ReplayTest, TheTableHasEveryTickAndSaysWhichRunItWas) {
     else if (rows++ == 1800)
       row = line;
   std::remove(csv.c_str());
-  EXPECT_EQ(comments, 8);
+  EXPECT_EQ(comments, 10);
   EXPECT_EQ(rows, 3000);
   for (const char* name :
        {"tick,non_rt,due_ns,", ",tool_position_x_m,", ",wanted_force_x_N,", ",force_x_N,",

@@ -181,8 +181,8 @@ TEST(RecordingCsv, SaysWhichRunItWasAndWhatARowIs) {
   RunHeader header = test::make_header(3, 1, 3, 1);
   header.scene_name = "two\nlines";
   const std::string facts = csv_facts(header);
-  EXPECT_TRUE(
-      facts.starts_with("# tact frames\n# scene: two lines\n# law: rhombus chain, N = 10\n"))
+  EXPECT_TRUE(facts.starts_with(
+      "# tact frames\n# scene: two lines\n# scene_hash: \n# law: rhombus chain, N = 10\n"))
       << facts;
   EXPECT_NE(facts.find("\n# rate_Hz: 4000\n# frame_rate_Hz: 60\n# row: "), std::string::npos);
   std::istringstream lines(facts);

@@ -103,7 +103,8 @@ TEST(SceneJson, SaysWhatTheHeadSays) {
   EXPECT_EQ(json["spheres"].size(), 2u);
   EXPECT_EQ(json["simulated"], true);
   EXPECT_EQ(json["cannot_grip"], false);
-  EXPECT_FALSE(json.contains("hand_socket"));
+  for (const char* of_the_pc : {"hand_socket", "host_name", "overrides"})
+    EXPECT_FALSE(json.contains(of_the_pc)) << of_the_pc;
 }
 
 TEST(CheckHeader, RefusesCountsAndNumbersWithoutSense) {

@@ -14,7 +14,6 @@ export interface Scene {
   force_limit_N: number;
   force_share: number;
   frame_rate_Hz: number;
-  host_name: string;
   law_name: string;
   limits: {
     continuous_force_N: number;
@@ -37,7 +36,6 @@ export interface Scene {
   organ_material: string;
   organ_triangles: number;
   organ_vertices: number;
-  overrides: string[];
   piece_color_ratio: Vec[];
   profile_pitch_m: number;
   profile_points: number;
@@ -83,7 +81,7 @@ export interface FrameFields {
 }
 
 export interface ContactFields {
-  surface_point_m: Vec; // touched or held point of the undeformed surface
+  surface_point_m: Vec; // contact point on the undeformed surface
   normal: Vec; // outward unit normal there
   shift_m: Vec; // tangential displacement of the tissue
   depth_m: number; // press positive, pull negative

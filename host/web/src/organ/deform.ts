@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// deform.ts - moves the vertices of the organ as the touched contacts say. Only contacts and profiles
+// deform.ts - moves the vertices of the organ by the contacts. Only contacts and profiles
 // travel from tactd; the mesh stays here.
 //
 //     d(v) = fade(v) (-n (u(rho) + taper(rho) tilt . (v - p)) + s w(rho))
