@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// fault_latch.h - the first fault of a device stays, with its cause, for the loop and for words.
+// fault_latch.h - the first fault of a device stays, with its cause, for the loop and for messages.
 //
 // Any thread may set and read it. A cause is one atomic of 64 bits: nobody sees half of it.
 #pragma once

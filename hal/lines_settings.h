@@ -22,22 +22,21 @@ struct LinesSettings {
   int clutch = -1;               // switch that parts tool and handle
   bool wired() const { return !chip.empty(); }
 
-  template <class Keys>
-  void visit(Keys& k) {
+  void visit(model::ParameterVisitor& k) {
     const auto line = [&k](const char* key, const char* meaning, int& offset) {
       k.whole(key, {-1.0, 511.0}, meaning, offset);
     };
     k.text("chip", "label of the GPIO chip, as gpiodetect shows it, or its path", chip,
-           Keys::kOptional);
+           model::Need::kOptional);
     line("estop_a", "in, high = good, channel A of the e-stop; -1: none", estop_a);
     line("estop_b", "in, high = good, channel B", estop_b);
     line("dead_man", "in, high = held", dead_man);
     line("grip", "in, a foot or hand switch that closes the jaws", grip);
-    using Choice = typename Keys::Choice;
+    using model::Choice;
     constexpr std::array kGripLevels{Choice{"high", "the jaws close at the high level"},
                                      Choice{"low", "at the low level"}};
     k.choice("grip_closes", kGripLevels, "polarity of the grip line", grip_closes_low,
-             Keys::kOptional);
+             model::Need::kOptional);
     line("clutch", "in, high = pressed: the tool stays, the handle moves", clutch);
     line("enable", "out, high = the drives may have power", enable);
     line("heartbeat", "out, toggles after every healthy tick", heartbeat);

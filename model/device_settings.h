@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// device_settings.h - what a scene says about the device, whichever it is.
+// device_settings.h - what a scene says about a device of any kind.
 //
-// What one device alone has stands in its folder, as a struct of plain numbers and names with its
+// What one device alone has is in its folder, as a struct of plain numbers and names with its
 // keys (hal/device_facts.h); it is kept here by its type. Set-up code only.
 #pragma once
 

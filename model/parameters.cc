@@ -21,7 +21,7 @@ bool has_meaning(double value, const Range& range) {
 
 void ParameterList::count(std::string_view key, CountRange range, std::string_view meaning,
                           std::size_t& value, Need) {
-  const Range ends{static_cast<double>(range.low), static_cast<double>(range.high), kHard};
+  const Range ends{static_cast<double>(range.low), static_cast<double>(range.high), range.is_hard};
   all.push_back({.key = key, .meaning = meaning, .range = ends, .count = &value});
 }
 
@@ -30,13 +30,13 @@ Parameter ParameterList::find(std::string_view key) const {
   return found == all.end() ? Parameter{} : *found;
 }
 
-std::optional<Error> ParameterList::check(std::string_view law) const {
+std::optional<Error> ParameterList::check(std::string_view owner) const {
   for (const Parameter& p : all) {
     if (has_meaning(p.value(), p.range)) continue;
     std::array<char, 96> text{};
     std::snprintf(text.data(), text.size(), " = %g; allowed: %g .. %g", p.value(), p.range.low,
                   p.range.high);
-    return Error{std::string(law) + ": " + std::string(p.key) + text.data()};
+    return Error{std::string(owner) + ": " + std::string(p.key) + text.data()};
   }
   return std::nullopt;
 }

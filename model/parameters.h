@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// parameters.h - the parameters of a law, each stated once: key with its unit, range, meaning.
+// parameters.h - parameters of a law or a device, each stated once: key with its unit, range,
+// meaning.
 //
 //     inline void visit(ParameterVisitor& v, SpringParameters& p) {
 //       v.number("stiffness_N_per_m", {0.01, 1e5}, "k", p.stiffness_N_per_m);
 //     }
 //
 // The reader of a scene, its reference page, make_* and the tools that change a parameter by key
-// all visit, so a range stands nowhere else. Set-up code only.
+// all visit, so a range is stated only there. Set-up code only.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <initializer_list>
 #include <optional>
 #include <span>
 #include <string>
@@ -29,8 +32,9 @@ struct Range {
   double low = 0.0, high = 0.0;
   bool is_hard = false;
 };
-struct CountRange {  // hard
+struct CountRange {
   std::size_t low = 0, high = 0;
+  bool is_hard = true;
 };
 
 /// Chosen: it keeps out millimetres that were written for metres.
@@ -52,6 +56,14 @@ class ParameterVisitor {
                      std::size_t& value, Need need = Need::kRequired) = 0;
   virtual void flag(std::string_view, std::string_view, bool&, Need = Need::kRequired) {}
   virtual void text(std::string_view, std::string_view, std::string&, Need = Need::kRequired) {}
+  /// A file, absolute or from the folder of the document; becomes its absolute path.
+  virtual void file(std::string_view, std::string_view, std::string&, Need = Need::kRequired) {}
+  /// A whole number that may be negative; optional.
+  virtual void whole(std::string_view, Range, std::string_view, int&) {}
+  virtual void per_arm(std::string_view, Range, std::string_view, std::array<double, 3>&,
+                       Need = Need::kRequired) {}
+  /// These keys contradict each other.
+  virtual void refuse(std::initializer_list<std::string_view>, const std::string&) {}
   /// The last but one is the index of the choice.
   virtual void choice(std::string_view, std::span<const Choice>, std::string_view, std::size_t&,
                       Need = Need::kRequired) {}
@@ -69,7 +81,7 @@ class ParameterVisitor {
   ~ParameterVisitor() = default;
 };
 
-/// One number, where its variable stands; of a key that is not there, neither number nor count.
+/// One number, with a pointer to its variable; of a key that is not there, neither is set.
 struct Parameter {
   std::string_view key{}, meaning{};
   Range range{};
@@ -88,8 +100,8 @@ class ParameterList final : public ParameterVisitor {
   void count(std::string_view key, CountRange range, std::string_view meaning, std::size_t& value,
              Need) override;
   Parameter find(std::string_view key) const;
-  /// For make_*: the first without meaning, as an error that names `law`, it and what is allowed.
-  std::optional<Error> check(std::string_view law) const;
+  /// For make_*: the first without meaning, as an error that names `owner`, it and what is allowed.
+  std::optional<Error> check(std::string_view owner) const;
 
   std::vector<Parameter> all;
 };

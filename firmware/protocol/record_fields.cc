@@ -8,6 +8,8 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "model/io/unit_name.h"
+
 namespace tact::firmware::protocol {
 namespace {
 
@@ -76,18 +78,6 @@ std::size_t size_bytes_of(FieldType type) {
   return kTypes[static_cast<std::size_t>(type)].size_bytes;
 }
 
-std::string_view unit_of(std::string_view name) {
-  // Longer ones before those that they end with.
-  static constexpr std::array<std::string_view, 19> kUnits{
-      "N_per_m", "Ns_per_m", "N_per_s", "m",  "mps", "rad", "radps", "N",  "Nm",   "J",
-      "W",       "s",        "ns",      "us", "um",  "Hz",  "px",    "Pa", "ratio"};
-  for (const std::string_view unit : kUnits)
-    if (name.size() > unit.size() && name.ends_with(unit) &&
-        name[name.size() - unit.size() - 1] == '_')
-      return unit;
-  return {};
-}
-
 void pack(FieldTable fields, const void* record, std::string& out) {
   const char* const bytes = static_cast<const char*>(record);
   for (const Field& field : fields) {
@@ -111,7 +101,7 @@ json json_of(FieldTable fields) {
       row["type"] = kTypes[static_cast<std::size_t>(field.type)].name;
     for (const std::size_t length : field.shape)
       if (length > 0) row["shape"].push_back(length);
-    if (const std::string_view unit = unit_of(field.name); !unit.empty()) row["unit"] = unit;
+    if (const auto unit = model::io::unit_of(field.name); !unit.empty()) row["unit"] = unit;
     for (const char* const component : field.components) row["components"].push_back(component);
     // A fault has a table of its own, and a larger type.
     for (std::uint64_t i = 0; field.label != nullptr && field.type == FieldType::kU8; ++i) {

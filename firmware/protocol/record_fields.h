@@ -138,8 +138,6 @@ constexpr Field make_field(const char* name, std::size_t offset_bytes, const cha
       name, offsetof(Struct, path), meaning)
 
 std::size_t size_bytes_of(FieldType type);  // of one element; 0 for kRecord
-/// Unit at the end of a name, as "m" or "N_per_m"; empty if it has none.
-std::string_view unit_of(std::string_view name);
 
 /// Appends the packed record.
 void pack(FieldTable fields, const void* record, std::string& out);

@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "model/io/one_line.h"
+#include "model/io/unit_name.h"
 
 namespace tact::firmware::protocol {
 namespace {
@@ -77,14 +78,13 @@ void add_columns(std::string& out, const Field& field, const std::string& prefix
     if (field.label != nullptr) fmt::format_to(to, ",{}_name", name);
     return;
   }
-  const std::string_view unit = unit_of(name);
-  const std::string stem = name.substr(0, name.size() - (unit.empty() ? 0 : unit.size() + 1));
+  const model::io::UnitName* const unit = model::io::find_unit(name);
+  const std::string_view suffix = unit ? unit->suffix : std::string_view{};
+  const std::string stem = name.substr(0, name.size() - suffix.size());
   for (std::size_t i = 0; i < count; ++i) {
-    if (i < field.components.size())
-      fmt::format_to(to, ",{}_{}", stem, field.components[i]);
-    else
-      fmt::format_to(to, ",{}_{}", stem, i);
-    if (!unit.empty()) fmt::format_to(to, "_{}", unit);
+    const bool is_named = i < field.components.size();
+    fmt::format_to(to, ",{}_{}{}", stem, is_named ? field.components[i] : std::to_string(i),
+                   suffix);
   }
 }
 

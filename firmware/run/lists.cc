@@ -52,7 +52,7 @@ std::string devices_as_json(const std::vector<FoundPart>& parts) {
 std::string parameters_as_text(model::scene::Scene scene) {
   std::string text;
   for (const model::Parameter& p : parameters_of(*model::scene::find_law(scene.law), scene).all) {
-    const std::string_view unit = model::reader::unit_of_key(p.key);
+    const std::string_view unit = model::io::unit_of(p.key);
     fmt::format_to(std::back_inserter(text), "{:<42} {:<10g} {} .. {}{}{}{}  {}\n",
                    fmt::format("{}.{}", scene.law, p.key), p.value(), p.range.low, p.range.high,
                    unit.empty() ? "" : " ", unit, p.count ? ", whole" : "", p.meaning);
@@ -64,7 +64,7 @@ std::string parameters_as_json(model::scene::Scene scene) {
   nlohmann::json list = nlohmann::json::array();
   for (const model::Parameter& p : parameters_of(*model::scene::find_law(scene.law), scene).all)
     list.push_back({{"key", fmt::format("{}.{}", scene.law, p.key)},
-                    {"unit", model::reader::unit_of_key(p.key)},
+                    {"unit", model::io::unit_of(p.key)},
                     {"value", p.value()},
                     {"low", p.range.low},
                     {"high", p.range.high},

@@ -102,7 +102,7 @@ std::optional<Refusal> check_interface(const CanLink& link, const std::string& n
                    again(name, link_type) + " restart-ms 0"};
   // A serial adapter (slcan) that its daemon has set up tells none.
   if (link.has_controller && !link.bitrate)
-    return Refusal{name + " does not tell its bit rate, so nobody knows how late a force is",
+    return Refusal{name + " does not report its bit rate, so nobody knows how late a force is",
                    again(name, link_type)};
   return check_state(link, name);
 }

@@ -31,8 +31,7 @@ struct DeltaSettings : delta::DeltaGeometry, delta::DeltaMasses {
   double counts_per_turn = 0.0;            // of an arm
   double observer_bandwidth_Hz = 40.0;
 
-  template <class Keys>
-  void visit(Keys& k) {
+  void visit(model::ParameterVisitor& k) {
     k.number("base_radius_m", {0.01, 1.0}, "motor axes from the middle", base_radius_m);
     k.number("platform_radius_m", {0.0, 1.0}, "rod ends from the middle of the platform",
              platform_radius_m);
@@ -59,7 +58,7 @@ struct DeltaSettings : delta::DeltaGeometry, delta::DeltaMasses {
     k.number("counts_per_turn", {100.0, 1e8}, "encoder counts of one turn of an arm",
              counts_per_turn);
     k.number("observer_bandwidth_Hz", {1.0, 500.0}, "of the velocity observer",
-             observer_bandwidth_Hz, Keys::kOptional);
+             observer_bandwidth_Hz, model::Need::kOptional);
   }
 };
 
@@ -70,7 +69,7 @@ enum class Homing {
   kJig,       // the arms rest on a jig at home_rad when tactd starts
 };
 
-/// Three drives on one bus. What one kind of drives alone takes stands in its folder.
+/// Three drives on one bus. What one kind of drives alone takes is in its folder.
 struct CanSettings {
   static constexpr Section kSection{"can", "its drives, can-odrive, can-cia402 or can-moteus",
                                     true};
@@ -82,35 +81,33 @@ struct CanSettings {
   PerArm direction{};   // 1 or -1: sign of the motor's turn for a rising arm
   PerArm home_rad{};    // of the arms on the jig
 
-  template <class Keys>
-  void visit(Keys& k) {
-    using Choice = typename Keys::Choice;
+  void visit(model::ParameterVisitor& k) {
+    using model::Choice;
     constexpr std::array kHoming{Choice{"absolute", "absolute encoders, zero_turns holds for good"},
                                  Choice{"index", "the drives look for the index pulse at start"},
                                  Choice{"jig", "the arms rest at home_rad when tactd starts"}};
     static_assert(kHoming.size() == static_cast<std::size_t>(Homing::kJig) + 1);
-    k.text("interface", "of the bus, as ip link shows it", interface, Keys::kOptional);
+    k.text("interface", "of the bus, as ip link shows it", interface, model::Need::kOptional);
     visit_nodes(k);
     k.choice("homing", kHoming, "how the arms' angles are known", homing);
     // Each homing needs one of the two; describing has no homing yet.
     const bool on_jig = homing == Homing::kJig;
     k.per_arm("zero_turns", {-1e6, 1e6}, "of the motors, arms at 0 rad; the jig finds it",
-              zero_turns, on_jig ? Keys::kOptional : Keys::kRequired);
+              zero_turns, on_jig ? model::Need::kOptional : model::Need::kRequired);
     k.per_arm("direction", {-1.0, 1.0}, "1 or -1: sign of a motor's turn for a rising arm",
               direction);
     if (std::ranges::any_of(direction, [](double sign) { return std::abs(sign) != 1.0; }))
       k.refuse({"direction"}, "device.can.direction takes 1 or -1 for each arm");
     k.per_arm("home_rad", {-3.2, 3.2}, "of the arms on the jig; \"jig\" alone needs it", home_rad,
-              on_jig ? Keys::kRequired : Keys::kOptional);
+              on_jig ? model::Need::kRequired : model::Need::kOptional);
   }
 
  private:
-  template <class Keys>
-  void visit_nodes(Keys& k) {
+  void visit_nodes(model::ParameterVisitor& k) {
     PerArm given{};
     std::ranges::copy(node, given.begin());
     // A CANopen drive has node 1 to 126, an ODrive 0 to 63: each device refuses the rest by itself.
-    k.per_arm("node", {0.0, 127.0}, "of the drives of arms 1, 2, 3", given, Keys::kOptional);
+    k.per_arm("node", {0.0, 127.0}, "of the drives of arms 1, 2, 3", given, model::Need::kOptional);
     std::ranges::transform(given, node.begin(), [](double one) { return static_cast<int>(one); });
     if (!std::ranges::equal(given, node) || node[0] == node[1] || node[1] == node[2] ||
         node[2] == node[0])
@@ -124,9 +121,8 @@ inline bool is_on_can(const model::DeviceSettings& device) {
 
 /// Of a key in [device.can] that one kind of drives takes: another would leave it aside without a
 /// word, as a current that nobody limits.
-template <class Keys>
-void refuse_of_others(Keys& k, const model::DeviceSettings& device, std::string_view kind,
-                      std::string_view key, std::string_view owner) {
+inline void refuse_of_others(model::ParameterVisitor& k, const model::DeviceSettings& device,
+                             std::string_view kind, std::string_view key, std::string_view owner) {
   if (is_on_can(device) && device.kind != kind)
     k.refuse({key}, fmt::format("device.can.{} is for {}, and a {} would not take it; remove it",
                                 key, owner, device.kind));

@@ -30,14 +30,14 @@ struct Cia402Settings {
   bool command_at_sync = false;  // RPDO type 1, if the drive insists
   double rated_torque_Nm = 0.0;  // what 1000 of object 6071 are; 0: the drive's own 6076
 
-  template <class Keys>
-  void visit(Keys& k, const model::DeviceSettings& device) {
+  void visit(model::ParameterVisitor& k, const model::DeviceSettings& device) {
     k.number("counts_per_motor_turn", {100.0, 1e8}, "increments of a CiA 402 drive",
-             counts_per_motor_turn, Keys::kOptional);
+             counts_per_motor_turn, model::Need::kOptional);
     k.flag("command_at_sync", "CiA 402: torque waits for SYNC, if the drive insists",
-           command_at_sync, Keys::kOptional);
-    k.number("rated_torque_Nm", {0.0, 1000.0}, "CiA 402: of a motor; 0: as the drive tells (6076)",
-             rated_torque_Nm, Keys::kOptional);
+           command_at_sync, model::Need::kOptional);
+    k.number("rated_torque_Nm", {0.0, 1000.0},
+             "CiA 402: of a motor; 0: as the drive reports (6076)", rated_torque_Nm,
+             model::Need::kOptional);
     if (rated_torque_Nm != 0.0)
       can::refuse_of_others(k, device, "can-cia402", "rated_torque_Nm", "a CiA 402 drive");
     if (command_at_sync)

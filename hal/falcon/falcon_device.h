@@ -88,9 +88,8 @@ struct FalconSettings {
   double observer_bandwidth_Hz = 40.0;
   double joint_friction_Nm = 0.02, joint_damping_Nms_per_rad = 0.01;
 
-  template <class Keys>
-  void visit(Keys& k) {
-    constexpr auto kOptional = Keys::kOptional;
+  void visit(model::ParameterVisitor& k) {
+    constexpr auto kOptional = model::Need::kOptional;
     k.text("bus_path", "which one, as 1-2.3; empty: the only one", bus_path, kOptional);
     k.file("firmware", "file of the firmware that you own; empty: it runs already", firmware_path,
            kOptional);

@@ -36,9 +36,8 @@ struct ForceDimensionSettings {
   double damping_Ns_per_m = 1.0;        // what the device itself has, at the handle
   double gripper_open_rad = 0.0;        // its gripper, fully open; 0: the vendor's value
 
-  template <class Keys>
-  void visit(Keys& k) {
-    constexpr auto kOptional = Keys::kOptional;
+  void visit(model::ParameterVisitor& k) {
+    constexpr auto kOptional = model::Need::kOptional;
     k.text("library", "the vendor's, by name or path", library, kOptional);
     k.whole("id", {-1.0, 15.0}, "of the device, -1: the only one", id);
     // FD-3: the device counts 255 units of 125 us at most.

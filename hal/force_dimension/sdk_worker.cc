@@ -41,11 +41,12 @@ void sleep_until_ns(std::int64_t deadline_ns) {
 
 std::string text_of_sdk_trouble(const FaultCause& t) {
   constexpr std::array kDoesNot{"",
-                                "tell its pose",
-                                "tell its gripper",
+                                "report its pose",
+                                "report its gripper",
                                 "take a force",
                                 "switch its forces",
-                                "tell its status"};
+                                "report its status"};
+  static_assert(kDoesNot.size() == static_cast<std::size_t>(SdkTroubleSource::kWatch) + 1);
   const auto source = static_cast<SdkTroubleSource>(t.kind);
   const int code = static_cast<int>(t.code);
   if (source == SdkTroubleSource::kNone) return {};

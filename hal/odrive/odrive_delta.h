@@ -25,18 +25,17 @@ struct OdriveSettings {
   double max_current_A = 0.0;             // both or none; 0: the drive's own limits stay
   bool short_torque = true;               // 4 bytes of torque, not 8: 32 us less on the bus
 
-  template <class Keys>
-  void visit(Keys& k, const model::DeviceSettings& device) {
+  void visit(model::ParameterVisitor& k, const model::DeviceSettings& device) {
     k.number("max_velocity_turns_per_s", {0.0, 1000.0}, "of an ODrive's motor; 0: the drive's own",
-             max_velocity_turns_per_s, Keys::kOptional);
+             max_velocity_turns_per_s, model::Need::kOptional);
     k.number("max_current_A", {0.0, 200.0}, "of an ODrive's motor; 0: the drive's own",
-             max_current_A, Keys::kOptional);
+             max_current_A, model::Need::kOptional);
     if ((max_velocity_turns_per_s == 0.0) != (max_current_A == 0.0))
       k.refuse({"max_velocity_turns_per_s", "max_current_A"},
                "device.can needs both max_velocity_turns_per_s and max_current_A, or none: an "
                "ODrive takes them in one message");
     k.flag("short_torque", "ODrive: torque in 4 bytes, 32 us less on the bus", short_torque,
-           Keys::kOptional);
+           model::Need::kOptional);
     if (max_current_A != 0.0)
       can::refuse_of_others(k, device, "can-odrive", "max_current_A", "an ODrive");
   }

@@ -39,9 +39,8 @@ struct PhantomSettings {
   double damping_Ns_per_m = 1.0;    // what the device itself has, at the stylus
   double position_step_m = 5.5e-5;  // of its encoders, at the stylus
 
-  template <class Keys>
-  void visit(Keys& k) {
-    constexpr auto kOptional = Keys::kOptional;
+  void visit(model::ParameterVisitor& k) {
+    constexpr auto kOptional = model::Need::kOptional;
     k.text("library", "the vendor's, by name or path", library, kOptional);
     k.text("name", "that the vendor's Touch_Setup gave it; empty: the default device", name,
            kOptional);

@@ -85,13 +85,14 @@ std::optional<Error> PhantomWorker::wait_until_calibrated() {
 }
 
 std::string PhantomWorker::trouble_text() const {
-  // What and remedy, by Source; {} is what the library or its model tells.
+  // What and remedy, by Source; {} is what the library or its model returns.
   constexpr std::array kTexts{
       "", "the PHANTOM failed: {}",
       "the PHANTOM's force output is off; end other programs that use the device, then start tactd "
       "again",
       "the PHANTOM has lost its calibration; {}, then start tactd again",
-      "the PHANTOM tells a pose that is no number; check its cable, calibrate it, then start tactd "
+      "the PHANTOM reports a pose that is no number; check its cable, calibrate it, then start "
+      "tactd "
       "again"};
   const FaultCause reported = first_trouble();
   const bool failed = static_cast<Source>(reported.kind) == Source::kError;

@@ -53,7 +53,8 @@ void visit_section(Keys& k, DeviceSettings& out, bool chosen) {
     (out.of<More>().visit(section, out), ...);
   };
   const bool required = chosen && kSection.required;
-  k.section(kSection.key, kSection.meaning, visit, required ? Keys::kRequired : Keys::kOptional);
+  k.section(kSection.key, kSection.meaning, visit,
+            required ? model::Need::kRequired : model::Need::kOptional);
 }
 
 void visit_can(Keys& k, DeviceSettings& out, bool chosen) {
@@ -99,11 +100,11 @@ void visit_device(Keys& k, DeviceSettings& out) {
   k.text("kind", "sim-delta is the simulated device; tactd --list-devices", out.kind);
   k.vector("base_orientation_deg", {-360.0, 360.0},
            "turn of its base, axis times angle; 0: axis towards you", out.base_orientation_deg,
-           Keys::kOptional);
+           model::Need::kOptional);
   k.vector("base_position_m", {-0.5, 0.5}, "where the middle of its workspace is, in W",
-           out.base_position_m, Keys::kOptional);
+           out.base_position_m, model::Need::kOptional);
   k.number("motion_scale", {0.1, 10.0}, "way of the tool for a way of the handle", out.motion_scale,
-           Keys::kOptional);
+           model::Need::kOptional);
   // Without a kind, as where the reference is written, the first device is the one to show.
   const std::string_view kind = out.kind.empty() ? kRows[0].kind : out.kind;
   for (const Row* row = kRows; row != std::end(kRows); ++row) {
@@ -140,7 +141,7 @@ Result<OpenDevice> open_device(const model::scene::Scene& scene) {
                     scene.path, scene.device.kind, fmt::join(device_kinds(), "\", \""))};
   auto device = row->open(scene);
   if (!device) return Error{fmt::format("{}: {}", scene.path, device.error().message)};
-  // Any other mounting than that of W itself stands between loop and device.
+  // Any other mounting than that of W itself wraps the device.
   if (const Mounting mounting = mounting_of(scene.device); mounting != Mounting{})
     return OpenDevice(new MountedDevice(std::move(*device), mounting));
   return OpenDevice(device->release());

@@ -239,9 +239,9 @@ void SimDelta::stop() {
 model::Result<std::unique_ptr<SimDelta>> make_sim_delta(SimDeviceSettings device,
                                                         const model::HandSettings& hand,
                                                         const Mounting& mounting) {
-  RangeCheck check;
-  device.visit(check);
-  if (!check.refusal().empty()) return model::Error{check.refusal()};
+  model::ParameterList parameters;
+  device.visit(parameters);
+  if (auto wrong = parameters.check("device.sim")) return *wrong;
   for (const auto& [key, value] : {std::pair{"mass_kg", hand.mass_kg},
                                    {"stiffness_N_per_m", hand.stiffness_N_per_m},
                                    {"damping_Ns_per_m", hand.damping_Ns_per_m}})

@@ -44,16 +44,16 @@ struct SimDeviceSettings {
   double joint_damping_Nms_per_rad = 0.0;  // viscous, per joint
   double observer_bandwidth_Hz = 0.0;      // of the velocity observer
 
-  template <class Keys>
-  void visit(Keys& k) {
-    k.number("counts_per_turn", {100.0, 1e8}, "encoder counts of one turn of a joint",
+  void visit(model::ParameterVisitor& k) {
+    k.number("counts_per_turn", {100.0, 1e8, model::kHard}, "encoder counts of one turn of a joint",
              counts_per_turn);
-    k.number("sample_delay_s", {0.0, 0.005}, "age of a sample when the loop gets it",
+    k.number("sample_delay_s", {0.0, 0.005, model::kHard}, "age of a sample when the loop gets it",
              sample_delay_s);
-    k.number("joint_friction_Nm", {0.0, 1.0}, "Coulomb friction of each joint", joint_friction_Nm);
-    k.number("joint_damping_Nms_per_rad", {0.0, 1.0}, "viscous friction of each joint",
-             joint_damping_Nms_per_rad);
-    k.number("observer_bandwidth_Hz", {1.0, 500.0}, "of the velocity observer",
+    k.number("joint_friction_Nm", {0.0, 1.0, model::kHard}, "Coulomb friction of each joint",
+             joint_friction_Nm);
+    k.number("joint_damping_Nms_per_rad", {0.0, 1.0, model::kHard},
+             "viscous friction of each joint", joint_damping_Nms_per_rad);
+    k.number("observer_bandwidth_Hz", {1.0, 500.0, model::kHard}, "of the velocity observer",
              observer_bandwidth_Hz);
   }
 };

@@ -11,7 +11,7 @@ void visit(ParameterVisitor& v, LayerDelays& p) {
   v.number("delay_growth_ratio", {0.1, 100.0}, "q", p.delay_ratio);
   v.number("refresh_rate_Hz", {1.0, 1e5}, "no layer moves later than its period",
            p.refresh_rate_Hz);
-  v.count("layers", {1, kMaxLayers}, "discs at most", p.layers);
+  v.count("layers", {1, 31, false}, "discs at most", p.layers);
 }
 
 void visit(ParameterVisitor& v, DiscStackParameters& p) {

@@ -61,17 +61,13 @@ class SceneVisit {
 class Keys final : public ParameterVisitor {
  public:
   using Inside = std::function<void(Keys&)>;
-  // For visits that are templates, as those of devices: they need no other name of this file.
-  using Choice = model::Choice;
-  static constexpr Need kRequired = Need::kRequired, kOptional = Need::kOptional;
-
   /// Visits the whole document, or describes it.
   static void visit_root(SceneVisit& visit, const Inside& inside);
 
   void text(std::string_view key, std::string_view meaning, std::string& out,
             Need need = Need::kRequired) override;
-  /// A file, absolute or from the folder of the document; `out` becomes its absolute path.
-  void file(std::string_view key, std::string_view meaning, std::string& out, Need need) {
+  void file(std::string_view key, std::string_view meaning, std::string& out,
+            Need need = Need::kRequired) override {
     text(key, meaning, out, need);
     if (table_ && !out.empty()) out = path_beside(visit_.document()->path, out);
   }
@@ -81,8 +77,7 @@ class Keys final : public ParameterVisitor {
               Need need = Need::kRequired) override;
   void count(std::string_view key, CountRange range, std::string_view meaning, std::size_t& out,
              Need need = Need::kRequired) override;
-  /// A whole number that may be negative; optional.
-  void whole(std::string_view key, Range range, std::string_view meaning, int& out) {
+  void whole(std::string_view key, Range range, std::string_view meaning, int& out) override {
     double value = out;
     number(key, range, meaning, value, Need::kOptional);
     if (value != std::floor(value)) refuse({key}, std::string(key) + " takes a whole number");
@@ -91,7 +86,7 @@ class Keys final : public ParameterVisitor {
   void vector(std::string_view key, Range each, std::string_view meaning, Vec3& out,
               Need need = Need::kRequired);
   void per_arm(std::string_view key, Range each, std::string_view meaning,
-               std::array<double, 3>& out, Need need = Need::kRequired);
+               std::array<double, 3>& out, Need need = Need::kRequired) override;
   /// A rotation: [w, x, y, z], of any length.
   void quaternion(std::string_view key, std::string_view meaning, std::array<double, 4>& out,
                   Need need = Need::kRequired);
@@ -131,7 +126,7 @@ class Keys final : public ParameterVisitor {
   /// Where a key stands, or else its section.
   TextPosition position_of(std::string_view key) const;
   /// These keys contradict each other; told at the overridden one, or else at the first.
-  void refuse(std::initializer_list<std::string_view> keys, const std::string& message);
+  void refuse(std::initializer_list<std::string_view> keys, const std::string& message) override;
 
  private:
   struct Known {

@@ -11,46 +11,6 @@
 namespace tact::model::reader {
 namespace {
 
-struct UnitName {
-  std::string_view suffix, unit;
-};
-
-// Longest first, so that _N_per_m is not read as _m.
-constexpr std::array kUnits{
-    UnitName{"_Nms_per_rad", "N m s/rad"},
-    UnitName{"_words_per_Nm", "word/(N m)"},
-    UnitName{"_Ns_per_m", "N s/m"},
-    UnitName{"_turns_per_s", "turn/s"},
-    UnitName{"_N_per_m", "N/m"},
-    UnitName{"_N_per_s", "N/s"},
-    UnitName{"_s_per_m", "s/m"},
-    UnitName{"_turns", "turn"},
-    UnitName{"_words", "word"},
-    UnitName{"_kgm2", "kg m^2"},
-    UnitName{"_rad", "rad"},
-    UnitName{"_deg", "deg"},
-    UnitName{"_Nm", "N m"},
-    UnitName{"_kg", "kg"},
-    UnitName{"_Hz", "Hz"},
-    UnitName{"_Pa", "Pa"},
-    UnitName{"_us", "us"},
-    UnitName{"_m2", "m^2"},
-    UnitName{"_m", "m"},
-    UnitName{"_s", "s"},
-    UnitName{"_N", "N"},
-    UnitName{"_A", "A"},
-    UnitName{"_J", "J"},
-    UnitName{"_W", "W"},
-    UnitName{"_mps", "m/s"},
-    UnitName{"_radps", "rad/s"},
-};
-
-const UnitName* find_unit(std::string_view key) {
-  for (const UnitName& unit : kUnits)
-    if (key.ends_with(unit.suffix)) return &unit;
-  return nullptr;
-}
-
 /// Levenshtein's distance.
 std::size_t edits_between(std::string_view a, std::string_view b) {
   // One row of the table of Levenshtein; diagonal is what it held before.
@@ -69,13 +29,8 @@ std::size_t edits_between(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-std::string_view unit_of_key(std::string_view key) {
-  const UnitName* unit = find_unit(key);
-  return unit ? unit->unit : std::string_view{};
-}
-
 bool differs_only_in_unit(std::string_view key, std::string_view known) {
-  const UnitName* unit = find_unit(known);
+  const io::UnitName* unit = io::find_unit(known);
   if (!unit || key == known) return false;
   const std::string_view stem = known.substr(0, known.size() - unit->suffix.size());
   // Whatever stands behind the stem was meant as a unit, known or not.

@@ -14,11 +14,9 @@
 
 #include "model/fnv1a.h"
 #include "model/io/one_line.h"
+#include "model/io/unit_name.h"
 
 namespace tact::model::reader {
-
-/// Unit of a key for people: "N/m" of tear_N_per_m, "" of a key without one.
-std::string_view unit_of_key(std::string_view key);
 
 /// True for depth_mm, or depth, when the known key is depth_m.
 bool differs_only_in_unit(std::string_view key, std::string_view known);

@@ -28,7 +28,7 @@ std::string_view type_name(const toml::node& node) {
 }
 
 std::string range_text(Range range, std::string_view key) {
-  const std::string_view unit = unit_of_key(key);
+  const std::string_view unit = io::unit_of(key);
   return fmt::format("{} .. {}{}{}", range.low, range.high, unit.empty() ? "" : " ", unit);
 }
 

@@ -27,12 +27,13 @@ std::unique_ptr<law::Law> owned(L law) {
   return std::make_unique<L>(std::move(law));
 }
 
-/// Of a law that needs nothing but its own section.
-template <typename Parameters, auto make>
-Result<Curve> curve_of(const Scene& scene) {
-  auto law = make(scene.laws.of<Parameters>());
+Result<Curve> hunt_crossley(const Scene& scene) {
+  const auto& p = scene.laws.of<indent::HuntCrossleyParameters>();
+  auto law = make_hunt_crossley(p);
   if (!law) return law.error();
-  return Curve{.law = owned(std::move(*law))};
+  return Curve{.law = owned(std::move(*law)),
+               .title = fmt::format("force ~ depth^{:g} (1 + {:g} s/m speed)", p.exponent,
+                                    p.dissipation_s_per_m)};
 }
 
 Result<Curve> rhombus(const Scene& scene) {
@@ -79,7 +80,7 @@ Result<Curve> hex_sheet(const Scene& scene) {
 
 void compliance_keys(ParameterVisitor& v, Scene& scene) {
   ComplianceSettings& c = scene.compliance;
-  v.text("map", "file of tact-lab condense, absolute or from the scene's folder", c.map_path);
+  v.file("map", "file of tact-lab condense, absolute or from the scene's folder", c.map_path);
   v.number("working_depth_m", kDepth_m, "press and pull up to here", c.working_depth_m);
   v.count("curves", {2, 65}, "of the family, soft to stiff", c.curves, Need::kOptional);
   v.flag("large_strain", "organ and tip; false: small strain, as a linear reference",
@@ -121,8 +122,8 @@ std::span<const LawRow> all_laws() {
       {.name = "hunt_crossley",
        .meaning = "power law that resists speed as well",
        .visit = keys_of<indent::HuntCrossleyParameters>,
-       .curve = curve_of<indent::HuntCrossleyParameters, indent::make_hunt_crossley>,
-       // The dissipation stays: data of a slow press does not tell it.
+       .curve = hunt_crossley,
+       // The dissipation stays: data of a slow press does not determine it.
        .fit_keys = {"force_N", "exponent"},
        .fit_starts = {{1, 1}, {1, 1.3}}},
       {.name = "spring_patch",

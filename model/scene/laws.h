@@ -34,7 +34,7 @@ struct LawSizes {
 /// One law for the whole surface, as a scene makes it.
 struct Curve {
   std::unique_ptr<law::Law> law;
-  std::string title{};             // for people; empty: the meaning of its row
+  std::string title{};             // for people
   bool draws_tissue = false;       // by its own profile, not as a half-space
   std::size_t untabled_bytes = 0;  // size of a law that the loop calls itself; 0: it reads a table
 };
@@ -59,7 +59,7 @@ std::span<const LawRow> all_laws();
 /// Null: there is none of this name.
 const LawRow* find_law(std::string_view name);
 
-/// The numbers of a law's section, where they stand in the scene.
+/// The numbers of a law's section, pointing into the scene.
 ParameterList parameters_of(const LawRow& law, Scene& scene);
 
 }  // namespace tact::model::scene

@@ -35,11 +35,21 @@ Result<Plan> plan_of(const toml::table& root) {
   const std::string law = root["law"].value_or<std::string>("");
   if (find_law(law) == nullptr) return Error{fmt::format("law = \"{}\" is no law", law)};
   plan.sizes.law = law;
-  for (const auto& [key, size] : keys_of(law)) {
+  // Chosen, above every size that a scene takes: the scene's own ranges come later.
+  const auto number_of = [&root](std::string_view key) {
     const auto number = root[key].value_or<std::int64_t>(0);
-    // Chosen, above every size that a scene takes: the scene's own ranges come later.
-    if (number < 0 || number > 100000) return Error{fmt::format("{} is out of range", key)};
-    plan.sizes.*size = static_cast<std::size_t>(number);
+    return number < 0 || number > 100000 ? std::nullopt
+                                         : std::optional(static_cast<std::size_t>(number));
+  };
+  // Those of other laws, too: such a plan was not written by tact-lab.
+  for (const LawRow& row : all_laws())
+    if (!row.size_key.empty() && !number_of(row.size_key))
+      return Error{fmt::format("{} is out of range", row.size_key)};
+  for (const auto& [key, size] : keys_of(law)) {
+    if (key.empty()) continue;
+    const auto number = number_of(key);
+    if (!number) return Error{fmt::format("{} is out of range", key)};
+    plan.sizes.*size = *number;
   }
   const std::string form = plan.sizes.disc_form = root["disc_form"].value_or<std::string>("");
   if (!form.empty() &&
@@ -84,8 +94,9 @@ std::string text_of(const LawSizes& sizes) {
 Scene sized(Scene scene, const LawSizes& sizes) {
   scene.law = sizes.law;
   if (sizes.table_knots != 0) scene.table_knots = sizes.table_knots;
-  if (const LawRow* law = find_law(sizes.law); law != nullptr && sizes.size != 0)
-    *parameters_of(*law, scene).find(law->size_key).count = sizes.size;
+  const LawRow* law = find_law(sizes.law);
+  const Parameter size = law ? parameters_of(*law, scene).find(law->size_key) : Parameter{};
+  if (size.count != nullptr && sizes.size != 0) *size.count = sizes.size;
   for (const auto form : {indent::DiscForm::kAlmenLaszlo, indent::DiscForm::kLinear})
     if (sizes.disc_form == name_of(form)) scene.laws.of<indent::DiscStackParameters>().form = form;
   return scene;

@@ -126,8 +126,6 @@ Result<Scene> load_scene(const std::string& path, const std::vector<std::string>
 
   Scene& scene = text.scene;
   scene.path = path;
-  if (!scene.compliance.map_path.empty())
-    scene.compliance.map_path = reader::path_beside(path, scene.compliance.map_path);
   scene.hand_site_m = text.script.site_m;
   scene.hand_inward = normalized(text.script.inward);
   // Strokes before meshes: what is wrong in the text is told before files are read that take long.

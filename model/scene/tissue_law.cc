@@ -16,7 +16,7 @@ namespace tact::model::scene {
 TissueLawBuilder::Step TissueLawBuilder::add_curve(const LawRow& row) {
   auto curve = row.curve(scene_);
   if (!curve) return blame(curve.error());
-  law_->title_ = curve->title.empty() ? row.meaning : curve->title;
+  law_->title_ = curve->title;
   draws_tissue_ = curve->draws_tissue;
   law_->owned_.push_back(std::move(curve->law));
   const auto pulled = with_pull(*law_->owned_.back());

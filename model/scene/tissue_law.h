@@ -72,7 +72,7 @@ class TissueLaw {
   std::string title_;
 };
 
-/// The law of this name (laws.h) with the scene's numbers, whatever law the scene itself chooses;
+/// The law of this name (laws.h) with the scene's numbers, regardless of scene.law;
 /// the scene outlives it. The error names the scene's file and what its parameters lack.
 Result<std::unique_ptr<TissueLaw>> make_tissue_law(const Scene& scene, std::string_view name);
 

@@ -18,7 +18,7 @@ using model::scene::LawRow;
 using model::scene::Scene;
 using model::springs::SpringPatchParameters;
 
-constexpr double kNothing_ratio = 1e-8;  // of a range: stands for 0, which has no logarithm
+constexpr double kNothing_ratio = 1e-8;  // of a range: replaces 0, which has no logarithm
 constexpr double kSteepestCone = 0.4;    // eta: beyond, layers can be felt one by one
 constexpr double kFlattestCone = 0.02;
 constexpr double kTableReach = 0.95;  // share of the working depth that is felt (tabulated_law.h)
@@ -26,7 +26,7 @@ constexpr double kTableReach = 0.95;  // share of the working depth that is felt
 /// With the range of the scene. A quantity with the newton in its unit multiplies the force.
 FitParameter fitted(std::string_view section, const model::Parameter& p,
                     std::function<double&(Scene&)> in) {
-  const std::string_view unit = model::reader::unit_of_key(p.key);
+  const std::string_view unit = model::io::unit_of(p.key);
   return {.section = std::string(section),
           .key = std::string(p.key),
           .low = p.range.low > 0.0 ? p.range.low : kNothing_ratio * p.range.high,

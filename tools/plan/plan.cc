@@ -28,8 +28,7 @@ std::vector<Candidate> candidates_of(const report::Table& table) {
       return static_cast<std::size_t>(number(row, column));
     };
     model::scene::LawSizes sizes{.law = word(row, "family"), .table_knots = count("table_knots")};
-    const model::scene::LawRow* law = model::scene::find_law(sizes.law);
-    if (law != nullptr && !law->size_key.empty()) sizes.size = count(std::string(law->size_key));
+    sizes.size = count("size_count");
     if (word(row, "form") != "-") sizes.disc_form = word(row, "form");
     // A chart made without --tool-reference has no numbers of the whole tool.
     const bool whole_tool = std::isfinite(number(row, "tool_rms_ratio"));

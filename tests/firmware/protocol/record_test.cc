@@ -113,14 +113,6 @@ TEST(Records, OfAnotherProgramFieldsAreFoundByName) {
   EXPECT_FALSE(Unpacker::make(table, Frame::fields()));
 }
 
-TEST(Records, AUnitIsTheLongestThatANameEndsWith) {
-  EXPECT_EQ(unit_of("tool_position_m"), "m");
-  EXPECT_EQ(unit_of("stiffness_N_per_m"), "N_per_m");
-  EXPECT_EQ(unit_of("given_energy_J"), "J");
-  EXPECT_EQ(unit_of("tool_orientation"), "");
-  EXPECT_EQ(unit_of("m"), "");
-}
-
 TEST(Records, ADamagedTableIsAnError) {
   const json good = json_of(Frame::fields());
   for (const json& bad : {json(), json("x"), json::array({1}), json::array({{{"name", 3}}}),

@@ -141,7 +141,7 @@ TEST(CanLink, EveryUnfitInterfaceHasItsSentence) {
   link = good, link.has_controller = true;
   EXPECT_EQ(refusal(link), "");
   link.bitrate = std::nullopt;
-  EXPECT_NE(refusal(link).find("can0 does not tell its bit rate"), std::string::npos);
+  EXPECT_NE(refusal(link).find("can0 does not report its bit rate"), std::string::npos);
   link = good, link.bitrate = 500'000;
   EXPECT_NE(refusal(link).find("500000 bit/s, too slow for three drives at 1000 Hz"),
             std::string::npos);

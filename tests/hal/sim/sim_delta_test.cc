@@ -271,7 +271,7 @@ TEST(SimDelta, RefusesSettingsThatNoDeviceHas) {
   bad.sample_delay_s = 0.006;
   ASSERT_FALSE(make_sim_delta(bad, hand)) << "no more than a scene may say";
   EXPECT_EQ(make_sim_delta(bad, hand).error().message,
-            "sample_delay_s is 0.006; allowed: 0 .. 0.005");
+            "device.sim: sample_delay_s = 0.006; allowed: 0 .. 0.005");
   bad = settings();
   bad.observer_bandwidth_Hz = -1.0;
   EXPECT_FALSE(make_sim_delta(bad, hand));

@@ -9,16 +9,18 @@
 namespace tact::model::reader::scene_words_test {
 
 TEST(SceneWords, ReadTheUnitFromTheEndOfAKey) {
-  EXPECT_EQ(unit_of_key("depth_m"), "m");
-  EXPECT_EQ(unit_of_key("tear_force_N"), "N");
-  EXPECT_EQ(unit_of_key("sliding_stiffness_N_per_m"), "N/m");
-  EXPECT_EQ(unit_of_key("dissipation_s_per_m"), "s/m");
-  EXPECT_EQ(unit_of_key("slew_N_per_s"), "N/s");
-  EXPECT_EQ(unit_of_key("damping_Ns_per_m"), "N s/m");
-  EXPECT_EQ(unit_of_key("joint_damping_Nms_per_rad"), "N m s/rad");
-  EXPECT_EQ(unit_of_key("torque_Nm"), "N m");
-  EXPECT_EQ(unit_of_key("friction_ratio"), "");
-  EXPECT_EQ(unit_of_key("units"), "");
+  EXPECT_EQ(io::unit_of("depth_m"), "m");
+  EXPECT_EQ(io::unit_of("tear_force_N"), "N");
+  EXPECT_EQ(io::unit_of("sliding_stiffness_N_per_m"), "N/m");
+  EXPECT_EQ(io::unit_of("dissipation_s_per_m"), "s/m");
+  EXPECT_EQ(io::unit_of("slew_N_per_s"), "N/s");
+  EXPECT_EQ(io::unit_of("damping_Ns_per_m"), "N s/m");
+  EXPECT_EQ(io::unit_of("joint_damping_Nms_per_rad"), "N m s/rad");
+  EXPECT_EQ(io::unit_of("torque_Nm"), "N m");
+  EXPECT_EQ(io::unit_of("friction_ratio"), "");
+  EXPECT_EQ(io::unit_of("units"), "");
+  EXPECT_EQ(io::unit_of("due_ns"), "ns");
+  EXPECT_EQ(io::unit_of("displacement_um"), "um");
 }
 
 TEST(SceneWords, TellAWrongUnitFromAWrongKey) {

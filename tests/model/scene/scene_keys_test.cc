@@ -83,7 +83,7 @@ TEST(SceneReference, SaysOfEveryKeyWhatIsAllowedAndWhatItMeans) {
     const bool named = row.key.ends_with("_ratio") || row.allowed.ends_with("whole") ||
                        row.key.starts_with("counts_per_") || row.section == "device.lines" ||
                        bare.contains(row.key);
-    EXPECT_EQ(reader::unit_of_key(row.key).empty(), named) << row.section << "." << row.key;
+    EXPECT_EQ(io::unit_of(row.key).empty(), named) << row.section << "." << row.key;
   }
 }
 

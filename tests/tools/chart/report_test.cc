@@ -52,7 +52,7 @@ TEST(ChartReport, IsReadBackAsItWasWritten) {
   std::string head;
   std::getline(csv, head);
   EXPECT_EQ(head, "# command: tact-lab chart x");
-  std::ofstream(folder + "/bad.json") << R"({"format": "tact-chart", "version": 3, "rows": [{}]})";
+  std::ofstream(folder + "/bad.json") << R"({"format": "tact-chart", "version": 4, "rows": [{}]})";
   EXPECT_FALSE(read_chart(folder + "/bad.json"));
   EXPECT_FALSE(read_chart(folder + "/none.json"));
 }

@@ -237,7 +237,8 @@ TEST_F(PlanFile, RefusesWhatIsMissingDamagedOrStale) {
       model::scene::read_plan(write(model::io::sealed_text("law = \"auto\"\n")), scene_, kSet),
       "no law");
   for (const char* text :
-       {"law = \"compliance\"\ncurves = -3\n", "law = \"rhombus\"\ntable_knots = 1000000\n"})
+       {"law = \"compliance\"\ncurves = -3\n", "law = \"rhombus\"\ncurves = -3\n",
+        "law = \"rhombus\"\ntable_knots = 1000000\n"})
     expect_remedy(model::scene::read_plan(write(model::io::sealed_text(text)), scene_, kSet),
                   "out of range");
   expect_remedy(

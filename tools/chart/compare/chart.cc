@@ -114,10 +114,6 @@ report::Row table_row(const ChartRow& row, const Provenance& provenance) {
     return row.failure.empty() ? static_cast<double>(value) : kNotMeasured;
   };
   const ErrorSummary& e = row.errors;
-  const auto size_of = [&](std::string_view key) {
-    const model::scene::LawRow* law = model::scene::find_law(sizes.law);
-    return law != nullptr && law->size_key == key ? sizes.size : 0;
-  };
   const auto or_dash = [](const std::string& text) {
     return text.empty() ? "-" : without_commas(text);
   };
@@ -126,10 +122,7 @@ report::Row table_row(const ChartRow& row, const Provenance& provenance) {
           {"size", row.variant.size()},
           {"form", or_dash(sizes.disc_form)},
           {"table_knots", sizes.table_knots},
-          {"layers", size_of("layers")},
-          {"rings", size_of("rings")},
-          {"nodes", size_of("nodes")},
-          {"curves", size_of("curves")},
+          {"size_count", sizes.size},
           {"force_rms_ratio", measured(e.force_rms_ratio)},
           {"force_worst_ratio", measured(e.force_worst_ratio)},
           {"press_rms_ratio", measured(e.press_rms_ratio)},

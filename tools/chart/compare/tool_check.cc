@@ -123,7 +123,8 @@ Result<Timing> time_tool(const Scene& scene, const TimingSettings& settings) {
     input.commands.arm = true;
   }
   if (!(norm(tick(path.front()).wanted.force_N) > 0.0))
-    return model::Error{scene.path + ": the tool does not touch the organ where it is timed"};
+    return model::Error{scene.path +
+                        ": the tool is not in contact with the organ where it is timed"};
   std::size_t at = 0;
   return measure_time(
       [&] {
