@@ -94,6 +94,10 @@ class Device {
   /// one whose handle another process cannot use.
   virtual std::optional<ShutdownFrames> shutdown_frames() { return std::nullopt; }
 
+  /// Called by the loop's thread once, before its first tick: takes what came since opening, so
+  /// that no tick has to.
+  virtual void catch_up(std::int64_t now_ns) RT_SAFE { (void)now_ns; }
+
   // Called by the loop's thread, once per tick, in this order.
 
   /// Newest sample; not fresh until the device knows its position. Returns the device's fault.

@@ -24,6 +24,7 @@ class MountedDevice final : public Device {
   DeviceInfo info() const override { return mounted(device_->info(), mounting_); }
   std::span<const int> loop_calls() const override { return device_->loop_calls(); }
   std::optional<ShutdownFrames> shutdown_frames() override { return device_->shutdown_frames(); }
+  void catch_up(std::int64_t now_ns) RT_SAFE override { device_->catch_up(now_ns); }
   [[nodiscard]] Fault read(Sample& sample, std::int64_t now_ns) RT_SAFE override;
   bool ready() const RT_SAFE override { return device_->ready(); }
   void permit(bool powered) RT_SAFE override { device_->permit(powered); }

@@ -19,7 +19,12 @@ void RtLoop::run() RT_SAFE {
 
 void RtLoop::step() RT_SAFE {
   const std::int64_t period_ns = settings_.period_ns;
-  if (statistics_.ticks == 0) due_ns_ = next_deadline_ns(now_ns() + period_ns, period_ns);
+  if (statistics_.ticks == 0) {
+    progress_.enter(Callee::kDevice);
+    device_.catch_up(now_ns());
+    progress_.enter(Callee::kOwn);
+    due_ns_ = next_deadline_ns(now_ns() + period_ns, period_ns);
+  }
   clock_.sleep_until_ns(due_ns_);
   cycle(due_ns_);
   due_ns_ += period_ns;  // absolute deadlines: one late tick does not delay the next

@@ -29,7 +29,6 @@ template <class Frame>
 auto BasicCanBus<Frame>::receive() RT_SAFE -> std::span<const Received> {
   const int n = socket_->receive(arrivals_);
   was_cut_short_ = n == static_cast<int>(arrivals_.size());
-  counts_.cut_reads += was_cut_short_ ? 1 : 0;
   if (n < 0) {
     latch_.set({.fault = Fault::kBusDown,
                 .kind = kind_of(CanCause::kCall),

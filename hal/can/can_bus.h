@@ -38,7 +38,6 @@ struct CanBusCounts {
   std::uint64_t missed_cycles = 0;  // batches that were not sent whole
   std::uint64_t error_frames = 0;
   std::uint64_t unreadable = 0;  // neither data nor error frame of ours
-  std::uint64_t cut_reads = 0;   // the kernel may have had more than one call takes
 };
 
 /// Of classic frames or of CAN FD frames.

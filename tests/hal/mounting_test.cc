@@ -35,6 +35,7 @@ class Puppet final : public Device {
         .at_tool = model::DeviceAtTool{
             .damping_Ns_per_m = 2.0, .friction_N = 0.3, .position_step_m = 1e-5, .delay_s = 1e-3}};
   }
+  void catch_up(std::int64_t now_ns) RT_SAFE override { caught_up_ns = now_ns; }
   Fault read(Sample& out, std::int64_t) RT_SAFE override {
     if (!sample.fresh) return out.fresh = false, fault;
     out = sample;
@@ -49,6 +50,7 @@ class Puppet final : public Device {
   bool has_wrist = false;
   Sample sample;
   Fault fault = Fault::kNone;
+  std::int64_t caught_up_ns = 0;
   Wrench written;
 };
 
@@ -186,6 +188,11 @@ TEST_F(Mounted, PoseAndVelocityAreThoseOfTheRoom) {
   EXPECT_EQ(sample.grip_gap_m, 0.01);
   EXPECT_LT(distance(sample.tool.position_m, {0.04, 0.02, 0.1 - 0.06}), 1e-12);
   EXPECT_LT(distance(sample.tool.velocity_mps, {0.0, 0.0, -0.2}), 1e-12);
+}
+
+TEST_F(Mounted, CatchesUpBeforeTheLoop) {
+  device_.catch_up(7);
+  EXPECT_EQ(puppet_.caught_up_ns, 7);
 }
 
 TEST_F(Mounted, AForceUpIsAForceAgainstItsAxis) {

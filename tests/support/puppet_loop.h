@@ -23,7 +23,12 @@ class PuppetDevice : public hal::Device {
   hal::DeviceInfo info() const override {
     return {.name = "puppet", .max_force_N = 20.0, .grip = hal::GripKind::kNone};
   }
+  void catch_up(std::int64_t) RT_SAFE override {
+    ++catch_ups;
+    caught_up_first = reads == 0;
+  }
   model::Fault read(hal::Sample& sample, std::int64_t now_ns) RT_SAFE override {
+    ++reads;
     tests::pass_ns(clock_, slow_ns);
     slow_ns = 0;
     if (silent) return model::Fault::kNone;
@@ -50,7 +55,8 @@ class PuppetDevice : public hal::Device {
   model::Fault fault = model::Fault::kNone, write_fault = model::Fault::kNone;
   model::Wrench last;
   model::Vec3 shift_m;
-  int writes = 0;
+  int catch_ups = 0, reads = 0, writes = 0;
+  bool caught_up_first = false;
   bool permitted = false, can_push = true;
   double elapsed_s = 0.0;
 

@@ -22,6 +22,12 @@ TEST_F(RtLoopTest, FeelsThePlateThroughTheGate) {
   EXPECT_EQ(newest().output.state, State::kArmed);
 }
 
+TEST_F(RtLoopTest, TheDeviceCatchesUpOnceBeforeTheFirstTick) {
+  run_ticks(3);
+  EXPECT_EQ(device.catch_ups, 1);
+  EXPECT_TRUE(device.caught_up_first);
+}
+
 TEST_F(RtLoopTest, GivesNoForceUntilArmed) {
   device.height_m = 0.006;
   run_ticks(5);

@@ -108,7 +108,7 @@ TEST_F(ForceDimensionGrip, AGripperThatFailsIsATrouble) {
   ASSERT_TRUE(ready());
   stub.fail("dhdGetGripperAngleRad", 2);
   EXPECT_TRUE(tick_until([&] { return fault != Fault::kNone; }));
-  EXPECT_TRUE(reported("the device does not tell its gripper: ")) << device->trouble();
+  EXPECT_TRUE(reported("the device does not report its gripper: ")) << device->trouble();
 }
 
 /// Torque, of each type that has motors for it.

@@ -50,7 +50,8 @@ TEST_F(ForceDimensionTrouble, APoseThatFailsEndsTheForceAtOnce) {
   EXPECT_EQ(stub.last_force(force), 0);
   EXPECT_EQ(force[2], 0.0);
   EXPECT_EQ(lasting_fault(), Fault::kDeviceFailed);
-  EXPECT_TRUE(reported("does not tell its pose: the pose cannot be computed")) << device->trouble();
+  EXPECT_TRUE(reported("does not report its pose: the pose cannot be computed"))
+      << device->trouble();
 }
 
 TEST_F(ForceDimensionTrouble, ADeviceThatIsGoneIsUnplugged) {
@@ -62,7 +63,8 @@ TEST_F(ForceDimensionTrouble, ADeviceThatIsGoneIsUnplugged) {
 TEST_F(ForceDimensionTrouble, AStatusThatFailsIsTold) {
   stub.fail("dhdGetStatus", 7);
   EXPECT_EQ(lasting_fault(), Fault::kDeviceFailed);
-  EXPECT_TRUE(reported("does not tell its status: the device did not answer")) << device->trouble();
+  EXPECT_TRUE(reported("does not report its status: the device did not answer"))
+      << device->trouble();
 }
 
 TEST_F(ForceDimensionTrouble, ForcesThatTheDeviceSwitchedOffAreToldByCause) {
