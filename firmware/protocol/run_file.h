@@ -29,6 +29,8 @@
 namespace tact::firmware::protocol {
 
 inline constexpr std::string_view kMagic = "tactrun\n";
+/// The first message of a telemetry socket that has as many clients as it takes.
+inline constexpr std::string_view kFull = "tactfull\n";
 inline constexpr int kVersion = 1;  // of the format; a field more or less does not change it
 
 /// A kind of record in a file.

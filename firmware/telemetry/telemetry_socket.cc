@@ -18,8 +18,8 @@ namespace {
 using model::Error;
 using model::Result;
 
-// Chosen: each client costs a system call per frame. Further ones wait in the socket's queue.
-constexpr std::size_t kMaxClients = 16;
+// As many may connect between two frames.
+constexpr int kQueue = 64;
 
 }  // namespace
 
@@ -29,7 +29,7 @@ Result<TelemetrySocket> TelemetrySocket::open(const std::string& path, int start
   const auto bound = model::io::bind_socket(path, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC);
   if (!bound) return bound.error();
   const int fd = *bound;
-  if (listen(fd, 8) != 0) {
+  if (listen(fd, kQueue) != 0) {
     Error error{fmt::format("{}: {}; choose another --socket", path, std::strerror(errno))};
     close(fd);
     return error;
@@ -59,15 +59,21 @@ TelemetrySocket::~TelemetrySocket() {
 }
 
 void TelemetrySocket::accept_clients() {
-  while (clients_.size() < kMaxClients) {
+  for (int i = 0; i < kQueue; ++i) {
     const int client = accept4(listen_fd_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
     if (client < 0) return;
     shutdown(client, SHUT_RD);  // nothing is read from a client
     // The peer's user is checked before anything is sent.
-    if (model::io::has_trusted_peer(client, trust_) && greet(client))
+    const bool is_trusted = model::io::has_trusted_peer(client, trust_);
+    const bool is_full = clients_.size() == kMaxClients;
+    if (is_trusted && !is_full && greet(client)) {
       clients_.push_back(client);
-    else
-      close(client);
+      continue;
+    }
+    if (is_trusted && is_full)
+      static_cast<void>(::send(client, protocol::kFull.data(), protocol::kFull.size(),
+                               MSG_DONTWAIT | MSG_NOSIGNAL));
+    close(client);
   }
 }
 

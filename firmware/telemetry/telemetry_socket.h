@@ -4,7 +4,8 @@
 // A SOCK_SEQPACKET unix socket: permissions 0600 for the same user and root, or 0660 for the
 // members of a group, too. A new client gets the first letters of a run and the memory file of its
 // start (firmware/protocol/run_file.h), then every frame that fits into its buffer; the others are
-// dropped and counted. Nothing is read from a client.
+// dropped and counted. Nothing is read from a client. A client beyond kMaxClients gets
+// protocol::kFull in place of the first letters, and is closed.
 #pragma once
 
 #include <cstdint>
@@ -19,6 +20,9 @@ namespace tact::firmware::telemetry {
 
 class TelemetrySocket {
  public:
+  /// Chosen: each client costs a system call per frame.
+  static constexpr std::size_t kMaxClients = 32;
+
   /// Listens at `path`, also for members of the group `viewers`. An error if another tactd already
   /// does. Takes ownership of the memory file `start_fd` on success.
   static model::Result<TelemetrySocket> open(const std::string& path, int start_fd,

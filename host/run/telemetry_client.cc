@@ -206,6 +206,8 @@ bool TelemetryClient::read_message() {
 }
 
 std::optional<Error> TelemetryClient::take_start(std::string_view message, int memory_file) {
+  if (message == firmware::protocol::kFull)
+    return Error{"tactd has as many viewers as it takes; close one of them"};
   if (message != firmware::protocol::kMagic)
     return Error{
         "the first message is not that of this tactd; use tactd and tact-view of one build"};

@@ -28,7 +28,7 @@ try:
 except ImportError:
     raise ImportError("tact.py needs numpy: apt install python3-numpy for Debian's python3, else pip install numpy") from None
 
-MAGIC, VERSION, SEAL = b"tactrun\n", 1, b"tactseal"
+MAGIC, FULL, VERSION, SEAL = b"tactrun\n", b"tactfull\n", 1, b"tactseal"
 HEAD, MESHES, TICK, FRAME, OPERATOR = range(1, 6)  # kinds of chunks
 KIND_NAMES = {HEAD: "heads", MESHES: "meshes", TICK: "ticks", FRAME: "frames", OPERATOR: "operators"}
 CHUNK = struct.Struct("<IIII")  # kind, bytes of the content, its CRC-32, that of the twelve bytes before
@@ -106,6 +106,8 @@ class live:  # noqa: N801  # an iterator with a header
         except OSError as error:
             raise Error(f"{self._path}: {error.strerror or error}; does tactd run, and may this user look?") from None
         data, descriptors = self._receive(socket.CMSG_SPACE(struct.calcsize("i")))
+        if data == FULL:
+            raise Error(f"{self._path}: tactd has as many viewers as it takes; close one of them")
         if data != MAGIC or not descriptors:
             raise Error(f"{self._path}: is no telemetry of this version of tactd; take the tact.py of that tactd")
         with os.fdopen(descriptors[0], "rb") as file:

@@ -18,8 +18,8 @@ namespace tact::firmware::telemetry::patch_shape_test {
 using tests::message_of;
 
 // The whole way of a patch: springs, shape, slot, frame, text for the page. One thread steps, the
-// other publishes; what arrives names only what the organ has. (That no shape is half of another is for
-// latest_slot_test and, here, the thread sanitizer.)
+// other publishes; what arrives names only what the organ has. (That no shape is half of another is
+// for latest_slot_test and, here, the thread sanitizer.)
 TEST(Telemetry, TheShapeOfAPatchReachesThePageWhole) {
   const auto scene = hal::registry::load_scene(TACT_SOURCE_DIR "/model/scenes/gum.toml", {});
   ASSERT_TRUE(scene) << scene.error().message;

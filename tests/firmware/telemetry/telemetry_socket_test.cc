@@ -11,6 +11,11 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "firmware/protocol/run_file.h"
 
 namespace tact::firmware::telemetry::telemetry_socket_test {
 
@@ -33,6 +38,42 @@ TEST_F(OwnFolder, ATactdThatLeavesKeepsTheSocketOfTheNextOne) {
   EXPECT_TRUE(std::filesystem::exists(path_));
   second.reset();
   EXPECT_FALSE(std::filesystem::exists(path_));
+}
+
+/// A client that waits for nothing; -1 if it is refused.
+int connect_to(const std::string& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  path.copy(address.sun_path, sizeof address.sun_path - 1);
+  const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK, 0);
+  if (connect(fd, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0) return fd;
+  close(fd);
+  return -1;
+}
+
+TEST_F(OwnFolder, ServesThirtyTwoClientsAndTellsTheNext) {
+  auto socket_of_tactd = TelemetrySocket::open(path_, dup(0));
+  ASSERT_TRUE(socket_of_tactd);
+  std::vector<int> clients(TelemetrySocket::kMaxClients + 1);
+  for (int& client : clients) ASSERT_GE(client = connect_to(path_), 0) << "all in one frame";
+  socket_of_tactd->send("a frame");
+  for (const int client : clients) {
+    const bool is_last = client == clients.back();
+    char bytes[64] = {};
+    const ssize_t size = recv(client, bytes, sizeof bytes, 0);
+    ASSERT_GT(size, 0);
+    EXPECT_EQ(std::string_view(bytes, static_cast<std::size_t>(size)),
+              is_last ? protocol::kFull : protocol::kMagic);
+    EXPECT_EQ(recv(client, bytes, sizeof bytes, 0), is_last ? 0 : 7);
+    close(client);
+  }
+  socket_of_tactd->send("a frame");  // sees that they have gone
+  const int next = connect_to(path_);
+  socket_of_tactd->send("a frame");
+  char letter = 0;
+  EXPECT_EQ(recv(next, &letter, 1, 0), 1);
+  EXPECT_EQ(letter, protocol::kMagic[0]);
+  close(next);
 }
 
 TEST_F(OwnFolder, AFolderInWhichOthersCouldPutASocketIsRefused) {

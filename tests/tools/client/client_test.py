@@ -165,6 +165,18 @@ class Client(unittest.TestCase):
         with self.assertRaisesRegex(tact.Error, "does tactd run, and may this user look"):
             tact.live(self.folder / "nobody")
 
+    def test_the_thirty_third_viewer_is_told(self):
+        path = self.folder / "full"
+        run = tactd("--seconds", 60, "--no-black-box", "--socket", path)
+        viewers = [look(path) for _ in range(32)]
+        with self.assertRaisesRegex(tact.Error, "tactd has as many viewers as it takes"):
+            tact.live(path)
+        for viewer in viewers:
+            viewer.close()
+        look(path).close()
+        run.send_signal(signal.SIGINT)
+        run.wait(30)
+
     def test_a_tactd_that_stands_still_is_told_and_one_that_is_gone_ends_it(self):
         path = self.folder / "still"
         run = tactd("--seconds", 20, "--no-black-box", "--socket", path)
