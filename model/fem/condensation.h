@@ -17,6 +17,8 @@
 #pragma once
 
 #include <functional>
+#include <optional>
+#include <span>
 
 #include "model/fem/tet_mesh.h"
 #include "model/mesh/mesh.h"
@@ -25,14 +27,21 @@
 
 namespace tact::model::fem {
 
+/// Calls work(job, its equal part of `results`) for every job; the jobs may run in processes of
+/// their own. An error if one of them ended early, or Ctrl-C did.
+using Work = std::function<void(std::size_t job, std::span<float> result)>;
+using RunJobs =
+    std::function<std::optional<Error>(std::size_t jobs, std::span<float> results, const Work&)>;
+std::optional<Error> one_after_the_other(std::size_t jobs, std::span<float> results,
+                                         const Work& work);
+
 struct CondensationSettings {
   double poisson_ratio = 0.0;
   Vec3 fixed_min_m{}, fixed_max_m{};  // skin triangles with all corners in this box are held
   double patch_radius_m = 0.0;        // a0
   double ring_pitch_m = 0.0;
   std::size_t rings = 0;
-  /// Called between steps; false stops the work.
-  std::function<bool(std::size_t done, std::size_t vertices)> progress;
+  RunJobs run_jobs = one_after_the_other;
 };
 
 /// `body` fills `surface`: its first nodes are the surface's vertices, in order.

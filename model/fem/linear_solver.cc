@@ -1,42 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/fem/linear_solver.h"
 
-// MetisSupport uses std::cerr without including it.
-// clang-format off
-#include <iostream>
-#include <Eigen/MetisSupport>
-// clang-format on
-#include <Eigen/SparseCholesky>
+#include <dmumps_c.h>
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 
 namespace tact::model::fem {
 namespace {
 
-using Cholesky = Eigen::SimplicialLLT<StiffnessMatrix, Eigen::Lower,
-                                      Eigen::MetisOrdering<StiffnessMatrix::StorageIndex>>;
-
-/// L x = f, then L' x = f, for all loads side by side: x[row * kLoadsAtOnce + load].
-void solve_factored(const StiffnessMatrix& l, double* x) {
-  constexpr int kWidth = kLoadsAtOnce;
-  using Loads = Eigen::Array<double, kWidth, 1>;
-  const auto at = [x](std::int64_t row) { return Eigen::Map<Loads>(x + row * kWidth); };
-  // Own loops over L: Eigen would read it again for each
-  // load, and it is what does not fit into a cache.
-  const std::int32_t* start = l.outerIndexPtr();
-  const std::int32_t* row = l.innerIndexPtr();
-  const double* value = l.valuePtr();
-  const std::int32_t n = static_cast<std::int32_t>(l.cols());
-  for (std::int32_t j = 0; j < n; ++j) {  // the first entry of a column is its diagonal
-    const Loads here = at(j) / value[start[j]];
-    at(j) = here;
-    for (std::int32_t p = start[j] + 1; p < start[j + 1]; ++p) at(row[p]) -= value[p] * here;
-  }
-  for (std::int32_t j = n - 1; j >= 0; --j) {
-    Loads sum = at(j);
-    for (std::int32_t p = start[j] + 1; p < start[j + 1]; ++p) sum -= value[p] * at(row[p]);
-    at(j) = sum / value[start[j]];
-  }
-}
+// Of the manual of MUMPS 5.5, whose arrays begin at 1.
+enum class Job { kBegin = -1, kEnd = -2, kAnalyse = 1, kFactor = 2, kSolve = 3 };
+constexpr int kThisProcess = -987654;  // comm_fortran of the version without MPI
+constexpr int kNegativePivots = 12, kPrint = 1, kOrdering = 7, kMoreMemory_percent = 14,
+              kSparseLoads = 20, kLoadsAtOnce = 27;
+constexpr int kScotch = 3, kSkipWhatNoLoadReaches = 3, kBestLoadsAtOnce = 64;
+constexpr int kOutOfMemory = -13, kWorkspaceTooSmall = -9;
 
 /// Do the nodes span an area? On a point or a line the body could still turn.
 bool hold_still(const TetMesh& mesh, const std::vector<std::uint32_t>& fixed) {
@@ -51,34 +31,83 @@ bool hold_still(const TetMesh& mesh, const std::vector<std::uint32_t>& fixed) {
   });
 }
 
+/// The columns of loads as MUMPS takes them: no unknown twice in one.
+struct SparseLoads {
+  std::vector<int> first{1}, row;
+  std::vector<double> value;
+
+  void add(std::vector<std::pair<int, double>> column) {
+    std::sort(column.begin(), column.end());
+    for (std::size_t i = 0; i < column.size(); ++i) {
+      if (i > 0 && column[i].first == column[i - 1].first) {
+        value.back() += column[i].second;
+        continue;
+      }
+      row.push_back(column[i].first);
+      value.push_back(column[i].second);
+    }
+    first.push_back(static_cast<int>(row.size()) + 1);
+  }
+};
+
 }  // namespace
 
 struct LinearSolver::Factor {
   FreeNodes free;
-  StiffnessMatrix lower;               // L
-  std::vector<std::int32_t> position;  // of each unknown in L
-  std::vector<double> work;
+  DMUMPS_STRUC_C mumps{};
 
-  // Where component i of the node begins in `work`; only for free nodes.
-  std::size_t place(std::uint32_t node, std::size_t i) const {
-    const auto unknown = static_cast<std::size_t>(free.first_unknown[node]) + i;
-    return static_cast<std::size_t>(position[unknown]) * kLoadsAtOnce;
+  Factor() {
+    mumps.sym = 1;  // positive definite
+    mumps.par = 1;
+    mumps.comm_fortran = kThisProcess;
+    run(Job::kBegin);
+    std::fill_n(mumps.icntl + kPrint - 1, 4, 0);
+    set(kOrdering, kScotch);
+    set(kLoadsAtOnce, kBestLoadsAtOnce);
+    set(kSparseLoads, kSkipWhatNoLoadReaches);
+  }
+  Factor(const Factor&) = delete;
+  Factor& operator=(const Factor&) = delete;
+  ~Factor() { run(Job::kEnd); }
+
+  void set(int control, int value) { mumps.icntl[control - 1] = value; }
+  /// 0, or the number of the error.
+  int run(Job job) {
+    mumps.job = static_cast<int>(job);
+    dmumps_c(&mumps);
+    return std::min(mumps.infog[0], 0);
   }
   bool is_fixed(std::uint32_t node) const { return free.first_unknown[node] == FreeNodes::kFixed; }
-  void add(std::span<const NodeLoad> load, std::size_t column) {
-    for (const NodeLoad& one : load) {
-      if (is_fixed(one.node)) continue;
-      work[place(one.node, 0) + column] += one.force_N.x;
-      work[place(one.node, 1) + column] += one.force_N.y;
-      work[place(one.node, 2) + column] += one.force_N.z;
+  /// 0, or the number of the error.
+  int factor(const StiffnessMatrix& matrix);
+};
+
+int LinearSolver::Factor::factor(const StiffnessMatrix& matrix) {
+  std::vector<int> row, column;
+  std::vector<double> value;
+  for (int c = 0; c < matrix.outerSize(); ++c)
+    for (StiffnessMatrix::InnerIterator entry(matrix, c); entry; ++entry)
+      if (entry.row() >= entry.col()) {
+        row.push_back(static_cast<int>(entry.row()) + 1);
+        column.push_back(static_cast<int>(entry.col()) + 1);
+        value.push_back(entry.value());
+      }
+  mumps.n = static_cast<int>(matrix.rows());
+  mumps.nnz = static_cast<MUMPS_INT8>(value.size());
+  mumps.irn = row.data(), mumps.jcn = column.data(), mumps.a = value.data();
+  int error = run(Job::kAnalyse);
+  // Its estimate of the memory may be too small.
+  for (int more_percent = 20; error == 0 && more_percent <= 320; more_percent *= 2) {
+    set(kMoreMemory_percent, more_percent);
+    const int failed = run(Job::kFactor);
+    if (failed != kWorkspaceTooSmall || more_percent == 320) {
+      error = failed;
+      break;
     }
   }
-  Vec3 displacement_m(std::uint32_t node, std::size_t column) const {
-    if (is_fixed(node)) return {};
-    return {work[place(node, 0) + column], work[place(node, 1) + column],
-            work[place(node, 2) + column]};
-  }
-};
+  mumps.irn = mumps.jcn = nullptr, mumps.a = nullptr;
+  return error;
+}
 
 LinearSolver::LinearSolver(std::unique_ptr<Factor> factor) : factor_(std::move(factor)) {}
 LinearSolver::LinearSolver(LinearSolver&&) noexcept = default;
@@ -89,15 +118,41 @@ void LinearSolver::solve(std::span<const std::vector<NodeLoad>> loads,
                          std::span<const std::uint32_t> wanted,
                          std::span<std::vector<Vec3>> displacement_m) {
   Factor& f = *factor_;
-  // All columns, those without a load too: the width is fixed, so that the compiler can unroll it.
-  f.work.assign(f.position.size() * kLoadsAtOnce, 0.0);
-  for (std::size_t c = 0; c < loads.size(); ++c) f.add(loads[c], c);
-  solve_factored(f.lower, f.work.data());
-  for (std::size_t c = 0; c < loads.size(); ++c) {
-    displacement_m[c].resize(wanted.size());
-    for (std::size_t i = 0; i < wanted.size(); ++i)
-      displacement_m[c][i] = f.displacement_m(wanted[i], c);
+  SparseLoads sparse;
+  for (const std::vector<NodeLoad>& load : loads) {
+    std::vector<std::pair<int, double>> column;
+    for (const NodeLoad& one : load) {
+      if (f.is_fixed(one.node)) continue;
+      const int x = f.free.first_unknown[one.node] + 1;
+      column.insert(column.end(),
+                    {{x, one.force_N.x}, {x + 1, one.force_N.y}, {x + 2, one.force_N.z}});
+    }
+    sparse.add(std::move(column));
   }
+  const auto unknowns = static_cast<std::size_t>(f.mumps.n);
+  std::vector<double> solution(unknowns * loads.size());
+  if (!sparse.row.empty()) {
+    f.mumps.nrhs = static_cast<int>(loads.size());
+    f.mumps.lrhs = f.mumps.n;
+    f.mumps.rhs = solution.data();
+    f.mumps.nz_rhs = static_cast<int>(sparse.row.size());
+    f.mumps.irhs_ptr = sparse.first.data(), f.mumps.irhs_sparse = sparse.row.data();
+    f.mumps.rhs_sparse = sparse.value.data();
+    if (const int error = f.run(Job::kSolve); error != 0)
+      end_with(fmt::format("finite elements: MUMPS cannot solve, error {}", error));
+  }
+  for (std::size_t c = 0; c < loads.size(); ++c) {
+    displacement_m[c].assign(wanted.size(), {});
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+      if (f.is_fixed(wanted[i])) continue;
+      const double* u_m = solution.data() + c * unknowns + f.free.first_unknown[wanted[i]];
+      displacement_m[c][i] = {u_m[0], u_m[1], u_m[2]};
+    }
+  }
+}
+
+int LinearSolver::place_of(std::uint32_t node) const {
+  return factor_->is_fixed(node) ? 0 : factor_->mumps.sym_perm[factor_->free.first_unknown[node]];
 }
 
 Result<LinearSolver> make_linear_solver(const TetMesh& mesh, const Elasticity& material,
@@ -114,12 +169,13 @@ Result<LinearSolver> make_linear_solver(const TetMesh& mesh, const Elasticity& m
         "elastic.fixed_max_m smaller"};
   const auto matrix = assemble_stiffness(mesh, material, factor->free);
   if (!matrix) return matrix.error();
-  const Cholesky cholesky(*matrix);
+  const int error = factor->factor(*matrix);
+  if (error == kOutOfMemory || error == kWorkspaceTooSmall)
+    return Error{fmt::format(
+        "finite elements: no memory for {} unknowns; take a coarser mesh or close programs",
+        factor->free.unknowns)};
   // Not positive definite: a part of the body can move without force.
-  if (cholesky.info() != Eigen::Success) return loose;
-  factor->lower = cholesky.matrixL().nestedExpression();
-  const auto& order = cholesky.permutationP().indices();
-  factor->position.assign(order.data(), order.data() + order.size());
+  if (error != 0 || factor->mumps.infog[kNegativePivots - 1] > 0) return loose;
   return LinearSolver(std::move(factor));
 }
 

@@ -5,11 +5,12 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "tools/ground_truth/gmsh.h"
 #include "tools/mesh/held_box.h"
-#include "tools/program/run_program.h"
+#include "tools/program/sweep.h"
 
 namespace tact::tools::condense {
 namespace {
@@ -42,6 +43,12 @@ std::optional<Error> check_held(const CondenseInput& input) {
       text_of(sum.low_m), text_of(sum.high_m))};
 }
 
+// Processes, as MUMPS has state of its own; the factor is shared by them.
+std::optional<Error> run_jobs(std::size_t jobs, std::span<float> results,
+                              const model::fem::Work& work) {
+  return program::run_in_processes(jobs, results, {.label = "condensing"}, work);
+}
+
 }  // namespace
 
 double median_edge_m(const model::contact::SurfaceView& surface) {
@@ -68,7 +75,7 @@ Result<CondenseInput> condense_input(const model::scene::Scene& scene) {
                           .fixed_max_m = scene.elastic->fixed_max_m,
                           .ring_pitch_m = kRingPitch_m,
                           .rings = kRings,
-                          .progress = {}};
+                          .run_jobs = run_jobs};
   return input;
 }
 
@@ -86,14 +93,6 @@ Result<model::tissue::ComplianceMap> condense_organ(const CondenseInput& input,
   settings.organ.patch_radius_m = settings.patch_radius_m > 0.0
                                       ? settings.patch_radius_m
                                       : kElementsInPatch * std::max(settings.mesh_size_m, edge_m);
-  bool stopped = false;
-  if (const auto goes_on = settings.organ.progress) {
-    settings.organ.progress = [goes_on, &stopped](std::size_t done, std::size_t vertices) {
-      stopped |= !goes_on(done, vertices);
-      return !stopped;
-    };
-    if (!settings.organ.progress(0, surface.vertex_m.size())) return program::interruption();
-  }
   ground_truth::EdgeLengths lengths;
   lengths.fine_m = settings.mesh_size_m;
   const auto body = fill_with_gmsh(surface.vertex_m, surface.triangle, lengths);
@@ -101,9 +100,7 @@ Result<model::tissue::ComplianceMap> condense_organ(const CondenseInput& input,
   facts = {.nodes = body->node_m.size(),
            .elements = body->element.size(),
            .mesh_size_m = settings.mesh_size_m};
-  auto map = model::fem::condense(*body, surface, settings.organ);
-  if (stopped) return program::interruption();
-  return map;
+  return model::fem::condense(*body, surface, settings.organ);
 }
 
 }  // namespace tact::tools::condense

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // tact-lab condense: the compliance of the scene's organ at every vertex, once and for all.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -14,7 +13,6 @@
 #include "model/scene/compliance_file.h"
 #include "tools/condense/condense_organ.h"
 #include "tools/lab/commands.h"
-#include "tools/program/interrupt.h"
 
 namespace tact::tools::lab {
 namespace {
@@ -50,18 +48,6 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--rings", o.rings, "of the shape, 1 to 31 (default 20)")
       ->check(model::io::within(1, 31));
   app.add_flag("--json", o.json, "print one JSON object, SI units");
-}
-
-bool show_progress(std::size_t done, std::size_t vertices) {
-  if (isatty(STDERR_FILENO) != 0) {
-    if (done == 0)
-      fmt::print(stderr, "\rtact-lab condense: filling and factoring the organ ...");
-    else
-      fmt::print(stderr, "\rtact-lab condense: {} of {} vertices              {}", done, vertices,
-                 done == vertices ? "\n" : "");
-    std::fflush(stderr);
-  }
-  return !program::is_interrupted();
 }
 
 struct Range {
@@ -115,7 +101,6 @@ Result<int> run(const program::Program&, Options& o) {
   input->settings.patch_radius_m = o.patch_radius_m;
   if (o.ring_pitch_m > 0.0) input->settings.organ.ring_pitch_m = o.ring_pitch_m;
   if (o.rings > 0) input->settings.organ.rings = o.rings;
-  input->settings.organ.progress = show_progress;
   const auto start = std::chrono::steady_clock::now();
   CondenseFacts facts;
   const auto map = condense::condense_organ(*input, facts);

@@ -129,11 +129,6 @@ std::string text_of(const Options& o, const OutputNames& names, const Organ& org
                                place);
 }
 
-bool show_progress(std::size_t done, std::size_t vertices) {
-  if (done > 0) mesh::show_percent("condense", static_cast<int>(100 * done / vertices));
-  return !program::is_interrupted();
-}
-
 /// The map of the scene's organ, into its file.
 std::optional<Error> condense(const std::string& scene_path, const std::string& map_path) {
   const auto scene = model::scene::load_scene(scene_path, {});
@@ -142,7 +137,6 @@ std::optional<Error> condense(const std::string& scene_path, const std::string& 
   if (!input) return input.error();
   report("condense", fmt::format("{} vertices, by finite elements: minutes for thousands",
                                  input->surface.vertex_m.size()));
-  input->settings.organ.progress = show_progress;
   condense::CondenseFacts facts;
   const auto map = condense::condense_organ(*input, facts);
   if (!map) return map.error();

@@ -6,6 +6,7 @@
 #include <array>
 #include <atomic>
 #include <csignal>
+#include <string_view>
 
 #include "tools/program/child_groups.h"
 
@@ -18,6 +19,10 @@ static_assert(std::atomic<bool>::is_always_lock_free, "may be set by a signal ha
 
 void remember(int signal) {
   const bool again = pressed.exchange(true);
+  if (!again && signal == SIGINT) {
+    constexpr std::string_view kSentence = "\nstopping after this step; Ctrl-C again: now\n";
+    [[maybe_unused]] const auto n = write(STDERR_FILENO, kSentence.data(), kSentence.size());
+  }
   if (!again || signal == SIGHUP) return;  // a closed terminal may tell it twice
   end_child_groups();
   _exit(128 + signal);  // as a shell tells it

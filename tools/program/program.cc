@@ -2,10 +2,13 @@
 #include "tools/program/program.h"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
+#include <thread>
 
 #include "model/io/file_writer.h"
 #include "model/io/program/command_line.h"
@@ -18,8 +21,30 @@ namespace fs = std::filesystem;
 using model::Error;
 using model::Result;
 
+namespace {
+
 constexpr const char* kStatus =
     "\nExit status: 0 good, 1 a check failed or Ctrl-C, 2 bad usage or input.";
+
+// What long work cost, with the programs that it ran; "285 CPU s on up to 2 cores, 1.4 GB at most".
+void print_cost(const std::string& who) {
+  constexpr double kLong_s = 10.0;  // chosen
+  rusage own{}, children{};
+  getrusage(RUSAGE_SELF, &own);
+  getrusage(RUSAGE_CHILDREN, &children);
+  const auto in_s = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  const double cpu_s =
+      in_s(own.ru_utime) + in_s(own.ru_stime) + in_s(children.ru_utime) + in_s(children.ru_stime);
+  if (cpu_s < kLong_s) return;
+  const double peak_GB =
+      1e-6 * 1.024 * static_cast<double>(std::max(own.ru_maxrss, children.ru_maxrss));
+  fmt::print(stderr, "{}: {:.0f} CPU s on up to {} cores, {:.2g} GB at most\n", who, cpu_s,
+             std::max(1U, std::thread::hardware_concurrency()), peak_GB);
+}
+
+}  // namespace
 
 Program::Program(std::string name, const std::string& purpose, const std::string& footer)
     : name_(std::move(name)), options_(std::make_unique<CLI::App>(purpose)) {
@@ -52,6 +77,7 @@ int Program::run(int argc, char** argv) {
   const std::string part = options_->get_subcommands().front()->get_name();
   part_ = " " + part;
   const auto status = parts_.at(part)(*this);
+  print_cost(name_ + part_);
   return status ? *status : fail(status.error());
 }
 

@@ -2,14 +2,20 @@
 #include "tools/program/sweep.h"
 
 #include <fmt/format.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <mutex>
+#include <new>
 #include <thread>
+#include <utility>
 
 #include "tools/program/interrupt.h"
 #include "tools/program/run_program.h"
@@ -17,48 +23,139 @@
 namespace tact::tools::program {
 namespace {
 
-/// One line that is written over itself, a few times a second.
-void show_progress(const std::string& label, const std::atomic<std::size_t>& done,
-                   std::size_t all) {
-  using namespace std::chrono_literals;
-  if (isatty(STDERR_FILENO) == 0) return;
-  const auto begun = std::chrono::steady_clock::now();
-  while (done.load() < all && !is_interrupted()) {
-    const std::size_t now = done.load();
-    fmt::print(stderr, "\r\033[K{}: {} of {} ({} %) ", label, now, all, 100 * now / all);
-    if (now > 0) {
-      const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
+/// One line that is written over itself, if standard error is a terminal.
+class Progress {
+ public:
+  Progress(std::string label, std::size_t jobs) : label_(std::move(label)), jobs_(jobs) {}
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  ~Progress() {
+    if (is_shown_) fmt::print(stderr, "\r\033[K");
+  }
+
+  void show(std::size_t done) const {
+    if (!is_shown_) return;
+    fmt::print(stderr, "\r\033[K{}: {} of {} ({} %) ", label_, done, jobs_, 100 * done / jobs_);
+    if (done > 0) {
+      const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun_;
       fmt::print(stderr, "about {:.0f} s left ",
-                 took.count() * static_cast<double>(all - now) / static_cast<double>(now));
+                 took.count() * static_cast<double>(jobs_ - done) / static_cast<double>(done));
     }
     std::fflush(stderr);
-    std::this_thread::sleep_for(200ms);
   }
-  fmt::print(stderr, "\r\033[K");
+
+ private:
+  std::string label_;
+  std::size_t jobs_;
+  bool is_shown_ = isatty(STDERR_FILENO) != 0;
+  std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
+};
+
+unsigned worker_count(std::size_t jobs, const SweepOptions& options) {
+  const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
+  const std::size_t wanted = options.threads > 0 ? options.threads : cores;
+  return static_cast<unsigned>(std::min(wanted, jobs));
+}
+
+/// What the workers share with the process that began them.
+struct Board {
+  std::atomic<std::size_t> next{0}, done{0};
+};
+
+/// Memory that stays one after fork.
+class SharedMemory {
+ public:
+  explicit SharedMemory(std::size_t bytes)
+      : bytes_(bytes),
+        at_(mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0)) {}
+  SharedMemory(const SharedMemory&) = delete;
+  SharedMemory& operator=(const SharedMemory&) = delete;
+  ~SharedMemory() {
+    if (at_ != MAP_FAILED) munmap(at_, bytes_);
+  }
+  void* get() const { return at_ == MAP_FAILED ? nullptr : at_; }
+
+ private:
+  std::size_t bytes_;
+  void* at_;
+};
+
+/// Waits for all, and shows how far they are. False if one did not end well.
+bool wait_for(std::vector<pid_t> workers, Progress& progress, const Board& board) {
+  using namespace std::chrono_literals;
+  bool good = true;
+  while (!workers.empty()) {
+    std::erase_if(workers, [&](pid_t worker) {
+      int status = 0;
+      if (waitpid(worker, &status, WNOHANG) == 0) return false;
+      good &= status == 0;
+      return true;
+    });
+    progress.show(board.done.load());
+    std::this_thread::sleep_for(50ms);
+  }
+  return good;
 }
 
 }  // namespace
 
 bool run_jobs(std::size_t jobs, const SweepOptions& options,
               const std::function<void(std::size_t job)>& work) {
-  std::atomic<std::size_t> next{0}, done{0};
+  using namespace std::chrono_literals;
+  Board board;
   const auto worker = [&] {
     while (!is_interrupted()) {
-      const std::size_t job = next.fetch_add(1);
+      const std::size_t job = board.next.fetch_add(1);
       if (job >= jobs) return;
       work(job);
-      done.fetch_add(1);
+      board.done.fetch_add(1);
     }
   };
-  const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
-  const std::size_t wanted = options.threads > 0 ? options.threads : cores;
   {
+    const Progress progress(options.label, jobs);
     std::vector<std::jthread> threads;
-    threads.reserve(std::min(wanted, jobs));
-    for (std::size_t i = 0; i < std::min(wanted, jobs); ++i) threads.emplace_back(worker);
-    show_progress(options.label, done, jobs);
+    for (unsigned i = worker_count(jobs, options); i > 0; --i) threads.emplace_back(worker);
+    for (; board.done.load() < jobs && !is_interrupted(); std::this_thread::sleep_for(50ms))
+      progress.show(board.done.load());
   }  // joined
-  return done.load() == jobs;
+  return board.done.load() == jobs;
+}
+
+std::optional<model::Error> run_in_processes(
+    std::size_t jobs, std::span<float> results, const SweepOptions& options,
+    const std::function<void(std::size_t job, std::span<float> result)>& work) {
+  const SharedMemory memory(results.size_bytes()), board_memory(sizeof(Board));
+  if (memory.get() == nullptr || board_memory.get() == nullptr)
+    return model::Error{"no memory for the results of the workers; close programs"};
+  const std::span<float> shared(static_cast<float*>(memory.get()), results.size());
+  Board& board = *new (board_memory.get()) Board;
+  const std::size_t each = results.size() / jobs;
+  const auto worker = [&] {
+    while (!is_interrupted()) {
+      const std::size_t job = board.next.fetch_add(1);
+      if (job >= jobs) return;
+      work(job, shared.subspan(job * each, each));
+      board.done.fetch_add(1);
+    }
+  };
+  std::vector<pid_t> workers;
+  for (unsigned i = worker_count(jobs, options); i > 0; --i) {
+    const pid_t child = fork();
+    if (child == 0) {
+      prctl(PR_SET_PDEATHSIG, SIGKILL);
+      worker();
+      _exit(0);
+    }
+    if (child > 0) workers.push_back(child);
+  }
+  if (workers.empty()) worker();
+  Progress progress(options.label, jobs);
+  const bool good = wait_for(std::move(workers), progress, board);
+  if (is_interrupted()) return interruption();
+  if (!good || board.done.load() != jobs)
+    return model::Error{"a worker ended early: perhaps no memory was left; use fewer cores"};
+  std::copy(shared.begin(), shared.end(), results.begin());
+  return std::nullopt;
 }
 
 std::optional<model::Error> run_until_error(

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,12 @@ bool run_jobs(std::size_t jobs, const SweepOptions& options,
 std::optional<model::Error> run_until_error(
     std::size_t jobs, const SweepOptions& options,
     const std::function<std::optional<model::Error>(std::size_t job)>& work);
+
+/// As run_until_error, each worker a process of its own that begins with a copy of this one:
+/// work(job, its equal part of `results`). For libraries that no two threads may call at a time.
+std::optional<model::Error> run_in_processes(
+    std::size_t jobs, std::span<float> results, const SweepOptions& options,
+    const std::function<void(std::size_t job, std::span<float> result)>& work);
 
 /// As run_jobs, and keeps what each job returns; empty if Ctrl-C ended it early.
 template <typename T>

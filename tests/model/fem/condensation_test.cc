@@ -51,7 +51,7 @@ CondensationSettings settings() {
           .patch_radius_m = 0.02,
           .ring_pitch_m = 0.008,
           .rings = 4,
-          .progress = {}};
+          .run_jobs = one_after_the_other};
 }
 
 std::size_t vertex_at(const Organ& organ, const Vec3& p_m) {
@@ -130,18 +130,30 @@ TEST(Condensation, IsTheSolutionOfItsOwnLoads) {
               1e-5 * scale * scale * scale);
 }
 
-TEST(Condensation, TellsProgressAndStopsWhenAsked) {
+TEST(Condensation, TheOrderOfItsJobsChangesNothing) {
   const Organ organ = block();
   CondensationSettings s = settings();
-  std::size_t calls = 0;
-  s.progress = [&](std::size_t done, std::size_t vertices) {
-    EXPECT_LE(done, vertices);
-    return ++calls < 4;
+  const auto forward = condense(organ.body, organ.surface.view(), s);
+  s.run_jobs = [](std::size_t jobs, std::span<float> results, const Work& work) {
+    const std::size_t each = results.size() / jobs;
+    while (jobs-- > 0) work(jobs, results.subspan(jobs * each, each));
+    return std::optional<Error>();
+  };
+  const auto backward = condense(organ.body, organ.surface.view(), s);
+  ASSERT_TRUE(forward && backward);
+  EXPECT_EQ(forward->regular_times_E_per_m, backward->regular_times_E_per_m);
+  EXPECT_EQ(forward->ring_times_E_per_m, backward->ring_times_E_per_m);
+}
+
+TEST(Condensation, StopsWithItsJobs) {
+  const Organ organ = block();
+  CondensationSettings s = settings();
+  s.run_jobs = [](std::size_t, std::span<float>, const Work&) {
+    return std::optional(Error{"stopped", ErrorCode::kInterrupted});
   };
   const auto map = condense(organ.body, organ.surface.view(), s);
   ASSERT_FALSE(map);
-  EXPECT_EQ(calls, 4u);
-  EXPECT_NE(map.error().message.find("stopped"), std::string::npos);
+  EXPECT_EQ(map.error().code, ErrorCode::kInterrupted);
 }
 
 TEST(Condensation, RefusesWhatItCannotSolve) {

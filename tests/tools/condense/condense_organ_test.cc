@@ -16,7 +16,7 @@ CondenseInput ball() {
                           .fixed_max_m = {1.0, 1.0, -0.015},
                           .ring_pitch_m = 0.005,
                           .rings = 6,
-                          .progress = {}};
+                          .run_jobs = model::fem::one_after_the_other};
   return input;
 }
 
@@ -48,16 +48,11 @@ TEST(CondenseOrgan, RefusesASurfaceWithoutAnInside) {
 
 TEST(CondenseOrgan, StopsWhenAsked) {
   CondenseInput input = ball();
-  input.settings.organ.progress = [](std::size_t, std::size_t) { return false; };
+  input.settings.organ.run_jobs = [](auto...) { return program::interruption(); };
   CondenseFacts facts;
-  const auto before = condense_organ(input, facts);
-  ASSERT_FALSE(before);
-  EXPECT_TRUE(program::was_interrupted(before.error())) << before.error().message;
-  // In the middle of the vertices too.
-  input.settings.organ.progress = [](std::size_t done, std::size_t) { return done == 0; };
-  const auto within = condense_organ(input, facts);
-  ASSERT_FALSE(within);
-  EXPECT_TRUE(program::was_interrupted(within.error())) << within.error().message;
+  const auto stopped = condense_organ(input, facts);
+  ASSERT_FALSE(stopped);
+  EXPECT_TRUE(program::was_interrupted(stopped.error())) << stopped.error().message;
 }
 
 TEST(CondenseOrgan, TakesTheOrganOfTheSceneInItsOwnFrame) {

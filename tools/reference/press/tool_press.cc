@@ -131,6 +131,8 @@ Patch make_patch(const OrganBody& body, const ToolPress& what) {
 }
 
 /// C, m^3/Pa. An error is that of Ctrl-C.
+constexpr std::size_t kLoadsAtOnce = 64;
+
 Result<Eigen::MatrixXd> compliance_of(const Patch& patch, model::fem::LinearSolver& solver) {
   std::vector<std::uint32_t> wanted;
   for (const auto& nodes : patch.push_m2)
@@ -141,10 +143,10 @@ Result<Eigen::MatrixXd> compliance_of(const Patch& patch, model::fem::LinearSolv
   for (std::size_t i = 0; i < wanted.size(); ++i) place[wanted[i]] = i;
   const std::size_t n = patch.sphere.size();
   Eigen::MatrixXd compliance(n, n);
-  std::vector<std::vector<Vec3>> moved_m(model::fem::kLoadsAtOnce);
-  for (std::size_t first = 0; first < n; first += model::fem::kLoadsAtOnce) {
+  std::vector<std::vector<Vec3>> moved_m(kLoadsAtOnce);
+  for (std::size_t first = 0; first < n; first += kLoadsAtOnce) {
     if (program::is_interrupted()) return program::interruption();
-    std::vector<std::vector<NodeLoad>> loads(std::min(n - first, model::fem::kLoadsAtOnce));
+    std::vector<std::vector<NodeLoad>> loads(std::min(n - first, kLoadsAtOnce));
     for (std::size_t k = 0; k < loads.size(); ++k)
       for (const auto& [node, push_m2] : patch.push_m2[first + k])
         loads[k].push_back({node, push_m2});
