@@ -95,6 +95,7 @@ class ContactRules {
     constexpr double kStep_m = 0.5e-3;
     const int n = before_ && !now.is_lost ? std::max(1, int(std::ceil(moved_m_ / kStep_m))) : 1;
     if (!before_ || now.is_lost) has_overlapped_ = true;
+    stayed_out_ = true;
     for (int k = 1; k <= n; ++k) {
       const model::Vec3 p_m =
           k == n ? now.centre_m
@@ -110,6 +111,7 @@ class ContactRules {
       if (side == Side::kUnknown || (side == Side::kIn && side_ == Side::kOut && !is_first &&
                                      !body_.is_closed() && !body_.crosses(last_m_, p_m)))
         entered_ = false;
+      stayed_out_ = stayed_out_ && side == Side::kOut && away_m > s_.radius_m;
       side_ = side;
       phi_m_ = phi_m;
       last_m_ = p_m;
@@ -153,6 +155,11 @@ class ContactRules {
 
   std::optional<Breach> c(const Tick& now) {
     if (!is_outside_ || !now.is_saturated || force_N_ == 0.0) {
+      beyond_m_ = beyond_s_ = -1.0;
+      return {};
+    }
+    // When it began within a pause is not known, nor whether it touched again.
+    if (beyond_m_ < 0.0 || !stayed_out_) {
       beyond_m_ = beyond_s_ = 0.0;
       return {};
     }
@@ -266,13 +273,13 @@ class ContactRules {
   Side side_ = Side::kUnknown;
   double phi_m_ = 0.0;  // signed distance, as far as nearest_ was searched
   model::Vec3 last_m_;
-  bool is_outside_ = false, was_outside_ = false;
+  bool is_outside_ = false, was_outside_ = false, stayed_out_ = false;
   bool has_overlapped_ = false;  // surely, ever since the start
   bool lets_go_ = false;
   int without_ = 0;       // ticks in a row, deeper and without force
   bool entered_ = false;  // from outside, and not let go since
   double unsettled_s_ = 0.0;
-  double lag_m_ = -1.0, lag_s_ = -1.0, beyond_m_ = 0.0, beyond_s_ = 0.0;
+  double lag_m_ = -1.0, lag_s_ = -1.0, beyond_m_ = -1.0, beyond_s_ = -1.0;
   int lags_ = 0;
   bool in_stroke_ = false;
   int lagged_ = 0;

@@ -150,7 +150,7 @@ struct SoftBody {
     scene.spheres = spheres;
     scene.surface = surface.mesh.view();
     scene.tree = surface.tree.view();
-    scene.period_s = 1e-3;
+    scene.period_s = period_s;
     return scene;
   }
   double limit_N() const { return curve.respond(kRange_m).force_N; }
@@ -163,6 +163,7 @@ struct SoftBody {
   }
 
   static constexpr double kRange_m = 12e-3;
+  double period_s = 1e-3;
   const ContactSurface& surface;
   std::vector<model::contact::ProbeSphere> spheres;
   model::contact::ContactParameters parameters;

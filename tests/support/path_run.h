@@ -103,11 +103,12 @@ inline PathResult run_path(SoftBody& soft, const BruteForce& body, const Path& p
                                           .max_slope_N_per_m = soft.max_slope_N_per_m(),
                                           .limit_N = soft.limit_N(),
                                           .range_m = SoftBody::kRange_m,
+                                          .period_s = soft.period_s,
                                           .is_alone = is_alone,
                                           .friction_ratio = soft.parameters.friction_ratio});
   PauseRule pause;
   std::uint32_t periods = 0;
-  const std::vector<PathTick> ticks = ticks_of(path);
+  const std::vector<PathTick> ticks = ticks_of(path, soft.period_s);
   for (std::size_t i = 0; i < ticks.size(); ++i) {
     const model::Tool tool{.position_m = ticks[i].position_m};
     ++periods;
@@ -185,6 +186,7 @@ struct PathCase {
   double radius_m = 4e-3;
   bool is_forceps = false;  // two spheres, 8 mm apart
   double friction = 0.0;
+  double rate_Hz = 1000.0;
 };
 
 /// What many paths came to. Of each rule the first broken path is made small.
@@ -198,6 +200,7 @@ struct PathCounts {
     std::vector<model::contact::ProbeSphere> spheres{{{}, c.radius_m}};
     if (c.is_forceps) spheres = {{{0, -4e-3, 0}, c.radius_m}, {{0, 4e-3, 0}, c.radius_m}};
     SoftBody soft(surface, spheres, c.friction);
+    soft.period_s = 1.0 / c.rate_Hz;
     PathMaker maker(surface.mesh.vertex_m, surface.mesh.triangle, body, c.radius_m, c.seed);
     const Path path = maker.make(6);
     const PathResult result = run_path(soft, body, path);
@@ -235,9 +238,9 @@ struct PathCounts {
 };
 
 /// One sphere or two, smooth or rough.
-inline PathCase case_of(const std::string& name, std::uint32_t seed) {
+inline PathCase case_of(const std::string& name, std::uint32_t seed, double rate_Hz = 1000.0) {
   std::mt19937 random(seed);
-  PathCase c{.name = name, .seed = seed};
+  PathCase c{.name = name, .seed = seed, .rate_Hz = rate_Hz};
   c.radius_m = std::uniform_real_distribution<double>(1e-3, 6e-3)(random);
   c.is_forceps = seed % 5 == 0;
   if (c.is_forceps) c.radius_m = 4e-3;
@@ -247,12 +250,12 @@ inline PathCase case_of(const std::string& name, std::uint32_t seed) {
 
 /// Seeds in a row until so many ticks have run.
 inline PathCounts run_random_paths(const std::string& name, model::mesh::SurfaceMesh mesh,
-                                   std::size_t ticks) {
+                                   std::size_t ticks, double rate_Hz = 1000.0) {
   const ContactSurface surface(std::move(mesh));
   const BruteForce body(surface.mesh.vertex_m, surface.mesh.triangle);
   PathCounts counts;
   for (std::uint32_t seed = 1; counts.ticks < ticks; ++seed)
-    counts.run(case_of(name, seed), surface, body);
+    counts.run(case_of(name, seed, rate_Hz), surface, body);
   return counts;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <string>
+#include <tuple>
 
 #include "tests/support/extent.h"
 #include "tests/support/path_run.h"
@@ -66,6 +67,20 @@ INSTANTIATE_TEST_SUITE_P(Bodies, AnyPath,
                                            "flap_12mm_bent", "flap_3mm_bent", "flap_folded",
                                            "two_sheets", "two_lobes", "torus", "bladder", "ball",
                                            "box", "box_of_few"));
+
+using BodyAndRate = std::tuple<const char*, double>;
+class AnyPathRate : public ::testing::TestWithParam<BodyAndRate> {};
+
+TEST_P(AnyPathRate, KeepsTheRulesOfContact) {
+  const auto& [name, rate_Hz] = GetParam();
+  const tests::PathCounts counts =
+      tests::run_random_paths(name, body_of(name), tests::share_of(400'000, 6'000'000), rate_Hz);
+  EXPECT_TRUE(counts.broken.empty()) << counts.summary() << "\n" << counts.first;
+}
+
+INSTANTIATE_TEST_SUITE_P(RateHz, AnyPathRate,
+                         ::testing::Combine(::testing::Values("flap_2mm", "two_lobes", "box"),
+                                            ::testing::Values(100.0, 10000.0)));
 
 // Paths of earlier long runs, each of which broke a rule.
 void expect_kept(const std::string& name, const std::vector<std::uint32_t>& seeds) {
