@@ -47,6 +47,8 @@ Result<DiscStack> make_disc_stack(const Disc& disc, DiscForm form, const LayerDe
   const char* wrong = disc_error(disc, form);
   if (wrong != nullptr) return Error{std::string("disc stack: ") + wrong};
   if (auto bad = check_meaning("disc stack", delays)) return *bad;
+  static_assert(kMaxLayers == 64);
+  if (delays.layers > kMaxLayers) return Error{"disc stack: layers must be 1 .. 64"};
   if (layer_budget(delays) == 0)
     return Error{
         "disc stack: first_delay_s is not below 1 / refresh_rate_Hz, so no layer may move: shorten "

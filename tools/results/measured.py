@@ -48,6 +48,8 @@ def bench():
         "two_cameras_p95_mm": values["raw, p95"],
         "arm_us": values["pose of the arm, median"],
         "page_frames_per_s": float(values["page, headless Chromium, software"]),
+        "missed": [{name: row[name] for name in ("what", "value", "unit", "goal", "command")}
+                   for row in rows if row["missed"]],
     }
 
 
