@@ -141,8 +141,8 @@ void Condenser::read(const Block& block, std::size_t slot, std::uint32_t vertex,
       .s1 = static_cast<float>(u * u * c11 + 2.0 * u * v * c12 + v * v * c22),
       .s2 = static_cast<float>(v * v * c11 - 2.0 * u * v * c12 + u * u * c22),
       .axis = {static_cast<float>(axis.x), static_cast<float>(axis.y), static_cast<float>(axis.z)}};
-  const auto told = std::bit_cast<std::array<float, kSidewaysFloats>>(sideways);
-  std::copy(told.begin(), told.end(), out.begin() + 1);
+  const auto reported = std::bit_cast<std::array<float, kSidewaysFloats>>(sideways);
+  std::copy(reported.begin(), reported.end(), out.begin() + 1);
   read_rings(block, slot, vertex, out.subspan(1 + kSidewaysFloats));
 }
 
@@ -182,9 +182,9 @@ void Condenser::solve(std::span<const std::uint32_t> vertices, std::span<float> 
   const std::span<const std::vector<NodeLoad>> loads(block.loads.data(), vertices.size() * kAxes);
   solver_.solve(loads, skin_, block.moved_m);
   for (std::size_t slot = 0; slot < vertices.size(); ++slot) {
-    const std::span<float> told = out.subspan(slot * floats(), floats());
-    told[0] = std::numeric_limits<float>::quiet_NaN();
-    if (!block.patch[slot].empty()) read(block, slot, vertices[slot], told);
+    const std::span<float> reported = out.subspan(slot * floats(), floats());
+    reported[0] = std::numeric_limits<float>::quiet_NaN();
+    if (!block.patch[slot].empty()) read(block, slot, vertices[slot], reported);
   }
 }
 
@@ -196,15 +196,15 @@ std::optional<Error> Condenser::run(tissue::ComplianceMap& map) {
     return solver_.place_of(a) < solver_.place_of(b);
   });
   const std::size_t blocks = (vertices.size() + kVerticesAtOnce - 1) / kVerticesAtOnce;
-  std::vector<float> told(blocks * kVerticesAtOnce * floats());
+  std::vector<float> reported(blocks * kVerticesAtOnce * floats());
   const auto work = [&](std::size_t k, std::span<float> out) {
     const std::size_t first = k * kVerticesAtOnce;
     const std::size_t here = std::min(kVerticesAtOnce, vertices.size() - first);
     solve(std::span(vertices).subspan(first, here), out);
   };
-  if (auto error = settings_.run_jobs(blocks, told, work)) return error;
+  if (auto error = settings_.run_jobs(blocks, reported, work)) return error;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
-    const float* one = told.data() + i * floats();
+    const float* one = reported.data() + i * floats();
     const std::uint32_t vertex = vertices[i];
     if (std::isnan(one[0]))
       return Error{fmt::format(
