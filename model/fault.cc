@@ -75,7 +75,9 @@ constexpr std::array kTable{
     FaultEntry{Fault::kDeviceFailed, "device failed", "the device reported an error",
                "check power, cable and driver of the device, then start tactd again"},
     FaultEntry{Fault::kLoopLate, "loop late",
-               "overrun: 20 periods skipped, or 20 late ticks in a row (100 on a stock kernel)",
+               "overrun: 20 periods skipped (0.3 s on a stock kernel), or 20 late ticks in a row "
+               "(100 on a "
+               "stock kernel); or the PC was suspended",
                "use a faster law (tact-lab plan names one) or a lower rate_Hz, and free the loop's "
                "core of other work, then start tactd again"},
     FaultEntry{Fault::kLawBroke, "law broke",

@@ -7,10 +7,12 @@
 #include <pthread.h>
 #include <spawn.h>
 #include <sys/eventfd.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -62,6 +64,12 @@ model::Result<std::unique_ptr<Guardian>> Guardian::start(const hal::ShutdownFram
   auto liveness = LivenessLock::make();
   if (!liveness) return liveness.error();
   std::unique_ptr<Guardian> guardian(new Guardian(std::move(*liveness)));
+  // A core dump would hold all threads until it is written, 0.1 s and more. 1 byte: neither a file
+  // nor a pipe (core(5)).
+  rlimit core{};
+  getrlimit(RLIMIT_CORE, &core);
+  core.rlim_cur = std::min<rlim_t>(core.rlim_max, 1);
+  setrlimit(RLIMIT_CORE, &core);
   if (const auto why = guardian->spawn(program)) return refused(program, std::strerror(*why));
   guardian->thread_ =
       std::thread([self = guardian.get(), settings] { self->keep(settings.priority); });
@@ -69,7 +77,10 @@ model::Result<std::unique_ptr<Guardian>> Guardian::start(const hal::ShutdownFram
   // regular end.
   guardian->held_.acquire();
   // getpid() appears only in a message; no signal is sent to that number.
-  const Orders orders{.words = words, .priority = settings.priority, .process = getpid()};
+  const Orders orders{.words = words,
+                      .priority = settings.priority,
+                      .process = getpid(),
+                      .silence_ns = settings.silence_ns};
   if (!give_orders(guardian->socket_, orders, guardian->liveness_.descriptor()))
     return refused(program, std::strerror(errno));
   if (!guardian->is_ready()) return refused(program, "it does not answer");

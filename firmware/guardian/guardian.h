@@ -3,6 +3,7 @@
 //
 //     start        spawns tact-guardian from this program's folder and sends it the shutdown
 //                  frames, the device's descriptor and the liveness lock
+//     page()       tactd's watch and the guardian count in it; each acts when the other is silent
 //     tact-guard   a thread of tactd that holds the liveness lock (liveness_lock.h) for its whole
 //                  life and detects the end of the guardian at once
 //     destructor   releases the lock after the device is off: the guardian ends, nothing is sent
@@ -25,8 +26,9 @@
 namespace tact::firmware::guardian {
 
 struct GuardianSettings {
-  int priority = 0;     // SCHED_FIFO, of the guardian and of the thread that holds the lock
-  std::string program;  // empty: tact-guardian in the folder of this program
+  int priority = 0;  // SCHED_FIFO, of the guardian and of the thread that holds the lock
+  std::int64_t silence_ns = 300'000'000;  // tactd counts no further: the guardian acts
+  std::string program;                    // empty: tact-guardian in the folder of this program
 };
 
 class Guardian {
@@ -41,6 +43,8 @@ class Guardian {
   /// The guardian has ended unasked: a crash of tactd would not zero the device. Any thread.
   const std::atomic<bool>& is_lost() const { return lost_; }
   pid_t process() const { return process_; }
+  /// The watch counts here that tactd is not held, and sees that the guardian is not.
+  LivenessPage& page() const { return liveness_.page(); }
 
  private:
   explicit Guardian(LivenessLock liveness) : liveness_(std::move(liveness)) {}

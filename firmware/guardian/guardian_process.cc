@@ -63,9 +63,9 @@ void enter_real_time(int priority) {
 
 /// Formatted in advance, so that nothing is formatted after the death.
 struct DeathMessage {
-  DeathMessage(int process, const char* what) {
-    std::snprintf(text.data(), text.size(), "tact-guardian: tactd (process %d) died; %s\n", process,
-                  what);
+  DeathMessage(int process, const char* how, const char* what) {
+    std::snprintf(text.data(), text.size(), "tact-guardian: tactd (process %d) %s; %s\n", process,
+                  how, what);
   }
   std::array<char, 200> text{};
 };
@@ -117,16 +117,24 @@ int stand_guard(int socket) {
   // In this order: calls for files and priority come before the filter, which would refuse
   // it; the ready byte "r" comes last.
   const Orders orders = taken->orders;
-  const DeathMessage sent(orders.process, "zero force and power off were sent to its device");
-  const DeathMessage unsent(orders.process,
-                            "its device did not take zero force and power off: switch it off now");
+  constexpr const char *kDied = "died",
+                       *kHeld = "is held (stopped, frozen, or its core is being dumped)",
+                       *kSent = "zero force and power off were sent to its device",
+                       *kUnsent =
+                           "its device did not take zero force and power off: switch it off now";
+  const std::array<DeathMessage, 4> messages{{{orders.process, kDied, kUnsent},
+                                              {orders.process, kDied, kSent},
+                                              {orders.process, kHeld, kUnsent},
+                                              {orders.process, kHeld, kSent}}};
   outlive_short_memory();
   enter_real_time(orders.priority);
   filter_calls(orders.words.fd, socket);
   write_all(socket, "r");
-  if (liveness->await() == LivenessLock::End::kLetGo) return 0;
-  const bool taken_all = hal::say_all(orders.words) == 0;
-  write_all(STDERR_FILENO, (taken_all ? sent : unsent).text.data());
+  const LivenessLock::End end = liveness->await(orders.silence_ns);
+  if (end == LivenessLock::End::kLetGo) return 0;
+  const std::size_t sent = hal::say_all(orders.words) == 0 ? 1 : 0;
+  write_all(STDERR_FILENO,
+            messages[sent + (end == LivenessLock::End::kSilent ? 2 : 0)].text.data());
   return 1;
 }
 

@@ -7,15 +7,26 @@
 
 #include <cerrno>
 #include <cstring>
+#include <ctime>
 #include <utility>
+
+#include "model/time_ns.h"
 
 namespace tact::firmware::guardian {
 namespace {
 
 /// Maps the page that both processes share.
-pthread_mutex_t* map(int fd) {
-  void* memory = mmap(nullptr, sizeof(pthread_mutex_t), PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
-  return memory == MAP_FAILED ? nullptr : static_cast<pthread_mutex_t*>(memory);
+LivenessPage* map(int fd) {
+  void* memory = mmap(nullptr, sizeof(LivenessPage), PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
+  return memory == MAP_FAILED ? nullptr : static_cast<LivenessPage*>(memory);
+}
+
+timespec from_now(std::int64_t after_ns) {
+  timespec at{};
+  clock_gettime(CLOCK_MONOTONIC, &at);
+  at.tv_sec += (at.tv_nsec + after_ns) / model::kSecond_ns;
+  at.tv_nsec = (at.tv_nsec + after_ns) % model::kSecond_ns;
+  return at;
 }
 
 model::Error refused(int fd, int error) {
@@ -28,46 +39,59 @@ model::Error refused(int fd, int error) {
 
 model::Result<LivenessLock> LivenessLock::make() {
   const int fd = memfd_create("tact-liveness", MFD_CLOEXEC);
-  if (fd < 0 || ftruncate(fd, sizeof(pthread_mutex_t)) != 0) return refused(fd, errno);
-  pthread_mutex_t* mutex = map(fd);
-  if (mutex == nullptr) return refused(fd, errno);
+  if (fd < 0 || ftruncate(fd, sizeof(LivenessPage)) != 0) return refused(fd, errno);
+  LivenessPage* page = map(fd);
+  if (page == nullptr) return refused(fd, errno);
   pthread_mutexattr_t attributes;
   pthread_mutexattr_init(&attributes);
   // Shared between processes; robust: the kernel passes it on when the holder's thread ends
   // (RT-18).
   pthread_mutexattr_setpshared(&attributes, PTHREAD_PROCESS_SHARED);
   pthread_mutexattr_setrobust(&attributes, PTHREAD_MUTEX_ROBUST);
-  const int error = pthread_mutex_init(mutex, &attributes);
+  const int error = pthread_mutex_init(&page->mutex, &attributes);
   pthread_mutexattr_destroy(&attributes);
   // From here on the destructor closes and unmaps both.
-  LivenessLock liveness(fd, mutex);
+  LivenessLock liveness(fd, page);
   if (error != 0) return refused(-1, error);
   return liveness;
 }
 
 model::Result<LivenessLock> LivenessLock::take(int fd) {
-  pthread_mutex_t* mutex = map(fd);
-  if (mutex == nullptr) return refused(fd, errno);
-  return LivenessLock(fd, mutex);
+  LivenessPage* page = map(fd);
+  if (page == nullptr) return refused(fd, errno);
+  return LivenessLock(fd, page);
 }
 
 LivenessLock::LivenessLock(LivenessLock&& other) noexcept
-    : fd_(std::exchange(other.fd_, -1)), mutex_(std::exchange(other.mutex_, nullptr)) {}
+    : fd_(std::exchange(other.fd_, -1)), page_(std::exchange(other.page_, nullptr)) {}
 
 LivenessLock::~LivenessLock() {
-  if (mutex_ != nullptr) munmap(mutex_, sizeof(pthread_mutex_t));
+  if (page_ != nullptr) munmap(page_, sizeof(LivenessPage));
   if (fd_ >= 0) close(fd_);
 }
 
-void LivenessLock::hold() { pthread_mutex_lock(mutex_); }
+void LivenessLock::hold() { pthread_mutex_lock(&page_->mutex); }
 
-void LivenessLock::let_go() { pthread_mutex_unlock(mutex_); }
+void LivenessLock::let_go() { pthread_mutex_unlock(&page_->mutex); }
 
 // The kernel reports the death as EOWNERDEAD; any other error of the lock counts as a death, too.
-LivenessLock::End LivenessLock::await() {
-  if (pthread_mutex_lock(mutex_) != 0) return End::kDied;
-  pthread_mutex_unlock(mutex_);
-  return End::kLetGo;
+LivenessLock::End LivenessLock::await(std::int64_t silence_ns) {
+  constexpr int kLooks = 4;  // in the time of a silence
+  std::uint64_t before = 0;
+  for (int same = 0;;) {
+    const timespec until = from_now(silence_ns / kLooks);
+    const int ended = pthread_mutex_clocklock(&page_->mutex, CLOCK_MONOTONIC, &until);
+    if (ended == 0) {
+      pthread_mutex_unlock(&page_->mutex);
+      return End::kLetGo;
+    }
+    if (ended != ETIMEDOUT) return End::kDied;
+    page_->waiter_count.fetch_add(1, std::memory_order_relaxed);
+    const std::uint64_t now = page_->holder_count.load(std::memory_order_relaxed);
+    same = now == before && now != 0 ? same + 1 : 0;
+    before = now;
+    if (same >= kLooks) return End::kSilent;
+  }
 }
 
 }  // namespace tact::firmware::guardian

@@ -15,10 +15,11 @@ inline constexpr int kOrdersFd = 0;  // the guardian's end of the socket: its st
 inline constexpr const char* kProgram = "tact-guardian";
 
 struct Orders {
-  std::uint64_t magic = 0x7461'6374'6775'6132;
-  hal::ShutdownFrames words;  // its fd is valid only in the sender; the datagram carries another
-  std::int32_t priority = 0;  // SCHED_FIFO
-  std::int32_t process = 0;   // process id of tactd, for the message
+  std::uint64_t magic = 0x7461'6374'6775'6133;
+  hal::ShutdownFrames words;    // its fd is valid only in the sender; the datagram carries another
+  std::int32_t priority = 0;    // SCHED_FIFO
+  std::int32_t process = 0;     // process id of tactd, for the message
+  std::int64_t silence_ns = 0;  // tactd counts no further for so long: as if it had died
 };
 
 struct TakenOrders {

@@ -12,11 +12,17 @@ namespace tact::firmware::loop {
 #pragma clang diagnostic push
 #pragma clang diagnostic ignored "-Wfunction-effects"
 #endif
-std::int64_t MonotonicClock::now_ns() RT_SAFE {
+namespace {
+std::int64_t clock_ns(clockid_t clock) RT_SAFE {
   timespec t{};
-  clock_gettime(CLOCK_MONOTONIC, &t);
+  clock_gettime(clock, &t);
   return t.tv_sec * model::kSecond_ns + t.tv_nsec;
 }
+}  // namespace
+
+std::int64_t MonotonicClock::now_ns() RT_SAFE { return clock_ns(CLOCK_MONOTONIC); }
+
+std::int64_t MonotonicClock::suspended_ns() RT_SAFE { return clock_ns(CLOCK_BOOTTIME) - now_ns(); }
 
 void MonotonicClock::sleep_until_ns(std::int64_t deadline_ns) RT_SAFE {
   // TIMER_ABSTIME: after a signal the sleep is repeated with the same deadline. The error is the

@@ -31,6 +31,8 @@ class MonotonicClock final : public Clock {
 #endif
   }
   void sleep_until_ns(std::int64_t deadline_ns) RT_SAFE override;
+  /// How long this PC was suspended since it was started: now_ns() does not count that.
+  std::int64_t suspended_ns() RT_SAFE;
 };
 
 /// Time from the counter between two readings of the clock. The counter's rate comes from the last

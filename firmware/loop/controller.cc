@@ -38,7 +38,7 @@ Controller::Controller(const model::contact::ContactScene& scene, const gate::Ga
     : contact_(scene),
       gate_(gate),
       grip_gate_(grip_gate),
-      overruns_(hard_real_time),
+      overruns_(hard_real_time, gate.period_s()),
       fastest_mps_(fastest_sphere_mps(scene, gate)) {}
 
 // The longer of the periods since the last sample and of the time between both time stamps: in a

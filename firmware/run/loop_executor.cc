@@ -37,9 +37,13 @@ void LoopExecutor::keep() {
 
 void LoopExecutor::take(const LoopRun& turn) {
   // The watch starts before the loop's thread and stops after it, so it monitors every tick.
+  watch::GuardianLink link;
+  if (const auto* guardian = guarded_.guardian)
+    link = {.is_lost = &guardian->is_lost(),
+            .own_count = &guardian->page().holder_count,
+            .its_count = &guardian->page().waiter_count};
   watch::LoopMonitor watch(watch::StallDetector(guarded_.period_ns, guarded_.hard_real_time),
-                           turn.progress, guarded_.requests, guarded_.lines,
-                           guarded_.guardian == nullptr ? nullptr : &guarded_.guardian->is_lost());
+                           turn.progress, guarded_.requests, guarded_.lines, link);
   watch.start(guarded_.rt);
   std::thread([&] {
     add_to(costs_, run_as_loop_thread(guarded_.rt, turn.run, guarded_.filter));

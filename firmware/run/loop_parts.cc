@@ -5,6 +5,7 @@
 
 #include "firmware/admission/refusals.h"
 #include "firmware/gate/limits_for.h"
+#include "firmware/watch/stall_detector.h"
 #include "hal/gpio/gpio_lines.h"
 #include "hal/lines_settings.h"
 #include "model/io/limits_checksum.h"
@@ -57,7 +58,11 @@ Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsS
   if (!device) return device.error();
   parts.device = std::move(*device);
   // Immediately, because from here on a crash would leave an open device.
-  auto guardian = start_guardian(*parts.device, setup.rt);
+  // Longer than the watch's own delays: on a stock kernel half a second (chosen).
+  const watch::StallDetector stall(model::period_ns(scene.rate_Hz), true);
+  const std::int64_t silence_ns = setup.non_rt ? model::kSecond_ns / 2 : stall.longest_ns();
+  auto guardian = start_guardian(
+      *parts.device, {.priority = setup.rt.priority + 1, .silence_ns = silence_ns, .program = {}});
   if (!guardian) return guardian.error();
   parts.guardian = std::move(*guardian);
   if (auto error = admit(scene, setup, parts)) return *error;
@@ -75,11 +80,11 @@ Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsS
 }
 
 Result<std::unique_ptr<guardian::Guardian>> start_guardian(hal::Device& device,
-                                                           const pc::RtSettings& rt) {
+                                                           const guardian::GuardianSettings& s) {
   const auto words = device.shutdown_frames();
   // Null: simulated, or the vendor's handle cannot be shared (hal/shutdown_frames.h).
   if (!words) return std::unique_ptr<guardian::Guardian>();
-  return guardian::Guardian::start(*words, {.priority = rt.priority + 1, .program = {}});
+  return guardian::Guardian::start(*words, s);
 }
 
 }  // namespace tact::firmware::run

@@ -49,7 +49,7 @@ model::Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const
 
 /// Starts the process that zeroes this device if its program dies; null: the device has no shutdown
 /// frames.
-model::Result<std::unique_ptr<guardian::Guardian>> start_guardian(hal::Device& device,
-                                                                  const pc::RtSettings& rt);
+model::Result<std::unique_ptr<guardian::Guardian>> start_guardian(
+    hal::Device& device, const guardian::GuardianSettings&);
 
 }  // namespace tact::firmware::run

@@ -4,6 +4,7 @@
 #include <pthread.h>
 
 #include "firmware/loop/release_schedule.h"
+#include "model/time_ns.h"
 
 namespace tact::firmware::watch {
 
@@ -21,6 +22,7 @@ void LoopMonitor::start(const pc::RtSettings& loop) {
 void LoopMonitor::stop() {
   ending_.store(true, std::memory_order_relaxed);
   if (thread_.joinable()) thread_.join();
+  if (guardian_.own_count != nullptr) guardian_.own_count->store(0, std::memory_order_relaxed);
 }
 
 void LoopMonitor::run() RT_SAFE {
@@ -35,9 +37,23 @@ void LoopMonitor::check() RT_SAFE {
   // Requests::trip keeps the first fault: a stall is reported in preference to a lost guardian.
   const model::Fault found = stall_.step(progress_);
   if (found != model::Fault::kNone) requests_.trip(found);
-  if (guardian_lost_ != nullptr && guardian_lost_->load(std::memory_order_relaxed))
-    requests_.trip(model::Fault::kGuardianLost);
+  if (found == model::Fault::kNone && guardian_.own_count != nullptr)
+    guardian_.own_count->fetch_add(1, std::memory_order_relaxed);
+  if (is_guardian_gone()) requests_.trip(model::Fault::kGuardianLost);
+  if (suspend_.step(clock_.suspended_ns())) requests_.trip(model::Fault::kLoopLate);
   if (requests_.fault.load(std::memory_order_relaxed) != model::Fault::kNone) lines_.drop();
+}
+
+// It counts every quarter of its silence, 75 ms at most.
+bool LoopMonitor::is_guardian_gone() RT_SAFE {
+  constexpr std::int64_t kHeld_ns = 500 * model::kMillisecond_ns;  // chosen
+  if (guardian_.is_lost == nullptr) return false;
+  if (guardian_.is_lost->load(std::memory_order_relaxed)) return true;
+  if (guardian_.its_count == nullptr) return false;
+  const std::uint64_t now = guardian_.its_count->load(std::memory_order_relaxed);
+  guardian_still_ns_ = now == guardian_before_ ? guardian_still_ns_ + stall_.check_ns() : 0;
+  guardian_before_ = now;
+  return guardian_still_ns_ > kHeld_ns;
 }
 
 // Halfway between two deadlines, so that on a shared core the watch does not delay the loop's

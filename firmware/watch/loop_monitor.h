@@ -3,7 +3,7 @@
 //
 // It wakes every 5 periods, halfway between two deadlines of the loop (release_schedule.h), above
 // the loop's priority and, if possible, on another core. It acts when the loop stalls, hangs in a
-// call or runs away (runaway.h), when call_filter.h refused a call, or when the guardian is lost:
+// call or runs away (runaway.h), when call_filter.h refused a call, when the guardian is lost or held, or after the PC was suspended:
 //
 //     it sets the fault               the loop's next tick gives zero force and latches the fault
 //     it drops enable and heartbeat   itself, at this check and at every later one
@@ -18,20 +18,27 @@
 #include "firmware/loop/rt_loop.h"
 #include "firmware/pc/rt_setup.h"
 #include "firmware/watch/stall_detector.h"
+#include "firmware/watch/suspend_detector.h"
 
 namespace tact::firmware::watch {
 
+/// The process that zeroes the device when tactd has died or is held (firmware/guardian).
+struct GuardianLink {
+  const std::atomic<bool>* is_lost = nullptr;  // it has ended; null: there is no guardian
+  std::atomic<std::uint64_t>* own_count =
+      nullptr;  // it acts when this stands still; 0: not watched
+  const std::atomic<std::uint64_t>* its_count = nullptr;
+};
+
 class LoopMonitor {
  public:
-  /// `guardian_lost`: set when the process that zeroes the device after a crash has ended
-  /// (firmware/guardian); null without a guardian.
   LoopMonitor(const StallDetector& stall, const loop::Progress& progress, loop::Requests& requests,
-              hal::SafetyLines& lines, const std::atomic<bool>* guardian_lost = nullptr)
+              hal::SafetyLines& lines, const GuardianLink& guardian = {})
       : stall_(stall),
         progress_(progress),
         requests_(requests),
         lines_(lines),
-        guardian_lost_(guardian_lost) {}
+        guardian_(guardian) {}
   ~LoopMonitor() { stop(); }
   LoopMonitor(const LoopMonitor&) = delete;
   LoopMonitor& operator=(const LoopMonitor&) = delete;
@@ -43,13 +50,17 @@ class LoopMonitor {
 
  private:
   void run() RT_SAFE;
+  bool is_guardian_gone() RT_SAFE;
   std::int64_t next_ns(std::int64_t now_ns) const RT_SAFE;
 
   StallDetector stall_;
   const loop::Progress& progress_;
   loop::Requests& requests_;
   hal::SafetyLines& lines_;
-  const std::atomic<bool>* guardian_lost_;
+  GuardianLink guardian_;
+  std::uint64_t guardian_before_ = 0;
+  std::int64_t guardian_still_ns_ = 0;  // since it counted
+  SuspendDetector suspend_;
   loop::MonotonicClock clock_;
   std::atomic<bool> ending_{false};
   std::thread thread_;

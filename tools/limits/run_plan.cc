@@ -124,7 +124,7 @@ Result<LimitsReport> run_real(const model::scene::Scene& scene, hal::Device& dev
   const bool hard = shortfalls.empty() && firmware::pc::probe_rt_threads({}).empty();
   const hal::DeviceInfo info = device.info();
   // Before the first tick: should this program die, somebody has to take the force away.
-  const auto guardian = firmware::run::start_guardian(device, {});
+  const auto guardian = firmware::run::start_guardian(device, {.priority = 1, .program = {}});
   if (!guardian) return guardian.error();
   firmware::loop::Requests requests;
   const LimitsBench bench{.scene = scene,

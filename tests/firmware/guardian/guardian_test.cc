@@ -13,6 +13,7 @@
 #include <csignal>
 #include <functional>
 #include <string_view>
+#include <utility>
 
 #include "tests/support/program.h"
 
@@ -48,8 +49,9 @@ struct Wire {
 };
 
 std::unique_ptr<Guardian> start(const hal::ShutdownFrames& words) {
-  auto guardian =
-      Guardian::start(words, {.priority = 1, .program = tests::program_path("tact-guardian")});
+  auto guardian = Guardian::start(
+      words,
+      {.priority = 1, .silence_ns = 20'000'000, .program = tests::program_path("tact-guardian")});
   EXPECT_TRUE(guardian) << guardian.error().message;
   return guardian ? std::move(*guardian) : nullptr;
 }
@@ -109,6 +111,57 @@ TEST(Guardian, SaysThemAlsoOfOneThatCrashesOrLeavesWithoutAWord) {
   EXPECT_EQ(crashed.hear(3, kTimeout_ms), kAll);
   const Guarded other(left, [](Guardian&) { _exit(0); });
   EXPECT_EQ(left.hear(3, kTimeout_ms), kAll);
+}
+
+/// Counts every millisecond, as the watch does.
+void count(Guardian& guardian) {
+  for (;;) {
+    guardian.page().holder_count.fetch_add(1);
+    usleep(1000);
+  }
+}
+
+TEST(Guardian, SaysTheLastWordsOfAProgramThatIsHeld) {
+  const Wire wire;
+  const Guarded guarded(wire, count);
+  EXPECT_EQ(wire.hear(1, kSilence_ms), Words{}) << "as long as it counts";
+  kill(guarded.program, SIGSTOP);
+  EXPECT_EQ(wire.hear(3, kTimeout_ms), kAll);
+  EXPECT_EQ(wire.hear(1, kSilence_ms), Words{}) << "once";
+}
+
+TEST(Guardian, SaysNothingWhileNobodyIsToCount) {
+  const Wire wire;
+  const Guarded guarded(wire, [](Guardian& guardian) {
+    guardian.page().holder_count.store(7);
+    guardian.page().holder_count.store(0);
+  });
+  kill(guarded.program, SIGSTOP);
+  EXPECT_EQ(wire.hear(1, kSilence_ms), Words{});
+}
+
+TEST(Guardian, ACrashLeavesNoCoreToWaitFor) {
+  const Wire wire;
+  const Guarded guarded(wire, [](Guardian&) {});
+  EXPECT_EQ(tests::run_command("grep -c 'Max core file size *1 ' /proc/" +
+                               std::to_string(guarded.program) + "/limits")
+                .output,
+            "1\n");
+}
+
+TEST(Guardian, ItCountsUnlessItIsHeld) {
+  const Wire wire;
+  const auto guardian = start(wire.words);
+  ASSERT_TRUE(guardian);
+  const auto& its_count = guardian->page().waiter_count;
+  EXPECT_TRUE(soon([&] { return its_count.load() > 3; }));
+  kill(guardian->process(), SIGSTOP);
+  std::uint64_t before = 0;
+  EXPECT_TRUE(soon([&] {
+    usleep(kSilence_ms * 1000);
+    return std::exchange(before, its_count.load()) == its_count.load();
+  }));
+  kill(guardian->process(), SIGCONT);
 }
 
 TEST(Guardian, TellsThatTheDeviceTookNothing) {

@@ -7,7 +7,7 @@ namespace tact::firmware::loop::late_watch_test {
 
 TEST(OverrunCounter, StopsAtTwentyLateTicksInARowOrAHundredWithoutHardRealTime) {
   for (const bool hard : {true, false}) {
-    OverrunCounter watch(hard);
+    OverrunCounter watch(hard, 1e-3);
     int late = 1;
     while (!watch.step(1)) ++late;
     EXPECT_EQ(late, hard ? 20 : 100);
@@ -15,7 +15,7 @@ TEST(OverrunCounter, StopsAtTwentyLateTicksInARowOrAHundredWithoutHardRealTime) 
 }
 
 TEST(OverrunCounter, GoesOnSayingStopAndForgetsItInOneTickThatIsInTime) {
-  OverrunCounter watch(false);
+  OverrunCounter watch(false, 1e-3);
   for (int i = 0; i < 99; ++i) ASSERT_FALSE(watch.step(1)) << i;
   for (int i = 0; i < 300; ++i) ASSERT_TRUE(watch.step(1)) << i;
   EXPECT_FALSE(watch.step(0));
@@ -23,9 +23,12 @@ TEST(OverrunCounter, GoesOnSayingStopAndForgetsItInOneTickThatIsInTime) {
 }
 
 TEST(OverrunCounter, WithHardRealTimeTwentyPeriodsSkippedAtOnceStopToo) {
-  EXPECT_TRUE(OverrunCounter(true).step(20));
-  EXPECT_FALSE(OverrunCounter(true).step(19));
-  EXPECT_FALSE(OverrunCounter(false).step(1000));
+  EXPECT_TRUE(OverrunCounter(true, 1e-3).step(20));
+  EXPECT_FALSE(OverrunCounter(true, 1e-3).step(19));
+  EXPECT_FALSE(OverrunCounter(false, 1e-3).step(299));
+  EXPECT_TRUE(OverrunCounter(false, 1e-3).step(300)) << "0.3 s, at any rate";
+  EXPECT_TRUE(OverrunCounter(false, 1e-4).step(3000));
+  EXPECT_FALSE(OverrunCounter(false, 1e-4).step(2999));
 }
 
 }  // namespace tact::firmware::loop::late_watch_test

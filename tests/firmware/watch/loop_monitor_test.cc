@@ -97,7 +97,8 @@ TEST_F(MonitoredLoop, ADeviceThatHangsLosesTheEnableLineAndThenTheForce) {
 
 TEST_F(MonitoredLoop, AGuardianThatIsLostTakesTheForceAndTheEnableLine) {
   std::atomic<bool> lost{false};
-  LoopMonitor beside(StallDetector(kMs, false), loop->progress(), requests, lines, &lost);
+  LoopMonitor beside(StallDetector(kMs, false), loop->progress(), requests, lines,
+                     {.is_lost = &lost});
   beside.start({});
   start();
   EXPECT_EQ(requests.fault.load(), model::Fault::kNone);
@@ -111,6 +112,33 @@ TEST_F(MonitoredLoop, AGuardianThatIsLostTakesTheForceAndTheEnableLine) {
   }
   EXPECT_EQ(record.output.fault, model::Fault::kGuardianLost);
   EXPECT_EQ(record.output.written, model::Wrench{});
+}
+
+TEST_F(MonitoredLoop, AGuardianThatIsHeldIsLost) {
+  const std::atomic<bool> lost{false};
+  std::atomic<std::uint64_t> own{0}, its{1};
+  LoopMonitor beside(StallDetector(kMs, false), loop->progress(), requests, lines,
+                     {.is_lost = &lost, .own_count = &own, .its_count = &its});
+  for (int check = 0; check < 1000; ++check) {
+    if (check % 15 == 0) ++its;  // every 75 ms
+    beside.check();
+  }
+  EXPECT_EQ(requests.fault.load(), model::Fault::kNone);
+  EXPECT_EQ(own.load(), 1000u);
+  for (int check = 0; check <= 115; ++check) beside.check();
+  EXPECT_EQ(requests.fault.load(), model::Fault::kGuardianLost);
+  EXPECT_GT(lines.drops.load(), 0);
+  beside.stop();
+  EXPECT_EQ(own.load(), 0u) << "nobody is watched when the loop has ended";
+}
+
+TEST(SuspendDetector, SeesEachSuspensionOnce) {
+  SuspendDetector detector;
+  constexpr std::int64_t kHour_ns = 3600 * model::kSecond_ns;
+  EXPECT_FALSE(detector.step(kHour_ns)) << "before the start";
+  EXPECT_FALSE(detector.step(kHour_ns + 1000));
+  EXPECT_TRUE(detector.step(2 * kHour_ns));
+  EXPECT_FALSE(detector.step(2 * kHour_ns));
 }
 
 TEST_F(MonitoredLoop, ALoopThatNeverSleepsEndsWithZeroForce) {

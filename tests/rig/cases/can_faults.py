@@ -134,6 +134,12 @@ CASES = [
               "inject kill -KILL $(pgrep tact-guardian) $tactd; sleep .1",
               StoppedByDrives(within_ms=ALONE_ms[back_end.name], trips=3), proofs=())
       for back_end in (ODRIVE06, CIA402, MOTEUS)),
+    *(done_to(back_end, "held", "a controller that is held: its guardian takes the force",
+              "inject kill -STOP $tactd; sleep .1; kill -KILL $tactd; sleep .1", StoppedByGuardian(within_ms=40.0), proofs=())
+      for back_end in (ODRIVE06, CIA402, MOTEUS)),
+    done_to(ODRIVE06, "guardian-held", "a controller whose guardian is held stops",
+            "inject kill -STOP $(pgrep tact-guardian)",
+            Latches("guardian lost", detect_ms=520)),
     done_to(ODRIVE06, "guardian-killed", "a controller whose guardian is killed stops",
             "inject kill -KILL $(pgrep tact-guardian)",
             Latches("guardian lost", detect_ms=7)),
