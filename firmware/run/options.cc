@@ -20,7 +20,9 @@ void add_run(CLI::App& app, Options& o) {
       ->allow_extra_args(false);
   auto* seconds = app.add_option("--seconds", o.duration_s, "stop after this time, s");
   seconds->check(model::io::within(1e-3, 1e7));
-  app.add_option("--ticks", o.ticks, "stop after this many ticks")->excludes(seconds);
+  app.add_option("--ticks", o.ticks, "stop after this many ticks")
+      ->check(model::io::within(1, 1e15))
+      ->excludes(seconds);
   app.add_flag("--free-run", o.free_run,
                "simulated time, as fast as the CPU allows; needs --ticks or --seconds");
   app.add_flag("--arm", o.arm,

@@ -5,6 +5,7 @@
 #include <openssl/crypto.h>
 #include <sys/random.h>
 
+#include <algorithm>
 #include <array>
 
 namespace tact::host::server {
@@ -31,22 +32,6 @@ bool same_secret(std::string_view a, std::string_view b) {
   return a.size() == b.size() && CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
 }
 
-/// Value of a name in a list such as "a=1; b=2".
-std::string_view value_in(std::string_view list, std::string_view name, char separator) {
-  while (!list.empty()) {
-    const std::size_t end = list.find(separator);
-    std::string_view item = list.substr(0, end);
-    while (!item.empty() && item.front() == ' ') item.remove_prefix(1);
-    if (item.size() > name.size() && item.substr(0, name.size()) == name &&
-        item[name.size()] == '=') {
-      return item.substr(name.size() + 1);
-    }
-    if (end == std::string_view::npos) break;
-    list.remove_prefix(end + 1);
-  }
-  return {};
-}
-
 }  // namespace
 
 bool Access::host_allowed(std::string_view host) const {
@@ -57,21 +42,22 @@ bool Access::host_allowed(std::string_view host) const {
          (!public_url.empty() && name == name_of(authority_of(public_url)));
 }
 
-bool Access::token_allowed(std::string_view authorization, std::string_view cookies) const {
+bool Access::token_allowed(std::string_view authorization, std::string_view protocols) const {
   // An unset token would match an empty header.
   if (token.empty()) return false;
   constexpr std::string_view kScheme = "Bearer ";
   if (authorization.starts_with(kScheme) &&
       same_secret(authorization.substr(kScheme.size()), token))
     return true;
-  return same_secret(value_in(cookies, cookie_name, ';'), token);
-}
-
-std::string Access::cookie() const {
-  const bool is_tls = public_url.starts_with("https://");
-  // Secure only with TLS: on plain http the browser would not send it back.
-  return fmt::format("{}={}; HttpOnly; SameSite=Strict; Path=/{}", cookie_name, token,
-                     is_tls ? "; Secure" : "");
+  constexpr std::string_view kToken = "token.";
+  for (std::string_view rest = protocols; !rest.empty();) {
+    const std::size_t end = std::min(rest.find(','), rest.size());
+    std::string_view item = rest.substr(0, end);
+    while (item.starts_with(' ')) item.remove_prefix(1);
+    if (item.starts_with(kToken) && same_secret(item.substr(kToken.size()), token)) return true;
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  return false;
 }
 
 std::string_view authority_of(std::string_view url) {
@@ -87,7 +73,14 @@ bool origin_matches(std::string_view origin, std::string_view host) {
 }
 
 std::string_view query_value(std::string_view query, std::string_view key) {
-  return value_in(query, key, '&');
+  while (!query.empty()) {
+    const std::size_t end = std::min(query.find('&'), query.size());
+    const std::string_view item = query.substr(0, end);
+    if (item.size() > key.size() && item.starts_with(key) && item[key.size()] == '=')
+      return item.substr(key.size() + 1);
+    query.remove_prefix(std::min(end + 1, query.size()));
+  }
+  return {};
 }
 
 model::Result<std::string> make_token() {

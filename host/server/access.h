@@ -3,10 +3,10 @@
 //
 // The page's own files are public. Data needs the random token printed at the start, on loopback,
 // too, because other users of this PC reach its loopback address. The token is in the link's
-// fragment, which no browser sends. The page posts it once ("/session") and then has it in a
-// cookie. On loopback the Host must also be a loopback name, which refuses a foreign page whose
-// name resolves to 127.0.0.1. WebSockets also need an Origin equal to the Host, which a foreign
-// page cannot forge.
+// fragment, which no browser sends. The page keeps it for its tab and shows it with each request; a
+// cookie would go to every port of this PC, so to servers of other users. On loopback the Host must
+// also be a loopback name, which refuses a foreign page whose name resolves to 127.0.0.1.
+// WebSockets also need an Origin equal to the Host, which a foreign page cannot forge.
 #pragma once
 
 #include <string>
@@ -21,14 +21,15 @@ struct Access {
   std::string bind_address;  // as in a URL
   std::string public_url{};  // of a proxy in front, "https://name:port"; empty: none
   std::string token;
-  std::string cookie_name;  // one per port, because browsers share cookies between ports
 
   bool host_allowed(std::string_view host) const;
-  /// By the header Authorization, "Bearer TOKEN", or by the header Cookie.
-  bool token_allowed(std::string_view authorization, std::string_view cookies) const;
-  /// The cookie for a browser: sent only with requests of this site, hidden from scripts.
-  std::string cookie() const;
+  /// By the header Authorization, "Bearer TOKEN", or, of a browser's WebSocket, by the header
+  /// Sec-WebSocket-Protocol, "tact, token.TOKEN".
+  bool token_allowed(std::string_view authorization, std::string_view protocols) const;
 };
+
+/// What a WebSocket that showed its token so is answered: a browser wants one of its protocols.
+inline constexpr std::string_view kProtocol = "tact";
 
 /// "name:port" of "http://name:port/" or "https://name:port/"; empty for any other URL, also one
 /// with a path, because the page and its WebSocket must be at the root of their server.

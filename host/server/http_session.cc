@@ -106,7 +106,7 @@ void HttpSession::handle(const Request& request) {
   const std::string_view path = target.substr(0, mark);
   const std::string_view query =
       mark == std::string_view::npos ? std::string_view() : target.substr(mark + 1);
-  // Host before token: a page under a foreign name learns nothing, even with a cookie.
+  // Host before token: a page under a foreign name learns nothing.
   if (!site_.access.host_allowed(view_of(request[http::field::host]))) {
     return write(
         sorry(http::status::forbidden, "403: open this page by its address, not by another name"),
@@ -114,8 +114,9 @@ void HttpSession::handle(const Request& request) {
   }
   // The page's own files are public: they are in the repository.
   const bool is_public = site_.page.find(path) != nullptr;
-  if (!is_public && !site_.access.token_allowed(view_of(request[http::field::authorization]),
-                                                view_of(request[http::field::cookie]))) {
+  if (!is_public &&
+      !site_.access.token_allowed(view_of(request[http::field::authorization]),
+                                  view_of(request[http::field::sec_websocket_protocol]))) {
     Response response = sorry(http::status::unauthorized,
                               "401: the token is missing or wrong; open the whole link that "
                               "tact-view printed");
@@ -131,7 +132,7 @@ void HttpSession::handle(const Request& request) {
 }
 
 void HttpSession::upgrade(const Request& request) {
-  // Any page can open a WebSocket to this server with our cookie; only the Origin identifies it.
+  // Any page can open a WebSocket to this server; the Origin identifies it.
   if (!origin_matches(view_of(request[http::field::origin]), view_of(request[http::field::host]))) {
     return write(sorry(http::status::forbidden, "403: this WebSocket is for tact's own page only"),
                  request);
@@ -160,11 +161,7 @@ void HttpSession::download(const Request& request, std::string_view path, std::s
 HttpSession::Response HttpSession::answer(const Request& request, std::string_view path) const {
   if (request.method() != http::verb::get && request.method() != http::verb::head)
     return sorry(http::status::method_not_allowed, "405: this server can only be read");
-  if (path == "/session") {
-    Response response{http::status::no_content, 11};
-    response.set(http::field::set_cookie, site_.access.cookie());
-    return response;
-  }
+  if (path == "/session") return Response{http::status::no_content, 11};
   const bool from_tactd = path == "/scene.json" || path == "/mesh.bin" ||
                           path == "/recording.csv" || path == "/recording.tact";
   if (from_tactd && !site_.view.has_scene())

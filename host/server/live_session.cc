@@ -57,6 +57,10 @@ LiveSession::~LiveSession() { view_.unsubscribe(*this); }
 void LiveSession::start(const Request& upgrade) {
   beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has its own timer
   socket_.set_option(websocket::stream_base::timeout::suggested(beast::role_type::server));
+  if (!upgrade[http::field::sec_websocket_protocol].empty())
+    socket_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
+      response.set(http::field::sec_websocket_protocol, std::string(kProtocol));
+    }));
   socket_.read_message_max(kMaxMessageBytes);
   error_code ignored;
   beast::get_lowest_layer(socket_).socket().set_option(boost::asio::ip::tcp::no_delay(true),

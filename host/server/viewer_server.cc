@@ -64,8 +64,6 @@ std::optional<Error> ViewerServer::open(const ViewerOptions& options) {
   site_.access.loopback = address.is_loopback();
   site_.access.bind_address = url_name(address);
   site_.access.public_url = options.public_url;
-  // Browsers share cookies between ports: two tact-view would overwrite each other's.
-  site_.access.cookie_name = fmt::format("tact_token_{}", port());
   Result<std::string> made = make_token();
   if (!made) return made.error();
   site_.access.token = std::move(*made);

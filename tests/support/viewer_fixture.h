@@ -97,7 +97,7 @@ class Viewer : public ::testing::Test {
   void show_token(Request& request) const {
     const std::string bearer = bearer_.value_or("Bearer " + server_.token());
     if (!bearer.empty()) request.set(http::field::authorization, bearer);
-    if (!cookie_.empty()) request.set(http::field::cookie, cookie_);
+    if (!protocols_.empty()) request.set(http::field::sec_websocket_protocol, protocols_);
   }
 
   http::response<http::string_body> get(const std::string& target,
@@ -164,7 +164,7 @@ class Viewer : public ::testing::Test {
   std::vector<std::string> warnings_;  // as well
   std::thread thread_;
   std::optional<std::string> bearer_;  // none: that of the server's token
-  std::string cookie_;
+  std::string protocols_;
 };
 
 }  // namespace tact::test

@@ -30,7 +30,7 @@ const token = take_token();
 const canvas = by_id<HTMLCanvasElement>("view");
 const hud = new Hud();
 const plots = new Plots(by_id);
-const recorder = new Recorder();
+const recorder = new Recorder((path) => connection.fetch(path));
 const news = new News();
 // Of a frame for its figure, in pictures, or in frames that have none: no clock, as a page that stood still has both in
 // its queue.

@@ -59,15 +59,17 @@ TEST_P(ViewerAt, ShowsNothingWithoutItsToken) {
   }
 }
 
-TEST_P(ViewerAt, KeepsItsTokenInACookie) {
+// As a browser does, which sends no other header with a WebSocket.
+TEST_P(ViewerAt, AWebSocketShowsItsTokenAsASubprotocol) {
   start(GetParam());
   start_source();
-  const std::string cookie(get("/session")[http::field::set_cookie]);
   bearer_ = "";
-  cookie_ = cookie.substr(0, cookie.find(';'));
-  EXPECT_EQ(get("/mesh.bin").result(), http::status::ok);
-  Socket with(client_io_);
-  EXPECT_FALSE(open_live(with, "http://localhost:1"));
+  for (const bool right : {true, false}) {
+    protocols_ = "tact, token." + (right ? server_.token() : std::string(32, '0'));
+    Socket socket(client_io_);
+    EXPECT_EQ(!open_live(socket, "http://localhost:1"), right);
+  }
+  EXPECT_EQ(get("/session")[http::field::set_cookie], "");
 }
 
 INSTANTIATE_TEST_SUITE_P(AnyAddress, ViewerAt, ::testing::Values("127.0.0.1", "0.0.0.0"));

@@ -11,9 +11,16 @@ export function dated_name(scene: string, ending: string, now = new Date()): str
   return `${words.filter((word) => word !== "").join("-")}.${ending}`;
 }
 
-export function save(path: string, name: string): void {
+export function save(url: string, name: string): void {
   const link = document.createElement("a");
-  link.href = path;
+  link.href = url;
   link.download = name;
   link.click();
+}
+
+/** What the server answers, as a file. */
+export async function save_answer(answer: Promise<Response>, name: string): Promise<void> {
+  const url = URL.createObjectURL(await (await answer).blob());
+  save(url, name);
+  setTimeout(() => URL.revokeObjectURL(url), 60_000); // the browser reads it after the click
 }

@@ -46,7 +46,7 @@ export function bind_keys(first: (key: string, shift: boolean) => boolean, actio
   // Who clicks with the mouse goes on with keys, and the space bar must not press the button again; who
   // came by the tab key stays there.
   window.addEventListener("click", (event) => {
-    const button = event.target instanceof Element ? event.target.closest<HTMLElement>("button, .button") : null;
+    const button = event.target instanceof Element ? event.target.closest("button") : null;
     if (event.detail > 0) button?.blur();
   });
 }

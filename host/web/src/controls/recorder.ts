@@ -2,7 +2,7 @@
 // recorder.ts - the record button. tact-view keeps the last minutes anyway; recording marks a part
 // of them by its ticks and saves it as a file that tact-view can open.
 
-import { dated_name, save } from "./file_names";
+import { dated_name, save_answer } from "./file_names";
 import { by_id } from "../document/dom";
 import { time_s_of, type Frame } from "../link/protocol";
 
@@ -10,6 +10,8 @@ export class Recorder {
   private first: Frame | null = null;
   private last: Frame | null = null;
   scene = ""; // its name
+
+  constructor(private readonly fetch: (path: string) => Promise<Response>) {}
 
   get on(): boolean {
     return this.first !== null;
@@ -30,7 +32,8 @@ export class Recorder {
   /** Ends the recording and saves it; nothing if none runs. */
   stop(): void {
     if (this.first && this.last) {
-      save(`recording.tact?from_tick=${this.first.tick}&to_tick=${this.last.tick}`, dated_name(this.scene, "tact"));
+      const path = `recording.tact?from_tick=${this.first.tick}&to_tick=${this.last.tick}`;
+      void save_answer(this.fetch(path), dated_name(this.scene, "tact"));
     }
     this.first = null;
     const button = by_id("record");
@@ -39,6 +42,6 @@ export class Recorder {
   }
 
   save_table(): void {
-    save("recording.csv", dated_name(this.scene, "csv"));
+    void save_answer(this.fetch("recording.csv"), dated_name(this.scene, "csv"));
   }
 }

@@ -25,6 +25,7 @@ export interface ConnectionEvents {
 }
 
 const kRetry_ms = 1000;
+const kToken = "tact-token"; // in this tab's own storage, which is of one port
 
 export class Connection {
   frames = 0;
@@ -39,12 +40,18 @@ export class Connection {
     private token: string | null,
     private readonly events: ConnectionEvents,
   ) {
+    this.token ??= sessionStorage.getItem(kToken);
     void this.open();
   }
 
   /** A new link was opened in this page: it counts from the next try on. */
   use(token: string): void {
     this.token = token;
+  }
+
+  /** A file of the server, with the token of this page. */
+  fetch(path: string): Promise<Response> {
+    return fetch(path, { headers: this.token ? { Authorization: `Bearer ${this.token}` } : {} });
   }
 
   /** Where a simulated hand shall go. Dropped when nobody listens. */
@@ -66,7 +73,7 @@ export class Connection {
 
   /** What may be chosen. */
   async offered(): Promise<OfferedScene[]> {
-    const answer = await fetch("scenes.json");
+    const answer = await this.fetch("scenes.json");
     return answer.ok ? ((await answer.json()) as OfferedScene[]) : [];
   }
 
@@ -74,7 +81,7 @@ export class Connection {
     const status = await this.enter();
     if (status < 200 || status > 299) return this.retry(status === 401);
     const scheme = location.protocol === "https:" ? "wss" : "ws";
-    this.socket = new WebSocket(`${scheme}://${location.host}/live`);
+    this.socket = new WebSocket(`${scheme}://${location.host}/live`, ["tact", `token.${this.token}`]);
     this.seen = 0;
     this.socket.onmessage = (message) => this.take(String(message.data));
     this.socket.onclose = () => this.retry(false);
@@ -85,13 +92,12 @@ export class Connection {
     setTimeout(() => void this.open(), kRetry_ms);
   }
 
-  /** Hands the token in, once: its cookie is enough from then on. HTTP status; 0: nobody there. */
+  /** Whether the token is right; HTTP status; 0: nobody there. */
   private async enter(): Promise<number> {
     const token = this.token;
-    const headers: HeadersInit = token ? { Authorization: `Bearer ${token}` } : {};
     try {
-      const { status } = await fetch("session", { headers });
-      if (this.token === token) this.token = null; // not one that came meanwhile
+      const { status } = await this.fetch("session");
+      if (status === 204 && token) sessionStorage.setItem(kToken, token);
       return status;
     } catch {
       return 0;
@@ -125,7 +131,7 @@ export class Connection {
   }
 
   private async load_scene(number: number): Promise<void> {
-    const [scene_answer, mesh_answer] = await Promise.all([fetch("scene.json"), fetch("mesh.bin")]);
+    const [scene_answer, mesh_answer] = await Promise.all([this.fetch("scene.json"), this.fetch("mesh.bin")]);
     if (!scene_answer.ok || !mesh_answer.ok) throw new Error("no scene yet");
     const scene = (await scene_answer.json()) as Scene;
     const { organ, tool } = split_meshes(scene, await mesh_answer.arrayBuffer());
