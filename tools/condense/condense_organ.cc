@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "tools/ground_truth/gmsh.h"
+#include "tools/condense/gmsh.h"
 #include "tools/mesh/held_box.h"
 #include "tools/program/run_program.h"
 
@@ -94,9 +94,7 @@ Result<model::tissue::ComplianceMap> condense_organ(const CondenseInput& input,
     };
     if (!settings.organ.progress(0, surface.vertex_m.size())) return program::interruption();
   }
-  ground_truth::EdgeLengths lengths;
-  lengths.fine_m = settings.mesh_size_m;
-  const auto body = fill_with_gmsh(surface.vertex_m, surface.triangle, lengths);
+  const auto body = fill_with_gmsh(surface.vertex_m, surface.triangle, settings.mesh_size_m);
   if (!body) return body.error();
   facts = {.nodes = body->node_m.size(),
            .elements = body->element.size(),

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/ground_truth/ring_means.h"
+#include "tools/chart/measure/ring_means.h"
 
 #include <algorithm>
 
-namespace tact::tools::ground_truth {
+namespace tact::tools::chart {
 
 using model::Vec3;
 
@@ -44,4 +44,4 @@ std::vector<double> RingMeans::means() const {
   return out;
 }
 
-}  // namespace tact::tools::ground_truth
+}  // namespace tact::tools::chart

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/ground_truth/gmsh.h"
+#include "tools/condense/gmsh.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <iterator>
 #include <unordered_map>
 
@@ -13,7 +11,7 @@
 #include "model/io/input_file.h"
 #include "tools/program/run_program.h"
 
-namespace tact::tools::ground_truth {
+namespace tact::tools::condense {
 namespace {
 
 using model::Error;
@@ -44,41 +42,18 @@ bool write_surface(const std::string& path, std::span<const Vec3> vertex_m,
   return !model::io::write_file(path, {text.data(), text.size()});
 }
 
-/// Square of the distance from a point, mm^2.
-std::string square_text(const Vec3& at_mm) {
-  return fmt::format("((x - ({}))^2 + (y - ({}))^2 + (z - ({}))^2)", at_mm.x, at_mm.y, at_mm.z);
-}
-
-/// Distance from balls or circle, mm, as gmsh's MathEval reads it.
-std::string distance_text(const EdgeLengths& h) {
-  const Vec3 o = h.at_m * kMm;
-  const double radius_mm = h.radius_m * kMm;
-  std::string from_centre_2 = square_text(o);
-  if (h.axis == Vec3{}) {
-    for (const Vec3& more_m : h.more_at_m)
-      from_centre_2 = fmt::format("Min({}, {})", from_centre_2, square_text(more_m * kMm));
-    return fmt::format("Max(0, Sqrt({}) - {})", from_centre_2, radius_mm);
-  }
-  const std::string height =
-      fmt::format("(({}) * (x - ({})) + ({}) * (y - ({})) + ({}) * (z - ({})))", h.axis.x, o.x,
-                  h.axis.y, o.y, h.axis.z, o.z);
-  return fmt::format("Sqrt((Sqrt(Max(0, {} - {}^2)) - {})^2 + {}^2)", from_centre_2, height,
-                     radius_mm, height);
-}
-
-bool write_script(const std::string& path, const EdgeLengths& h) {
-  const double largest_mm = h.largest_m > 0.0 ? h.largest_m * kMm : 1e9;
+bool write_script(const std::string& path, double edge_m) {
   const std::string text = fmt::format(
       "Merge \"surface.msh\";\n"
       "Surface Loop(1) = {{1}};\nVolume(1) = {{1}};\n"
       "Field[1] = MathEval;\n"
-      "Field[1].F = \"Min({}, {} + {} * {})\";\n"
+      "Field[1].F = \"{}\";\n"
       "Background Field = 1;\n"
       "Mesh.CharacteristicLengthExtendFromBoundary = 0;\n"
       "Mesh.CharacteristicLengthFromPoints = 0;\n"
       "Mesh.Algorithm3D = 1;\nMesh.Optimize = 1;\n"
       "Mesh.MshFileVersion = 2.2;\nMesh.Binary = 0;\nMesh.SaveAll = 1;\n",
-      largest_mm, h.fine_m * kMm, h.growth, distance_text(h));
+      edge_m * kMm);
   return !model::io::write_file(path, text);
 }
 
@@ -160,27 +135,12 @@ void add_middles(TetMesh& body) {
 
 }  // namespace
 
-double EdgeLengths::at(const Vec3& p_m) const {
-  const Vec3 r = p_m - at_m;
-  double centre_m = norm(r);
-  for (const Vec3& more_m : more_at_m) centre_m = std::min(centre_m, norm(p_m - more_m));
-  double away_m = std::max(0.0, centre_m - radius_m);  // from the nearest ball
-  if (axis != Vec3{}) {                                // from the circle
-    const double height_m = dot(r, axis);
-    away_m = std::hypot(norm(r - height_m * axis) - radius_m, height_m);
-  }
-  // h = min(largest, fine + growth distance)
-  const double h_m = fine_m + growth * away_m;
-  return largest_m > 0.0 ? std::min(largest_m, h_m) : h_m;
-}
-
 Result<TetMesh> fill_with_gmsh(std::span<const Vec3> vertex_m,
-                               std::span<const TriangleCorners> triangle,
-                               const EdgeLengths& lengths) {
+                               std::span<const TriangleCorners> triangle, double edge_m) {
   auto folder = program::ScratchFolder::make("tact-gmsh");
   if (!folder) return folder.error();
   if (!write_surface(folder->file("surface.msh"), vertex_m, triangle) ||
-      !write_script(folder->file("fill.geo"), lengths)) {
+      !write_script(folder->file("fill.geo"), edge_m)) {
     return Error{fmt::format("{} cannot be written; the disk may be full", folder->path())};
   }
   const auto said = program::run_program(
@@ -226,4 +186,4 @@ Result<std::string> gmsh_version() {
   return said;
 }
 
-}  // namespace tact::tools::ground_truth
+}  // namespace tact::tools::condense

@@ -10,7 +10,7 @@
 
 #include "model/types.h"
 
-namespace tact::tools::ground_truth {
+namespace tact::tools::chart {
 
 /// Cosine of a triangle's normal with the site's: the others are the organ's far side.
 inline constexpr double kFacing = 0.1;
@@ -32,4 +32,4 @@ class RingMeans {
   std::vector<double> length_m_, sum_;
 };
 
-}  // namespace tact::tools::ground_truth
+}  // namespace tact::tools::chart
