@@ -68,8 +68,8 @@ class Cache:
             pitch_m = radius_m / (FALL_RINGS - 1)
             tip = contact.TipContact(self.organ.contact_modulus_Pa, radius_m,
                                      contact.surface_fall_m(self.organ, what.vertex, FALL_RINGS, pitch_m), pitch_m)
-            give_m_per_N = tip.compliance_m_per_N(probe.depth_m, self.case(probe).force_N)
-            what = replace(what, contact_radius_m=tip.contact_radius_m(what.depth_m, give_m_per_N))
+            compliance_m_per_N = tip.compliance_m_per_N(probe.depth_m, self.case(probe).force_N)
+            what = replace(what, contact_radius_m=tip.contact_radius_m(what.depth_m, compliance_m_per_N))
         return self.solve(what, indentation, indentation.Case)[0]
 
     def tool_cases(self, what):

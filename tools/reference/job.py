@@ -102,7 +102,7 @@ def solve_tool(job):
 def act(job):
     with run.folder_of_run():
         if job["self_check"]:
-            return 0 if self_check.self_check(job["self_check"], job["jobs"], LABEL) else 1
+            return 0 if self_check.self_check(job["self_check"], job["jobs"]) else 1
         text, table = solve_tool(job) if job["tool_together"] else solve_sphere(job)
     if job["out"]:
         run.write(pathlib.Path(job["out"]), text)

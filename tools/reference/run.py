@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Programs and jobs in processes of their own: Ctrl-C ends all of them at once and leaves no file behind."""
 import contextlib
+import ctypes
 import enum
 import multiprocessing
 import multiprocessing.connection
@@ -13,6 +14,7 @@ import sys
 import tempfile
 import time
 
+PR_SET_PDEATHSIG = 1
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
 LAST_LINES = 12
 
@@ -137,6 +139,7 @@ def write(path: pathlib.Path, text: str):
 def answer(pipe, work, job):
     """A job's own process, which leads the group of the programs that it starts."""
     os.setpgid(0, 0)
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)  # without the parent nobody reads what comes
     for number in SIGNALS:
         signal.signal(number, signal.SIG_IGN)  # a terminal tells the parent, which ends this group
     signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)
@@ -183,10 +186,10 @@ class Jobs:
 
 
 def show_progress(label: str, done: int, count: int, begun_s: float):
-    """One line that is written over itself, on a terminal."""
+    """One line that is written over itself, on a terminal and with a label."""
     left = f"about {(time.monotonic() - begun_s) * (count - done) / done:.0f} s left " if done else ""
     text = f"{label}: {done} of {count} ({100 * done // count} %) {left}" if done < count else ""
-    if sys.stderr.isatty():
+    if label and sys.stderr.isatty():
         print(f"\r\033[K{text}", end="", file=sys.stderr, flush=True)
 
 

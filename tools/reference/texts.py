@@ -15,7 +15,7 @@ def short(value, digits=7):
     return float(f"{value:.{digits}g}") if isinstance(value, float) else value
 
 
-def whole(schema, organ, solver, **rest):
+def file_text(schema, organ, solver, **rest):
     head = {"schema": f"{schema}/1", "mesh": organ.mesh, "mesh_hash": organ.mesh_hash, "solver": solver,
             "youngs_modulus_Pa": organ.youngs_modulus_Pa, "poisson_ratio": organ.poisson_ratio,
             "fixed_min_m": short(organ.held_min_m), "fixed_max_m": short(organ.held_max_m)}
@@ -44,7 +44,7 @@ def sphere(plan, solver, sites):
     rows = (f"{vertex:>6} {c.depth_m * 1e3:>9.3g} {c.contact_radius_m * 1e3:>11.3f} {c.force_N:>10.5f} "
             f"{percent(c.force_error_ratio):>11}  {'neo-Hookean' if c.large_strain else 'linear'}"
             for vertex, cases in sites for c in cases)
-    return (whole("tact-reference", organ, solver, tool_radius_m=plan.tool_radius_m, ring_pitch_m=RING_PITCH_M, sites=data),
+    return (file_text("tact-reference", organ, solver, tool_radius_m=plan.tool_radius_m, ring_pitch_m=RING_PITCH_M, sites=data),
             table("vertex  depth mm  contact mm    force N  mesh err %  material", rows))
 
 
@@ -54,7 +54,7 @@ def sideways(plan, solver, solved):
              "stiffness_N_per_m": short(stiffness, 6), "error_ratio": short(error, 3)} for c, stiffness, error in solved]
     rows = (f"{c.vertex:>6} {c.contact_radius_m * 1e3:>9.3g} {'yes' if c.held else 'no':>6} {stiffness:>8.2f} "
             f"{percent(error):>11}" for c, stiffness, error in solved)
-    return (whole("tact-sideways-reference", plan.organ, solver, cases=data),
+    return (file_text("tact-sideways-reference", plan.organ, solver, cases=data),
             table("vertex radius mm   held      N/m  mesh err %", rows))
 
 
@@ -69,5 +69,5 @@ def tool(places, solver, tool_places):
                        for c in place.cases]} for place in tool_places]
     rows = (f"{place.name:>9} {c.depth_m * 1e3:>9.3g} {c.force_N:>10.5f} {percent(c.force_error_ratio):>11}  "
             + " ".join(f"{force_N:.5f}" for force_N in c.sphere_N) for place in tool_places for c in place.cases)
-    return (whole("tact-tool-reference", places.organ, solver, spheres=spheres, places=data),
+    return (file_text("tact-tool-reference", places.organ, solver, spheres=spheres, places=data),
             table("    place  depth mm    force N  mesh err %  of each sphere N", rows))

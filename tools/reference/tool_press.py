@@ -10,8 +10,8 @@ beforehand, and each sphere changes it for the others, so it is found: pressure 
     g_v  = int h_v (d + o(x)) c dA                  o how far the tool reaches beyond x at d = 0
     F    = sum_v p_v int h_v c dA                   along the way;   c = m . way
 
-and p is that of touch(). Every depth d has the same C. o(x) = max over the spheres of c + sqrt(R^2 - rho^2) - s, c and s where
-centre and x lie along the way, rho the distance of x from the sphere's axis. m, N, Pa.
+and p is that of solve_contact(). Every depth d has the same C. o(x) = max over the spheres of c + sqrt(R^2 - rho^2) - s, c and
+s where centre and x lie along the way, rho the distance of x from the sphere's axis. m, N, Pa.
 """
 from dataclasses import dataclass, field
 
@@ -30,7 +30,7 @@ LEVELS = [(0.5, 16e-3), (0.35, 14e-3), (0.25, 12e-3), (0.175, 10e-3), (0.125, 8e
 WIDEST_TOUCH = 0.99  # of R: beyond, a sphere's side is too steep to touch
 TALLEST = 4.0  # of the largest R: what lies further above is no skin of it
 SAME_POINT_M = 1e-7
-PATIENCE, PIVOTS, ZERO = 10, 50, 1e-10  # rounds of many that make it no better; times the unknowns; of the largest value
+TIMEOUT, PIVOTS, ZERO = 10, 50, 1e-10  # rounds of many that make it no better; times the unknowns; of the largest value
 # Radon's seven points of a triangle (1948), barycentric, and their shares of the area: exact to the fifth power.
 A, B = 0.470142064105115, 0.101286507323456
 GAUSS = np.vstack([np.full((1, 3), 1 / 3), A + (1 - 3 * A) * np.eye(3), B + (1 - 3 * B) * np.eye(3)])
@@ -113,7 +113,7 @@ def make_patch(body, what):
     return Patch(sphere, *total, scipy.sparse.coo_matrix((push_m2[known].ravel(), entries), size))
 
 
-def touch(compliance, overlap):
+def solve_contact(compliance, overlap):
     """p (n,) with p >= 0, C p >= g, p . (C p - g) = 0: pressure only pushes, and nothing lies inside.
 
     p pressures, g how far the bodies would overlap without them, C compliance, symmetric and positive definite: then there is
@@ -121,7 +121,7 @@ def touch(compliance, overlap):
     at a time, the one with the largest number, which ends for every such C. Source: J. J. Judice, F. M. Pires, Comput. Oper.
     Res. 21 (1994) 587.
     """
-    inside, fewest, patience = overlap > 0.0, len(overlap) + 1, PATIENCE
+    inside, fewest, timeout = overlap > 0.0, len(overlap) + 1, TIMEOUT
     for _ in range(PIVOTS * len(overlap) + 1):
         pressure = np.zeros(len(overlap))
         try:
@@ -135,9 +135,9 @@ def touch(compliance, overlap):
         wrong = np.flatnonzero(np.where(inside, pressure < least, residual < least_gap))
         if len(wrong) == 0:
             return pressure
-        patience = PATIENCE if len(wrong) < fewest else patience - 1
+        timeout = TIMEOUT if len(wrong) < fewest else timeout - 1
         fewest = min(fewest, len(wrong))
-        flipped = wrong if patience > 0 else wrong[-1:]
+        flipped = wrong if timeout > 0 else wrong[-1:]
         inside[flipped] = ~inside[flipped]
     raise Failure("the compliance of the patch is not positive definite; ask for another mesh level")
 
@@ -166,7 +166,7 @@ def solve(organ, what):
     moved = elastic.compliance(organ, body, scipy.sparse.hstack([patch.push_m2, skin]))
     cases = []
     for depth_m in what.depths_m:
-        pressure = touch(moved[:n, :n], patch.overlap_m3 + depth_m * patch.area_m2)
+        pressure = solve_contact(moved[:n, :n], patch.overlap_m3 + depth_m * patch.area_m2)
         each_N = pressure * patch.area_m2
         cases.append(ToolCase(depth_m, float(each_N.sum()), np.bincount(patch.sphere, each_N, len(what.radius_m)).tolist(),
                               (moved[n:, :n] @ pressure).tolist()))

@@ -6,13 +6,14 @@
 
 Needs python3-scipy, gmsh and, where a test says so, CalculiX, which Debian 13 does not have. Exit status 0 or 1.
 """
+import io
 import os
 import pathlib
 import signal
 import subprocess
 import sys
 import time
-import unittest
+import unittest.mock
 
 from support import BUILD, LIVER, Solves, needs_calculix, tact_lab
 
@@ -144,6 +145,30 @@ class Jobs(Solves):
             run.run_jobs(work, [0, 1, 2], 2, "test")
         self.assertEqual((failed.exception.message, failed.exception.code), ("one", run.Code.NO_SOLUTION))
         self.assertFalse((self.folder / "2").exists())
+
+    def test_a_terminal_is_told_how_much_is_left(self):
+        terminal = io.StringIO()
+        terminal.isatty = lambda: True
+        with unittest.mock.patch("sys.stderr", terminal):
+            run.show_progress("tact-lab reference", 1, 4, time.monotonic() - 10.0)
+        self.assertEqual(terminal.getvalue(), "\r\033[Ktact-lab reference: 1 of 4 (25 %) about 30 s left ")
+
+    def test_no_job_outlives_its_parent(self):
+        script = f"""import pathlib, sys, time
+sys.path.insert(0, "{pathlib.Path(run.__file__).parent}")
+import run
+def work(_):
+    pathlib.Path("{self.folder}/begun").touch()
+    time.sleep(3)
+    pathlib.Path("{self.folder}/ended").touch()
+run.run_jobs(work, [0], 1, "")"""
+        parent = subprocess.Popen(["/usr/bin/python3", "-c", script])
+        while not (self.folder / "begun").exists():
+            time.sleep(0.05)
+        parent.kill()
+        parent.wait()
+        time.sleep(4)
+        self.assertFalse((self.folder / "ended").exists())
 
 
 if __name__ == "__main__":

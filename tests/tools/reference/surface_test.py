@@ -147,13 +147,14 @@ class TipContact(unittest.TestCase):
         np.testing.assert_allclose(tip.depth_m(a_m), a_m**2 / both_m, rtol=2e-3)
         np.testing.assert_allclose(tip.force_N(a_m), 4 / 3 * modulus_Pa * a_m**3 / both_m, rtol=3e-3)
 
-    def test_takes_the_give_of_the_organ_from_one_solve(self):
-        tip, give_m_per_N = contact.TipContact(6000.0, 4e-3), 0.02
+    def test_takes_the_compliance_of_the_organ_from_one_solve(self):
+        tip, compliance_m_per_N = contact.TipContact(6000.0, 4e-3), 0.02
         force_N = tip.force_N(2.5e-3)
-        depth_m = tip.depth_m(2.5e-3) + give_m_per_N * force_N
-        self.assertAlmostEqual(tip.compliance_m_per_N(depth_m, force_N), give_m_per_N, delta=1e-9)
-        self.assertAlmostEqual(tip.contact_radius_m(depth_m, give_m_per_N), 2.5e-3, delta=1e-9)
-        self.assertLess(tip.contact_radius_m(7e-3, give_m_per_N), tip.contact_radius_m(7e-3, 0.0), "what gives is touched less")
+        depth_m = tip.depth_m(2.5e-3) + compliance_m_per_N * force_N
+        self.assertAlmostEqual(tip.compliance_m_per_N(depth_m, force_N), compliance_m_per_N, delta=1e-9)
+        self.assertAlmostEqual(tip.contact_radius_m(depth_m, compliance_m_per_N), 2.5e-3, delta=1e-9)
+        stiff_m, soft_m = (tip.contact_radius_m(7e-3, c) for c in (0.0, compliance_m_per_N))
+        self.assertLess(soft_m, stiff_m, "what is compliant is touched less")
 
     def test_the_fall_of_a_ball_is_its_cap_and_of_a_plate_nothing(self):
         vertex_m, triangle = ball(0.03, 5)
@@ -185,10 +186,10 @@ def forces_N(modulus_Pa, radius_m, balls, squares):
     parts = [(bx + x, by + y, depth_m + beyond_m, np.full(len(x), i)) for i, (bx, by, depth_m) in enumerate(balls)]
     x, y, overlap_m, number = (np.concatenate(part)[np.concatenate([p[2] for p in parts]) > 0.0] for part in zip(*parts))
     compliance = sinking(np.subtract.outer(x, x), np.subtract.outer(y, y), h) / modulus_Pa
-    return np.bincount(number, tool_press.touch(compliance, overlap_m) * h * h, len(balls))
+    return np.bincount(number, tool_press.solve_contact(compliance, overlap_m) * h * h, len(balls))
 
 
-class Touch(unittest.TestCase):
+class ActiveSet(unittest.TestCase):
     def test_presses_a_sphere_as_sneddon_does(self):
         organ = self_check.make_block(1.0)
         for depth_m in (1e-3, 2e-3, 5e-3, 10e-3):
@@ -209,15 +210,15 @@ class Touch(unittest.TestCase):
 
     def test_neither_pulls_nor_lets_anything_in_for_any_definite_compliance(self):
         random = np.random.default_rng(1)
-        for patience in [tool_press.PATIENCE] * 100 + [0] * 20:  # 0: one at a time from the start
+        for timeout in [tool_press.TIMEOUT] * 100 + [0] * 20:  # 0: one at a time from the start
             root, overlap = random.normal(size=(40, 40)), random.normal(size=40)
             compliance = root @ root.T + 0.01 * np.eye(40)
-            with unittest.mock.patch("tool_press.PATIENCE", patience):
-                pressure = tool_press.touch(compliance, overlap)
+            with unittest.mock.patch("tool_press.TIMEOUT", timeout):
+                pressure = tool_press.solve_contact(compliance, overlap)
             gap = compliance @ pressure - overlap
             self.assertGreaterEqual(min(pressure.min(), gap.min()), -1e-8)
             self.assertAlmostEqual(pressure @ gap, 0.0, delta=1e-7)
 
     def test_says_when_the_compliance_is_none(self):
         with self.assertRaisesRegex(run.Failure, "not positive definite"):
-            tool_press.touch(-np.eye(3), np.ones(3))
+            tool_press.solve_contact(-np.eye(3), np.ones(3))
