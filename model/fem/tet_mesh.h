@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tet_mesh.h - a body of quadratic tetrahedra: what the reference and the condensation solve on.
+// tet_mesh.h - a body of quadratic tetrahedra: what the condensation solves on.
 //
 // Ten nodes an element: corners 0-3, then the middles of edges 01, 12, 20, 03, 13, 23 (the order of
 // CalculiX C3D10; gmsh swaps its last two). Offline only.
@@ -30,8 +30,5 @@ struct TetMesh {
   std::vector<Vec3> node_m;
   std::vector<TetNodes> element;
 };
-
-/// Sum of the element volumes, straight edges, m^3.
-double volume_m3(const TetMesh& mesh);
 
 }  // namespace tact::model::fem

@@ -73,19 +73,18 @@ ROOMS = {
 }
 # A tool measures every room above; of the other tools it may include these.
 TOOLS = {
-    **dict.fromkeys(["examples", "printed", "program"], []),
-    **dict.fromkeys(["calibrate", "doctor", "ground_truth", "mesh", "report"], ["program"]),
+    **dict.fromkeys(["examples", "ground_truth", "printed", "program"], []),
+    **dict.fromkeys(["calibrate", "doctor", "mesh", "report"], ["program"]),
     **dict.fromkeys(["jitter", "limits", "sweep"], ["program", "report"]),
-    "condense": ["program", "ground_truth", "mesh"],
-    "reference": ["program", "ground_truth", "mesh"],
+    "condense": ["program", "mesh"],
     "fit": ["program", "report", "ground_truth"],
     "chart": ["program", "report", "ground_truth"],
     "plan": ["program", "report", "chart"],
-    "new_scene": ["program", "mesh", "ground_truth", "condense"],
+    "new_scene": ["program", "mesh", "condense"],
     **dict.fromkeys(["figures", "stability"], ["program", "report", "printed"]),
     "verify": ["program", "printed"],
     "lab": ["program", "report", "chart", "condense", "figures", "fit", "ground_truth", "mesh", "new_scene", "plan",
-            "reference", "stability", "sweep"],
+            "stability", "sweep"],
 }
 # The parts of a room, and what each may include of the others. What stands in the room itself, as main.cc, includes
 # every part, and no part includes that. Other rooms take a room as a whole.
@@ -116,13 +115,6 @@ PARTS = {
         "verdict": ["cases"],
         "evidence": [],
         "report": ["verdict", "evidence"],
-    },
-    "tools/reference": {
-        "calculix": [],
-        "organ": [],
-        "press": ["calculix", "organ"],
-        "plan": ["organ", "press"],
-        "self_check": ["press"],
     },
     "tools/stability": {
         "sweep": [],

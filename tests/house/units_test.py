@@ -37,7 +37,7 @@ PLAIN = {
     "xx", "xy", "yy",  # of a tensor, which has the unit
     "limit", "largest", "size", "median", "lower_quartile", "upper_quartile", "rel", "tolerance", "exact",
     "scale", "best_scale", "difference", "good_residual", "shape_weight", "sum_of_squares", "middle_value",
-    "first_strain", "boundary_slope", "instructions", "kFacing", "kLargePull", "kMmPerM", "kNPerMN",
+    "first_strain", "boundary_slope", "instructions", "kFacing",
     "kGripHeight", "kMaxObjCoordinate", "kStiffestPlace", "kNonRtForceShare", "kRoundingRoom", "kNothing",
 }
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <string>
 
-#include "tools/ground_truth/gmsh.h"
+#include "tools/condense/gmsh.h"
 #include "tools/mesh/held_box.h"
 #include "tools/program/sweep.h"
 
@@ -93,9 +93,7 @@ Result<model::tissue::ComplianceMap> condense_organ(const CondenseInput& input,
   settings.organ.patch_radius_m = settings.patch_radius_m > 0.0
                                       ? settings.patch_radius_m
                                       : kElementsInPatch * std::max(settings.mesh_size_m, edge_m);
-  ground_truth::EdgeLengths lengths;
-  lengths.fine_m = settings.mesh_size_m;
-  const auto body = fill_with_gmsh(surface.vertex_m, surface.triangle, lengths);
+  const auto body = fill_with_gmsh(surface.vertex_m, surface.triangle, settings.mesh_size_m);
   if (!body) return body.error();
   facts = {.nodes = body->node_m.size(),
            .elements = body->element.size(),

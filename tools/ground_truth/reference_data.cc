@@ -58,38 +58,10 @@ std::optional<Error> check(const ReferenceData& data) {
   return std::nullopt;
 }
 
-std::string text_of(const ReferenceCase& c) {
-  std::string profile;
-  for (const double u_m : c.profile_m)
-    profile += fmt::format("{}{:.4g}", profile.empty() ? "" : ", ", u_m);
-  return fmt::format(
-      "{{\"depth_m\": {:.6g}, \"large_strain\": {}, \"force_N\": {:.6g}, "
-      "\"contact_radius_m\": {:.6g}, \"force_error_ratio\": {},\n   \"profile_m\": [{}]}}",
-      c.depth_m, c.large_strain, c.force_N, c.contact_radius_m, error_text(c.force_error_ratio),
-      profile);
-}
-
-std::string text_of(const SolvedSite& site) {
-  std::string cases;
-  for (const ReferenceCase& c : site.cases)
-    cases += (cases.empty() ? "\n  " : ",\n  ") + text_of(c);
-  return fmt::format("{{\"vertex\": {}, \"point_m\": {}, \"direction\": {}, \"cases\": [{}]}}",
-                     site.vertex, vector_text(site.point_m), vector_text(site.direction), cases);
-}
-
 }  // namespace
 
 Result<ReferenceData> read_reference(const std::string& path) {
   return read_json(path, kSchema, "tact-lab reference SCENE --out FILE", data_of, check);
-}
-
-std::string reference_text(const ReferenceData& data) {
-  std::string sites;
-  for (const SolvedSite& s : data.sites) sites += (sites.empty() ? "\n " : ",\n ") + text_of(s);
-  return fmt::format(
-      "{{\"schema\": \"{}\",\n{},\n"
-      "\"tool_radius_m\": {:.7g}, \"ring_pitch_m\": {:.7g},\n\"sites\": [{}]}}\n",
-      kSchema, body_text(data.body), data.tool_radius_m, data.ring_pitch_m, sites);
 }
 
 }  // namespace tact::tools::ground_truth

@@ -45,7 +45,5 @@ struct ReferenceData {
 
 /// An error names the file and the key.
 model::Result<ReferenceData> read_reference(const std::string& path);
-/// JSON, one case a line, numbers to six digits.
-std::string reference_text(const ReferenceData& data);
 
 }  // namespace tact::tools::ground_truth

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -21,17 +20,9 @@ inline model::Vec3 vector_of(const nlohmann::json& j) {
   return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()};
 }
 
-inline std::string vector_text(const model::Vec3& v) {
-  return fmt::format("[{:.7g}, {:.7g}, {:.7g}]", v.x, v.y, v.z);
-}
-
 /// What is not known is NaN, null in the file.
 inline double error_of(const nlohmann::json& j) {
   return j.is_null() ? std::numeric_limits<double>::quiet_NaN() : j.get<double>();
-}
-
-inline std::string error_text(double ratio) {
-  return std::isfinite(ratio) ? fmt::format("{:.3g}", ratio) : "null";
 }
 
 inline SolvedBody body_of(const nlohmann::json& j) {
@@ -42,18 +33,6 @@ inline SolvedBody body_of(const nlohmann::json& j) {
           .poisson_ratio = j.at("poisson_ratio").get<double>(),
           .fixed_min_m = vector_of(j.at("fixed_min_m")),
           .fixed_max_m = vector_of(j.at("fixed_max_m"))};
-}
-
-/// The keys of body_of, for the head of a file.
-inline std::string body_text(const SolvedBody& body) {
-  using nlohmann::json;
-  return fmt::format(
-      "\"mesh\": {}, \"mesh_hash\": {}, \"solver\": {},\n"
-      "\"youngs_modulus_Pa\": {:.7g}, \"poisson_ratio\": {:.7g},\n"
-      "\"fixed_min_m\": {}, \"fixed_max_m\": {}",
-      model::io::text_of(json(body.mesh)), model::io::text_of(json(body.mesh_hash)),
-      model::io::text_of(json(body.solver)), body.youngs_modulus_Pa, body.poisson_ratio,
-      vector_text(body.fixed_min_m), vector_text(body.fixed_max_m));
 }
 
 /// `make` is the command that makes such a file; `data_of` reads the JSON, `check` says what a

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ground_truth/tool_reference.h"
 
-#include <fmt/ranges.h>
+#include <fmt/format.h>
 
 #include "tools/ground_truth/reference_json.h"
 
@@ -73,33 +73,6 @@ std::optional<Error> check_tool(const ToolReference& data) {
   return std::nullopt;
 }
 
-/// Nothing of what is not known.
-template <typename T>
-std::string list_text(const char* key, const std::vector<T>& list) {
-  return list.empty() ? "" : fmt::format(fmt::runtime(key), fmt::join(list, ", "));
-}
-
-std::string text_of(const ToolCase& c) {
-  return fmt::format(
-      "{{\"depth_m\": {:.6g}, \"force_N\": {:.6g}, \"sphere_N\": [{:.6g}], "
-      "\"force_error_ratio\": {}{}}}",
-      c.depth_m, c.force_N, fmt::join(c.sphere_N, ", "), error_text(c.force_error_ratio),
-      list_text(",\n   \"skin_m\": [{:.4g}]", c.skin_m));
-}
-
-std::string text_of(const ToolPoint& place) {
-  const Quat& q = place.orientation;
-  std::string cases;
-  for (const ToolCase& c : place.cases) cases += (cases.empty() ? "\n  " : ",\n  ") + text_of(c);
-  return fmt::format(
-      "{{\"vertex\": {}{}, \"point_m\": {}, \"direction\": {},\n"
-      "  \"orientation_wxyz\": [{:.9g}, {:.9g}, {:.9g}, {:.9g}]{}, \"cases\": [{}]}}",
-      place.vertex ? std::to_string(*place.vertex) : "null",
-      place.slid_m == Vec3{} ? "" : ", \"slid_m\": " + vector_text(place.slid_m),
-      vector_text(place.point_m), vector_text(place.direction), q.w, q.x, q.y, q.z,
-      list_text(",\n  \"skin\": [{}]", place.skin), cases);
-}
-
 }  // namespace
 
 std::string name_of(const ToolPoint& place) {
@@ -111,16 +84,6 @@ std::string name_of(const ToolPoint& place) {
 Result<ToolReference> read_tool_reference(const std::string& path) {
   return read_json(path, kToolSchema, "tact-lab reference SCENE --tool --out FILE", tool_data_of,
                    check_tool);
-}
-
-std::string tool_reference_text(const ToolReference& data) {
-  std::string spheres, places;
-  for (const auto& s : data.sphere)
-    spheres += fmt::format("{}{{\"offset_m\": {}, \"radius_m\": {:.7g}}}",
-                           spheres.empty() ? "" : ", ", vector_text(s.offset_m), s.radius_m);
-  for (const ToolPoint& p : data.places) places += (places.empty() ? "\n " : ",\n ") + text_of(p);
-  return fmt::format("{{\"schema\": \"{}\",\n{},\n\"spheres\": [{}],\n\"places\": [{}]}}\n",
-                     kToolSchema, body_text(data.body), spheres, places);
 }
 
 }  // namespace tact::tools::ground_truth

@@ -52,7 +52,5 @@ std::string name_of(const ToolPoint& place);
 
 /// An error names the file and the key.
 model::Result<ToolReference> read_tool_reference(const std::string& path);
-/// JSON, one case a line, numbers to six digits.
-std::string tool_reference_text(const ToolReference& data);
 
 }  // namespace tact::tools::ground_truth

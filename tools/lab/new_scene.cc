@@ -12,7 +12,7 @@
 #include "model/io/program/within.h"
 #include "model/scene/compliance_file.h"
 #include "tools/condense/condense_organ.h"
-#include "tools/ground_truth/gmsh.h"
+#include "tools/condense/gmsh.h"
 #include "tools/lab/commands.h"
 #include "tools/mesh/mesh_report.h"
 #include "tools/mesh/unit.h"
@@ -89,7 +89,7 @@ std::optional<Error> check_before(const Options& o, const OutputNames& names) {
     if (auto error = new_scene::check_new(names.organ, std::string(mesh::kRepairedBeginning),
                                           source, o.force))
       return error;
-  const auto gmsh = ground_truth::gmsh_version();
+  const auto gmsh = condense::gmsh_version();
   return gmsh ? std::nullopt : std::optional(gmsh.error());
 }
 

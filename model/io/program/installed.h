@@ -18,4 +18,12 @@ inline std::filesystem::path installed(const std::filesystem::path& name) {
   return program_folder().parent_path() / "share" / "tact" / name;
 }
 
+/// NAME beside the program in a build folder, else where it is installed; empty if in neither.
+inline std::filesystem::path data_file(const std::filesystem::path& name) {
+  std::error_code failed;
+  for (const std::filesystem::path& path : {program_folder() / name, installed(name)})
+    if (std::filesystem::is_regular_file(path, failed)) return path;
+  return {};
+}
+
 }  // namespace tact::model::io

@@ -5,7 +5,7 @@
 
 #include "model/contact/contact_point.h"
 #include "tools/chart/measure/measure.h"
-#include "tools/ground_truth/ring_means.h"
+#include "tools/chart/measure/ring_means.h"
 
 namespace tact::tools::chart {
 namespace {
@@ -36,7 +36,7 @@ void ring_means(const SurfaceView& surface, const Indentation& in, double pitch_
   for (std::size_t c = 0; c < 3; ++c)
     middle_m +=
         in.surface_point.weight[c] * indentation_m[surface.triangle[in.surface_point.triangle][c]];
-  ground_truth::RingMeans means(static_cast<int>(ring_m.size()), pitch_m, middle_m);
+  RingMeans means(static_cast<int>(ring_m.size()), pitch_m, middle_m);
   for (const model::contact::TriangleCorners& corner : surface.triangle) {
     std::array<Vec3, 3> p{};
     std::array<double, 3> rho{}, value{};
@@ -47,7 +47,7 @@ void ring_means(const SurfaceView& surface, const Indentation& in, double pitch_
     }
     const Vec3 outward = normalized(cross(p[1] - p[0], p[2] - p[0]));
     // The other side of a thin lobe is no ring around the site.
-    if (dot(outward, in.normal) >= ground_truth::kFacing) means.add_triangle(p, rho, value);
+    if (dot(outward, in.normal) >= kFacing) means.add_triangle(p, rho, value);
   }
   std::ranges::copy(means.means(), ring_m.begin());
 }
