@@ -73,7 +73,17 @@ ElasticField::Part ElasticField::part_at(const contact::SurfacePoint& surface_po
                                        f * (stiff.stiffness_N_per_m - soft.stiffness_N_per_m),
                   .energy_J = soft.energy_J + f * step_J,
                   .status = worse(soft.status, stiff.status)},
-          .slope_N = step_J * coordinate_slope(surface_point.triangle, depth_m)};
+          .coordinate_slope_J = step_J};
+}
+
+// Kept while the sphere stays on its triangle: it is asked several times a tick.
+const ElasticField::Gradient& ElasticField::gradient_at(const contact::Indentation& in) RT_SAFE {
+  Gradient& gradient = gradient_[in.sphere];
+  if (parts_.curves.size() < 2 || gradient.triangle == in.surface_point.triangle) return gradient;
+  gradient.triangle = in.surface_point.triangle;
+  gradient.per_m = {coordinate_slope(gradient.triangle, 0.0),
+                    coordinate_slope(gradient.triangle, -1.0)};
+  return gradient;
 }
 
 // Where nothing varies, the place does not matter.
@@ -88,6 +98,7 @@ contact::ContactLawResponse ElasticField::respond(const contact::Indentation& in
   law::RelaxationState& next = next_[in.sphere];
   // From now_, not from next_: asked again in the same tick, the last answer counts.
   if (relaxation.terms() > 0) next = relaxation.after(now_[in.sphere], in.indentation_m, in.held);
+  const Gradient& gradient = gradient_at(in);
   contact::ContactLawResponse sum{};
   for (std::size_t i = 0; i <= relaxation.terms(); ++i) {
     const double depth_m = i == 0 ? in.indentation_m : next.stretch_m[i - 1];
@@ -99,7 +110,7 @@ contact::ContactLawResponse ElasticField::respond(const contact::Indentation& in
     sum.law.stiffness_N_per_m += g * part.law.stiffness_N_per_m;
     sum.law.energy_J += g * part.law.energy_J;
     sum.law.status = i == 0 ? part.law.status : worse(sum.law.status, part.law.status);
-    sum.slope_N += g * part.slope_N;
+    sum.slope_N += g * (part.coordinate_slope_J * gradient.per_m[depth_m < 0.0 ? 1 : 0]);
   }
   return sum;
 }

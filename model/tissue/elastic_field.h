@@ -98,10 +98,15 @@ class ElasticField final : public contact::ContactLaw {
     std::size_t low = 0;    // k
     double fraction = 0.0;  // f
   };
-  /// One part of the potential: the law at one stretch, and what it adds along the surface.
+  /// One part of the potential: the law at one stretch, and dU/dkappa.
   struct Part {
     law::LawResponse law;
-    Vec3 slope_N{};
+    double coordinate_slope_J = 0.0;
+  };
+  /// grad kappa of the triangle under a sphere, of press and of pull.
+  struct Gradient {
+    std::uint32_t triangle = contact::kNoTriangle;
+    std::array<Vec3, 2> per_m{};
   };
   bool is_known(const contact::Indentation& in) const RT_SAFE;
   std::span<const float> coordinate(double depth_m) const RT_SAFE;
@@ -112,10 +117,12 @@ class ElasticField final : public contact::ContactLaw {
   void add_organ(const contact::Indentation& in, std::span<double> ring_m) const RT_SAFE;
   void report_own_rings(const contact::Indentation& in, std::span<double> ring_m) const RT_SAFE;
   Vec3 coordinate_slope(std::uint32_t triangle, double depth_m) const RT_SAFE;
+  const Gradient& gradient_at(const contact::Indentation& in) RT_SAFE;
 
   ElasticFieldParts parts_;
   std::vector<double> stiffest_N_per_m_;  // of each curve
   std::array<law::RelaxationState, contact::kMaxSpheres> now_{}, next_{};
+  std::array<Gradient, contact::kMaxSpheres> gradient_{};
 };
 
 }  // namespace tact::model::tissue

@@ -216,6 +216,24 @@ TEST(WholeTool, FrictionOfEachJawStaysInItsCone) {
   }
 }
 
+// What is left of an excess would slip in the next tick, even with a tool at rest.
+TEST(WholeTool, SlipOfCoupledSpheresSettlesInOneTick) {
+  std::mt19937 random(16);
+  double changed_ratio = 0.0;
+  for (int k = 0; k < 6; ++k) {
+    Bench bench(jaws(4));
+    bench.parameters.sliding_stiffness_N_per_m = 0.0;  // that of the tissue
+    Contact contact = bench.contact();
+    const Stroke stroke = random_stroke(random, 0.0);
+    for (int i = 0; i <= 2000; ++i) {
+      const Vec3 moving_N = render_at(contact, stroke.at(i / 2000.0)).force_N;
+      const Vec3 resting_N = render_at(contact, stroke.at(i / 2000.0)).force_N;
+      changed_ratio = std::max(changed_ratio, norm(resting_N - moving_N) / (norm(moving_N) + 0.01));
+    }
+  }
+  EXPECT_LT(changed_ratio, 1e-5);
+}
+
 TEST(WholeTool, APinchedLobeIsDraggedTheSameWayOnBothSides) {
   Bench bench(jaws(2));
   const Indentation top{.sphere = 0, .normal = {0, 0, 1}}, below{.sphere = 1, .normal = {0, 0, -1}};
