@@ -81,7 +81,7 @@ void RestContact::drop_shift(std::size_t i) RT_SAFE {
   without.leave(i);
   without.solve();
   Shear::Shifts f_N{};
-  for (std::size_t j = 0; j < kMaxSpheres; ++j) f_N[j] = without.force_N(shift_m_, j);
+  for (std::size_t j = 0; j < count(); ++j) f_N[j] = without.force_N(shift_m_, j);
   shift_m_[i] = shear_.unloaded_m(f_N, i);
   start_tangent_spring(i);
   shear_.solve();
@@ -116,7 +116,7 @@ void RestContact::stiffen() RT_SAFE {
   }
   if (!is_stiffer) return;
   shear_.solve();
-  for (std::size_t i = 0; i < kMaxSpheres; ++i) shift_m_[i] = shift_m_[i] + change_m[i];
+  for (std::size_t i = 0; i < count(); ++i) shift_m_[i] = shift_m_[i] + change_m[i];
 }
 
 // Limits |f| to mu F by slip of t; held tissue has no cap. Slip of one sphere changes the forces of

@@ -96,6 +96,7 @@ contact::ContactLawResponse ElasticField::respond(const contact::Indentation& in
   if (!is_known(in)) return {.law = {.status = law::LawStatus::kInvalid}};
   const law::Relaxation& relaxation = parts_.relaxation;
   law::RelaxationState& next = next_[in.sphere];
+  spheres_ = std::max(spheres_, in.sphere + 1);
   // From now_, not from next_: asked again in the same tick, the last answer counts.
   if (relaxation.terms() > 0) next = relaxation.after(now_[in.sphere], in.indentation_m, in.held);
   const Gradient& gradient = gradient_at(in);

@@ -22,6 +22,7 @@
 //     G   m/N, 2 x 2, along the surface     S  of the map (CF-4)     a   radius of the contact, m
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <vector>
@@ -83,7 +84,7 @@ class ElasticField final : public contact::ContactLaw {
                                                 const contact::Axes& axes) const RT_SAFE override;
   void leave(std::size_t sphere) RT_SAFE override { now_[sphere] = next_[sphere] = {}; }
   void advance() RT_SAFE override {
-    if (parts_.relaxation.terms() > 0) now_ = next_;
+    if (parts_.relaxation.terms() > 0) std::copy_n(next_.begin(), spheres_, now_.begin());
   }
   std::size_t profile(const contact::Indentation& in,
                       std::span<double> ring_m) const RT_SAFE override;
@@ -122,6 +123,7 @@ class ElasticField final : public contact::ContactLaw {
   ElasticFieldParts parts_;
   std::vector<double> stiffest_N_per_m_;  // of each curve
   std::array<law::RelaxationState, contact::kMaxSpheres> now_{}, next_{};
+  std::size_t spheres_ = 0;  // seen so far
   std::array<Gradient, contact::kMaxSpheres> gradient_{};
 };
 

@@ -117,6 +117,24 @@ TEST(WholeTool, NoStrokeGivesBackMoreThanItTook) {
   EXPECT_LT(most_lost_J, -1e-5) << "rubbing and tearing cost energy";
 }
 
+// Two jaws of eight spheres each, 28 mm long.
+std::vector<ProbeSphere> grasper() {
+  std::vector<ProbeSphere> all;
+  for (int i = 0; i < 16; ++i)
+    all.push_back({{(i / 2 - 3.5) * 4_mm, i % 2 == 0 ? -4_mm : 4_mm, 0}, kRadius_m});
+  return all;
+}
+
+TEST(WholeTool, AStrokeOfSixteenSpheresGivesBackNoMoreThanItTook) {
+  std::mt19937 random(17);
+  for (int k = 0; k < 4; ++k) {
+    Bench bench(grasper());
+    bench.parameters.sliding_stiffness_N_per_m = k % 2 == 0 ? 20.0 : 0.0;
+    Contact contact = bench.contact();
+    EXPECT_LE(given_J(contact, random_stroke(random, 0.5), 4000), 1e-7) << k;
+  }
+}
+
 TEST(WholeTool, WithoutFrictionAStrokeReturnsAll) {
   std::mt19937 random(12);
   for (int k = 0; k < 30; ++k) {
