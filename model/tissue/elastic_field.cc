@@ -192,13 +192,16 @@ contact::TangentCompliance ElasticField::tangent_compliance(
       .rest_m_per_N = {}};
   if (near.tangent_times_E_per_m.empty() || !is_on_surface(surface_point, parts_.surface))
     return give;
-  Mat3 s_m_per_N;
+  std::array<double, 6> s{};
   for (std::size_t i = 0; i < 3; ++i) {
     const TangentTensors& both =
         near.tangent_times_E_per_m[parts_.surface.triangle[surface_point.triangle][i]];
-    s_m_per_N = s_m_per_N + surface_point.weight[i] / near.youngs_modulus_Pa *
-                                (held ? both.held : both.touching);
+    const double weight_per_Pa = surface_point.weight[i] / near.youngs_modulus_Pa;
+    for (std::size_t k = 0; k < s.size(); ++k)
+      s[k] +=
+          weight_per_Pa * static_cast<double>(held ? both.held_per_m[k] : both.touching_per_m[k]);
   }
+  const Mat3 s_m_per_N{{Vec3{s[0], s[5], s[4]}, Vec3{s[5], s[1], s[3]}, Vec3{s[4], s[3], s[2]}}};
   const Vec3 &a = axes.unit[0], &b = axes.unit[1], s_a = s_m_per_N * a, s_b = s_m_per_N * b;
   give.rest_m_per_N = {.xx = dot(a, s_a), .xy = dot(a, s_b), .yy = dot(b, s_b)};
   return give;

@@ -33,9 +33,9 @@
 
 namespace tact::model::tissue {
 
-/// S E of a vertex, 1/m, tangential, in the scene's axes: where it may sink, and where it is held.
+/// S E of a vertex, tangential, symmetric, in the scene's axes: where it may sink, and held.
 struct TangentTensors {
-  Mat3 touching, held;
+  std::array<float, 6> touching_per_m{}, held_per_m{};  // xx yy zz yz zx xy
 };
 
 /// What two contact points of one elastic body are to each other. Without a map the body is a
