@@ -71,6 +71,27 @@ def ticks():
     row("resident memory, peak", round(report["resident_peak_kB"] / 1024, 1), "MB", "<= 64", command)
 
 
+def contact_times(scene):
+    run = subprocess.run([BUILD / "tact-tick-bench", ROOT / f"model/scenes/{scene}.toml", "--benchmark_format=json"],
+                         check=True, capture_output=True, text=True)
+    return {told["name"].split("/")[0]: told for told in json.loads(run.stdout)["benchmarks"]}
+
+
+def contact_ticks():
+    """Detect and render alone on one path of the hand; a tick's time is the least of 100 passes."""
+    told, command = contact_times("liver"), "tact-tick-bench liver.toml"
+    hot = told["hot"]
+    row("contact of two spheres, least of passes, median", round(hot["median_us"], 2), "us", "<= 0.9", command)
+    row("  p99.9", round(hot["p999_us"], 2), "us", "<= 2", command)
+    row("  longest over median", round(hot["longest_us"] / hot["median_us"], 1), "", "<= 2.5", command)
+    row("  caches cold, median", round(told["cold_caches"]["median_us"], 2), "us", "<= 1.3", command)
+    row("  first contact, cold", round(told["first_contact"]["median_us"], 2), "us", "<= 3", command)
+    row("contact of one sphere, median", round(told["spheres_1"]["median_us"], 2), "us", "<= 0.35", command)
+    told = contact_times("grasper")
+    more_us = (told["hot"]["median_us"] - told["spheres_1"]["median_us"]) / 9
+    row("contact of ten, median of a further sphere", round(more_us, 2), "us", "<= 0.35", "tact-tick-bench grasper.toml")
+
+
 @functools.cache
 def fine_liver():
     """The shipped liver with each triangle in 18 x 18: a file of 1 008 938 vertices."""
@@ -196,7 +217,7 @@ def page_with_operator():
 
 
 def main():
-    for measure in (ticks, mesh_size, loading, system_calls, pose, arm, page,
+    for measure in (ticks, contact_ticks, mesh_size, loading, system_calls, pose, arm, page,
                     page_with_figure, page_with_operator):
         try:
             measure()

@@ -105,14 +105,15 @@ Result<std::string> write_black_box(const BlackBoxRun& run, const Kept& kept) {
   std::error_code failed;  // RunWriter::create then fails and reports it
   fs::create_directories(run.folder, failed);
   const std::string path = free_path(run, kept.fault);
+  const protocol::FieldTable fields = protocol::Frame::fields(run.header.spheres.size());
   auto file = protocol::RunWriter::create(
       path, protocol::start_of_run(run.header, run.meshes,
                                    {protocol::schema_of<protocol::LoggedTick>(),
-                                    protocol::schema_of<protocol::Frame>()}));
+                                    protocol::schema_of<protocol::Frame>(fields)}));
   if (!file) return file.error();
   // Ticks before frames: a truncated file then still has the ticks.
   for (const protocol::LoggedTick& tick : kept.ticks) file->add(chunk_of(tick));
-  for (const protocol::Frame& frame : with_last_ticks(kept)) file->add(chunk_of(frame));
+  for (const protocol::Frame& frame : with_last_ticks(kept)) file->add(chunk_of(frame, fields));
   if (auto error = file->close()) return std::move(*error);
   return path;
 }

@@ -2,7 +2,10 @@
 // The one list of a frame's fields: name with unit, and meaning. Vectors are x, y, z in frame W.
 #include "firmware/protocol/frame.h"
 
+#include <algorithm>
 #include <cstddef>
+#include <string_view>
+#include <vector>
 
 #include "firmware/protocol/labels.h"
 
@@ -71,6 +74,16 @@ constexpr std::array kFrame{
 
 FieldTable FrameContact::fields() { return kContact; }
 FieldTable FramePatch::fields() { return kPatch; }
-FieldTable Frame::fields() { return kFrame; }
+
+FieldTable Frame::fields(std::size_t spheres) {
+  using Table = std::array<Field, kFrame.size()>;
+  static const std::vector<Table> of_count = [] {
+    std::vector<Table> out(kMaxContacts, kFrame);
+    for (std::size_t i = 0; i < kMaxContacts; ++i)
+      std::ranges::find(out[i], std::string_view("contact"), &Field::name)->shape[0] = i + 1;
+    return out;
+  }();
+  return of_count[std::clamp<std::size_t>(spheres, 1, kMaxContacts) - 1];
+}
 
 }  // namespace tact::firmware::protocol

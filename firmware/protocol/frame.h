@@ -11,7 +11,7 @@
 
 namespace tact::firmware::protocol {
 
-inline constexpr std::size_t kMaxContacts = 4;         // probe spheres on the tool
+inline constexpr std::size_t kMaxContacts = 16;        // probe spheres on the tool
 inline constexpr std::size_t kMaxProfilePoints = 32;   // of one contact
 inline constexpr std::size_t kMaxPatchVertices = 180;  // in one frame
 inline constexpr std::size_t kMaxCutsReported = 32;    // in one frame
@@ -73,7 +73,8 @@ struct Frame {
   FrameContact contact[kMaxContacts] = {};
   FramePatch patch;
 
-  static FieldTable fields();
+  /// Of a run whose tool has that many spheres: files and frames hold those contacts alone.
+  static FieldTable fields(std::size_t spheres = kMaxContacts);
 };
 
 }  // namespace tact::firmware::protocol

@@ -40,8 +40,8 @@ struct RecordSchema {
   FieldTable fields;
 };
 template <typename Record>
-RecordSchema schema_of() {
-  return {Record::kKind, Record::kName, Record::fields()};
+RecordSchema schema_of(FieldTable fields = Record::fields()) {
+  return {Record::kKind, Record::kName, fields};
 }
 
 /// The bytes before the first record; without meshes a tick log's.
@@ -49,10 +49,10 @@ std::string start_of_run(const RunHeader& header, std::span<const std::byte> mes
                          std::initializer_list<RecordSchema> records);
 
 template <typename Record>
-std::string chunk_of(const Record& record) {
+std::string chunk_of(const Record& record, FieldTable fields = Record::fields()) {
   std::string content;
   content.reserve(sizeof record);
-  pack(Record::fields(), &record, content);
+  pack(fields, &record, content);
   return chunk_of(Record::kKind, content);
 }
 

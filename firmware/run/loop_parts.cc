@@ -27,8 +27,8 @@ std::optional<Error> admit(const model::scene::Scene& scene, const PartsSetup& s
   parts.stiffness = *stiffness;
   // Simulated time waits, so no law is too slow.
   if (setup.simulated_time) return {};
-  const auto time =
-      admission::check_budget(scene, setup.non_rt ? std::nullopt : std::optional(setup.rt));
+  const auto time = admission::check_budget(scene, *parts.tissue,
+                                            setup.non_rt ? std::nullopt : std::optional(setup.rt));
   if (!time) return time.error();
   parts.time = *time;
   // After the time check: presses of a law that is too slow would take minutes.

@@ -51,8 +51,10 @@ std::string check_lines(const model::scene::Scene& scene, const LoopParts& parts
       law.title(), 1e3 * law.range().pull_m, 1e3 * law.range().press_m,
       parts.stiffness.needed_N_per_m, parts.stiffness.limit_N_per_m);
   if (const auto& time = parts.time)
-    out += fmt::format(", {:.3g} of {:g} us a tick ({})", time->checked_us, time->budget_us,
-                       time->tail_counts ? "p99.9" : "median");
+    out += fmt::format(", {:.3g} of {:g} us a tick in contact ({}; longest {:.3g}), {} sphere{}",
+                       time->checked_us, time->budget_us, time->tail_counts ? "p99.9" : "median",
+                       time->measured.longest_us, scene.tool.spheres.size(),
+                       scene.tool.spheres.size() == 1 ? "" : "s");
   if (const auto& presses = parts.presses)
     out += fmt::format("\nlargest felt slope {:.4g} N/m at {}, of {} presses of the whole tool{}",
                        presses->slope_N_per_m, presses->place, presses->presses,

@@ -65,8 +65,9 @@ std::optional<Error> open_sockets(const RunSetup& run, protocol::RunHeader heade
   // Only for a simulated device: no program may move the hand of hardware.
   const std::string hand_path = header.simulated ? *path + ".hand" : "";
   header.hand_socket = hand_path;
+  out.sinks.frame_fields = protocol::Frame::fields(header.spheres.size());
   const auto start = telemetry::make_memory_file(
-      start_of_run(header, meshes, {protocol::schema_of<protocol::Frame>()}));
+      start_of_run(header, meshes, {protocol::schema_of<protocol::Frame>(out.sinks.frame_fields)}));
   if (!start) return start.error();
   auto opened = telemetry::TelemetrySocket::open(*path, *start, viewers);
   if (!opened) return opened.error();

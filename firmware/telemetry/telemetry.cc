@@ -98,7 +98,7 @@ void Telemetry::publish() {
     if (sinks_.recorder) sinks_.recorder->add(*frame);
     if (sinks_.socket) {
       // Never waits: a viewer that does not read loses the frame.
-      sinks_.socket->send(chunk_of(*frame));
+      sinks_.socket->send(chunk_of(*frame, sinks_.frame_fields));
       dropped_frames_.store(sinks_.socket->dropped_frames(), std::memory_order_relaxed);
     }
     const std::lock_guard lock(newest_mutex_);

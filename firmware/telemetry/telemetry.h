@@ -32,6 +32,7 @@ class Recorder {
 /// Sinks of ticks and frames; absent ones are skipped.
 struct Sinks {
   std::optional<TelemetrySocket> socket{};
+  protocol::FieldTable frame_fields = Frame::fields();  // as the socket's memory file has it
   std::optional<protocol::RunWriter> log{};
   Recorder* recorder = nullptr;  // outlives the telemetry
 };

@@ -66,6 +66,7 @@ class RecordingWriter {
   std::optional<model::Error> check();
 
   std::optional<firmware::protocol::RunWriter> file_;
+  firmware::protocol::FieldTable fields_;  // of its frames
   std::int64_t flushed_ns_ = 0;
 };
 

@@ -16,9 +16,9 @@ using model::Error;
 }  // namespace
 
 std::string start_of_recording(const RunHeader& header, const MeshBytes& mesh) {
-  return start_of_run(
-      header, mesh,
-      {firmware::protocol::schema_of<Frame>(), firmware::protocol::schema_of<OperatorRecord>()});
+  return start_of_run(header, mesh,
+                      {firmware::protocol::schema_of<Frame>(Frame::fields(header.spheres.size())),
+                       firmware::protocol::schema_of<OperatorRecord>()});
 }
 
 std::optional<Error> RecordingWriter::open(const std::string& path, const RunHeader& header,
@@ -27,6 +27,7 @@ std::optional<Error> RecordingWriter::open(const std::string& path, const RunHea
   auto file = firmware::protocol::RunWriter::create(path, start_of_recording(header, mesh));
   if (!file) return file.error();
   file_.emplace(std::move(*file));
+  fields_ = Frame::fields(header.spheres.size());
   flushed_ns_ = 0;
   file_->flush();
   return check();
@@ -44,7 +45,7 @@ std::optional<Error> RecordingWriter::write(const Frame& frame,
                                             const tracking::TrackedOperator* tracked,
                                             const figure::FigurePose* figure) {
   if (!file_) return std::nullopt;
-  file_->add(chunk_of(frame));
+  file_->add(chunk_of(frame, fields_));
   if (tracked != nullptr) file_->add(operator_chunk(*tracked, figure));
   if (frame.time_ns - flushed_ns_ >= kFlush_ns) {
     flushed_ns_ = frame.time_ns;

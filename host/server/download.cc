@@ -80,7 +80,7 @@ void Download::write_next() {
                              person != nullptr ? &person->tracked : nullptr, bodies_);
       continue;
     }
-    part += chunk_of(kept.frame);
+    part += chunk_of(kept.frame, record::Frame::fields(snapshot_.header.spheres.size()));
     if (person != nullptr)
       part += record::operator_chunk(person->tracked, person->figure ? &*person->figure : nullptr);
   }

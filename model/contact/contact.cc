@@ -28,10 +28,6 @@ Tool between(const Tool& from, const Tool& to, double share) RT_SAFE {
           .grip_ratio = mix(from.grip_ratio, to.grip_ratio)};
 }
 
-Vec3 centre_of(const ProbeSphere& sphere, const Tool& tool) RT_SAFE {
-  return tool.position_m + rotate(tool.orientation, sphere.offset_m);
-}
-
 }  // namespace
 
 Contact::Contact(const ContactScene& scene)
@@ -63,6 +59,7 @@ void Contact::detect_contact(const Tool& tool, std::uint32_t periods, double rea
   is_lost_ = was_unsettled_ = false;
   // A pose with NaN ends all contacts, so that no NaN enters the state.
   if (!is_finite(tool)) return forget();
+  place(tool);
   if (tool_before_ && !is_reached(tool, reach_m)) {
     is_lost_ = true;
     forget();
@@ -70,18 +67,25 @@ void Contact::detect_contact(const Tool& tool, std::uint32_t periods, double rea
   const Tool from = tool_before_.value_or(tool);
   for (std::uint32_t k = 1; k < periods; ++k) {
     const Tool way = between(from, tool, static_cast<double>(k) / periods);
+    place(way);
     detect(way);
     if (respond(way).is_unsettled) was_unsettled_ = true;
+    place(tool);
   }
   detect(tool);
   tool_before_ = tool;
+}
+
+void Contact::place(const Tool& tool) RT_SAFE {
+  for (std::size_t i = 0; i < scene_.spheres.size(); ++i)
+    goal_m_[i] = tool.position_m + rotate(tool.orientation, scene_.spheres[i].offset_m);
 }
 
 // False if the motion since the last pose is too long to follow.
 bool Contact::is_reached(const Tool& tool, double reach_m) const RT_SAFE {
   if (!(norm(tool.position_m - tool_before_->position_m) <= reach_m)) return false;
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
-    const double way_m = norm(centre_of(scene_.spheres[i], tool) - sphere_[i].centre_m);
+    const double way_m = norm(goal_m_[i] - sphere_[i].centre_m);
     if (!(way_m <= kMaxTickSteps * kWay_ratio * sphere_[i].radius_m)) return false;
   }
   return true;
@@ -89,7 +93,7 @@ bool Contact::is_reached(const Tool& tool, double reach_m) const RT_SAFE {
 
 void Contact::detect(const Tool& tool) RT_SAFE {
   for (Sphere& sphere : spheres()) {
-    const Vec3 centre_m = centre_of(scene_.spheres[sphere.index], tool);
+    const Vec3& centre_m = goal_m_[sphere.index];
     sphere.moved_m = sphere.is_known ? centre_m - sphere.centre_m : Vec3{};
     sphere.velocity_mps =
         tool.velocity_mps + cross(tool.angular_velocity_radps, centre_m - tool.position_m);

@@ -79,6 +79,7 @@ class Contact {
   }
   std::span<Sphere> spheres() RT_SAFE { return {sphere_.data(), scene_.spheres.size()}; }
   void forget() RT_SAFE;
+  void place(const Tool& tool) RT_SAFE;
   bool is_reached(const Tool& tool, double reach_m) const RT_SAFE;
   void detect(const Tool& tool) RT_SAFE;
   ContactResponse respond(const Tool& tool) RT_SAFE;
@@ -92,9 +93,10 @@ class Contact {
   void use_blade(const Tool& tool, bool may_cut) RT_SAFE;
 
   ContactScene scene_;
-  RestContact rest_;    // used if scene_.organ is null
-  MovedContact moved_;  // used if it is not
-  double fade_ratio_;   // ContactLaw::fade_ratio
+  RestContact rest_;                        // used if scene_.organ is null
+  MovedContact moved_;                      // used if it is not
+  double fade_ratio_;                       // ContactLaw::fade_ratio
+  std::array<Vec3, kMaxSpheres> goal_m_{};  // centres of the spheres at the pose in work
   std::array<Sphere, kMaxSpheres> sphere_{};
   std::array<SphereContact, kMaxSpheres> contact_{};  // as reported
   bool closed_ = false;                               // the grip, with hysteresis

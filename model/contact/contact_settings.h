@@ -8,7 +8,7 @@
 
 namespace tact::model::contact {
 
-inline constexpr std::size_t kMaxSpheres = 4;
+inline constexpr std::size_t kMaxSpheres = 16;  // of one tool
 
 struct ProbeSphere {
   Vec3 offset_m;          // from the tool's origin, tool frame

@@ -45,12 +45,11 @@ double stiffness_N_per_m(const PressingSphere& sphere) RT_SAFE {
 Vector newton_step(const Coupling& c, std::span<const PressingSphere> spheres,
                    Vector miss) RT_SAFE {
   const std::size_t n = spheres.size();
-  Coupling a{};
+  SmallLu<kMaxSpheres> lu;
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j < n; ++j)
-      a[i][j] = (i == j ? 1.0 : 0.0) + c[i][j] * stiffness_N_per_m(spheres[j]);
-  SmallLu<kMaxSpheres> lu;
-  if (lu.factorise(a, n, Pivot::kOfDiagonal, kMinPivot)) lu.solve(miss);
+      lu.at(i, j) = (i == j ? 1.0 : 0.0) + c[i][j] * stiffness_N_per_m(spheres[j]);
+  if (lu.factorise(n, Pivot::kOfDiagonal, kMinPivot)) lu.solve(miss);
   return miss;
 }
 
@@ -129,15 +128,15 @@ double definite_share(const Coupling& c,
   while (n > 0 && stiffest_N_per_m[n - 1] == 0.0) --n;
   // MC-6. Scaled by the stiffnesses, as these may be 0: margin I + factor sqrt(K) C sqrt(K)
   const auto is_definite = [&](double factor) RT_SAFE {
-    Coupling a{};
+    SmallLu<kMaxSpheres> lu;
     for (std::size_t i = 0; i < n; ++i) {
-      a[i][i] = kMargin;
+      lu.at(i, i) = kMargin;
       for (std::size_t j = 0; j < i; ++j) {
         const double stiffness_N_per_m = std::sqrt(stiffest_N_per_m[i] * stiffest_N_per_m[j]);
-        a[i][j] = a[j][i] = factor * c[i][j] * stiffness_N_per_m;
+        lu.at(i, j) = lu.at(j, i) = factor * c[i][j] * stiffness_N_per_m;
       }
     }
-    return SmallLu<kMaxSpheres>().factorise(a, n, Pivot::kOfDiagonal, 0.0);
+    return lu.factorise(n, Pivot::kOfDiagonal, 0.0);
   };
   if (is_definite(1.0)) return 1.0;
   constexpr int kHalvings = 10;

@@ -193,7 +193,7 @@ void MovedContact::keep_last_state() RT_SAFE {
 void MovedContact::respond() RT_SAFE {
   status_ = {};
   if (organ_.count == 0) return;
-  for (std::size_t i = 0; i < organ_.count; ++i) before_[i] = organ_.sphere[i];
+  std::copy_n(organ_.sphere.begin(), organ_.count, before_.begin());
   couple();
   for (std::size_t i = 0; i < organ_.count; ++i) stiffen(organ_.sphere[i]);
   fill_matrices(organ_);

@@ -7,7 +7,6 @@
 namespace tact::model::contact {
 namespace {
 
-using Square = SmallLu<kMaxUnknowns>::Square;
 using Column = SmallLu<kMaxUnknowns>::Column;
 
 constexpr Mat3 outer(const Vec3& a, const Vec3& b) RT_SAFE { return {{a.x * b, a.y * b, a.z * b}}; }
@@ -85,34 +84,36 @@ Mat3 load_slope(const OrganSphere& b) RT_SAFE {
          outer(side_N_per_m * along, along) + diagonal(-side_N_per_m);
 }
 
-void put(Square& a, std::size_t i, std::size_t j, const Mat3& m) RT_SAFE {
+void put(SmallLu<kMaxUnknowns>& a, std::size_t i, std::size_t j, const Mat3& m) RT_SAFE {
   for (std::size_t k = 0; k < 3; ++k) {
-    a[3 * i + k][3 * j] = m.row[k].x;
-    a[3 * i + k][3 * j + 1] = m.row[k].y;
-    a[3 * i + k][3 * j + 2] = m.row[k].z;
+    a.at(3 * i + k, 3 * j) = m.row[k].x;
+    a.at(3 * i + k, 3 * j + 1) = m.row[k].y;
+    a.at(3 * i + k, 3 * j + 2) = m.row[k].z;
   }
 }
 
 // dc_i/dy_j = Q_i delta_ij - (Q_i^k G_ij + A_i T_ij) Q_j^(1-k) dl_j/dy_j, with
 // A dt = (n x dt) x (k Q^k v + Q (y - p)); without the second order of the rotations.
-void fill_slope(const MovedOrgan& organ, Square& a) RT_SAFE {
-  std::array<Mat3, kMaxSpheres> load, chord, whole, tilt;
+void fill_slope(MovedOrgan& organ) RT_SAFE {
   for (std::size_t j = 0; j < organ.count; ++j) {
     const OrganSphere& b = organ.sphere[j];
+    SphereSlope& of = organ.of_sphere[j];
     const Rotation& q = b.rotation;
-    whole[j] = matrix_of(q.whole, q.axis);
-    chord[j] = matrix_of(q.chord, q.axis);
-    load[j] = -1.0 * (matrix_of(q.rest, q.axis) * load_slope(b));
+    of.whole = matrix_of(q.whole, q.axis);
+    of.chord = matrix_of(q.chord, q.axis);
+    of.load_N_per_m = -1.0 * (matrix_of(q.rest, q.axis) * load_slope(b));
     const Vec3 lever_m =
-        organ.chord_ratio * (chord[j] * b.shift_m) + whole[j] * (b.y_m - b.at.point_m);
+        organ.chord_ratio * (of.chord * b.shift_m) + of.whole * (b.y_m - b.at.point_m);
     // (n x dt) x L = dt (n . L) - n (dt . L)
-    tilt[j] = diagonal(dot(q.normal, lever_m)) + outer(-1.0 * q.normal, lever_m);
+    of.tilt_m = diagonal(dot(q.normal, lever_m)) + outer(-1.0 * q.normal, lever_m);
   }
   for (std::size_t i = 0; i < organ.count; ++i)
     for (std::size_t j = 0; j < organ.count; ++j) {
+      const SphereSlope& of = organ.of_sphere[i];
       const Mat3 m =
-          (chord[i] * organ.compliance_m_per_N[i][j] + tilt[i] * organ.slope_per_N[i][j]) * load[j];
-      put(a, i, j, i == j ? m + whole[i] : m);
+          (of.chord * organ.compliance_m_per_N[i][j] + of.tilt_m * organ.slope_per_N[i][j]) *
+          organ.of_sphere[j].load_N_per_m;
+      put(organ.slope, i, j, i == j ? m + of.whole : m);
     }
 }
 
@@ -172,15 +173,14 @@ double evaluate(MovedOrgan& organ) RT_SAFE {
 
 bool find_slope(MovedOrgan& organ) RT_SAFE {
   constexpr double kMinSlopePivot = 1e-6;
-  Square a{};
-  fill_slope(organ, a);
-  organ.has_slope = organ.slope.factorise(a, 3 * organ.count, Pivot::kOfColumn, kMinSlopePivot);
+  fill_slope(organ);
+  organ.has_slope = organ.slope.factorise(3 * organ.count, Pivot::kOfColumn, kMinSlopePivot);
   return organ.has_slope;
 }
 
 bool newton_step(MovedOrgan& organ, double max_step_m, double share) RT_SAFE {
   constexpr double kLost_m = 1.0;  // farther than this, or NaN: no step at all
-  Column x{};
+  Column x;                        // only the part in use is set
   for (std::size_t i = 0; i < organ.count; ++i) {
     const Vec3& r_m = organ.sphere[i].residual_m;
     x[3 * i] = r_m.x, x[3 * i + 1] = r_m.y, x[3 * i + 2] = r_m.z;

@@ -84,6 +84,12 @@ struct OrganSphere {
   double deep_m = 0.0;          // distance that y must move before it can be outside
 };
 
+/// Parts of dc/dy of one sphere.
+struct SphereSlope {
+  Mat3 whole, chord, tilt_m;  // of c: Q, Q^k, and A of the slope
+  Mat3 load_N_per_m;          // of a
+};
+
 struct MovedOrgan {
   ContactLaw* law = nullptr;        // force of the indentation alone
   law::Creep creep;                 // of the organ
@@ -94,6 +100,7 @@ struct MovedOrgan {
   std::array<std::array<PairCompliance, kMaxSpheres>, kMaxSpheres> pair{};      // [i][j], j < i
   std::array<std::array<Mat3, kMaxSpheres>, kMaxSpheres> compliance_m_per_N{};  // G_ij
   std::array<std::array<Mat3, kMaxSpheres>, kMaxSpheres> slope_per_N{};         // T_ij
+  std::array<SphereSlope, kMaxSpheres> of_sphere;                               // of find_slope
   SmallLu<kMaxUnknowns> slope;                                                  // dc/dy
   bool has_slope = false;
 };

@@ -30,7 +30,7 @@ void RestContact::reset() RT_SAFE {
   pressing_ = {};
   is_coupled_ = {};
   coupling_ = {};
-  shear_ = {};
+  shear_ = Shear(count());
   shift_m_ = shear_N_ = {};
   energy_J_ = 0.0;
 }
@@ -147,16 +147,16 @@ void RestContact::respond() RT_SAFE {
 // sideways: its tangential spring starts unloaded there.
 void RestContact::couple_new_spheres() RT_SAFE {
   const std::array<bool, kMaxSpheres> before = is_coupled_;
-  for (std::size_t i = 0; i < kMaxSpheres; ++i) is_coupled_[i] = pressing_[i].presses;
+  for (std::size_t i = 0; i < count(); ++i) is_coupled_[i] = pressing_[i].presses;
   // Couplings are constant from touch to release, as MC-3 is a potential only for constant C. The
   // spheres' springs are set first, as couple() bounds each pair by both springs.
   if (is_coupled_ == before) return;
-  for (std::size_t i = 0; i < kMaxSpheres; ++i)
+  for (std::size_t i = 0; i < count(); ++i)
     if (!is_coupled_[i])
       shear_.leave(i);
     else if (!before[i])
       start_tangent_spring(i);
-  for (std::size_t i = 0; i < kMaxSpheres; ++i)
+  for (std::size_t i = 0; i < count(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (!is_coupled_[i] || !is_coupled_[j])
         coupling_[i][j] = coupling_[j][i] = 0.0;
@@ -165,7 +165,7 @@ void RestContact::couple_new_spheres() RT_SAFE {
   shear_.solve();
   // MC-4 for f_i = 0:  t_i <- t_i + sum over j != i of c_ij P_ij f_j, by the forces f of the tick
   // before; then exactly  t_i <- t_i - K_ii^-1 f_i,  f = K t,  K = (diag(G) + c P)^-1
-  for (std::size_t i = 0; i < kMaxSpheres; ++i)
+  for (std::size_t i = 0; i < count(); ++i)
     if (is_coupled_[i] && !before[i]) {
       shift_m_[i] = shift_m_[i] + shear_.unloaded_m(shear_N_, i);
       shift_m_[i] =

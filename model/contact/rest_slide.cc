@@ -9,8 +9,7 @@
 namespace tact::model::contact {
 namespace {
 
-// A slipping sphere ends at its cap up to rounding; it must not slip again in the next sweep.
-constexpr double kAboveCap = 1.0 + 1e-12;
+constexpr double kSettled_ratio = 1e-4;  // excess over the cap at which steps and sweeps end
 
 // Limits f by Coulomb's law at the stiffness K, so that f' is parallel to the slip g f':
 //
@@ -20,21 +19,28 @@ constexpr double kAboveCap = 1.0 + 1e-12;
 //
 //     (|f'| / (mu F) - 1) |f'|^2 / (f' . (I + g K)^-1 K f')
 //
-// The length is set after kSteps.
+// 1 / |f'| is concave, so g rises to the solution from below and |f'| does not fall below mu F:
+// setting the length then shortens f'. With f' . K^-1 f' <= f . K^-1 f the slip loses energy after
+// any number of steps.
 Vec2 slipping_N(const Vec2& f_N, const Tensor2& stiffness_N_per_m, double cap_N) RT_SAFE {
-  constexpr int kSteps = 3;
+  constexpr int kMaxSteps = 3;
+  // Also of the excess, as an error in each tick's direction of slip adds up while it slides.
+  constexpr double kOfExcess_ratio = 1e-3;
   if (!(cap_N > 0.0)) return {};
   const Tensor2& k = stiffness_N_per_m;
+  Tensor2 m{.xx = 1.0, .yy = 1.0};  // I + g K
   Vec2 left_N = f_N;
-  double g_m_per_N = 0.0;
-  for (int step = 0; step < kSteps; ++step) {
-    const Tensor2 m{1.0 + g_m_per_N * k.xx, g_m_per_N * k.xy, 1.0 + g_m_per_N * k.yy};  // I + g K
+  double g_m_per_N = 0.0, length_N = norm(f_N);
+  const double settled_N =
+      cap_N + std::min(kOfExcess_ratio * (length_N - cap_N), kSettled_ratio * cap_N);
+  for (int step = 0; step < kMaxSteps && length_N > settled_N; ++step) {
+    g_m_per_N += (length_N / cap_N - 1.0) * length_N * length_N / dot(left_N, solve(m, k * left_N));
+    m = {1.0 + g_m_per_N * k.xx, g_m_per_N * k.xy, 1.0 + g_m_per_N * k.yy};
     left_N = solve(m, f_N);
-    const double length2 = dot(left_N, left_N);
-    g_m_per_N += (std::sqrt(length2) / cap_N - 1.0) * length2 / dot(left_N, solve(m, k * left_N));
+    length_N = norm(left_N);
   }
-  // The length is set exactly; only the direction keeps the error of three steps.
-  return (cap_N / norm(left_N)) * left_N;
+  // The length is set exactly; only the direction keeps the error of the last step.
+  return (cap_N / length_N) * left_N;
 }
 
 }  // namespace
@@ -75,7 +81,7 @@ void RestContact::drop_shift(std::size_t i) RT_SAFE {
   without.leave(i);
   without.solve();
   Shear::Shifts f_N{};
-  for (std::size_t j = 0; j < kMaxSpheres; ++j) f_N[j] = without.force_N(shift_m_, j);
+  for (std::size_t j = 0; j < count(); ++j) f_N[j] = without.force_N(shift_m_, j);
   shift_m_[i] = shear_.unloaded_m(f_N, i);
   start_tangent_spring(i);
   shear_.solve();
@@ -110,27 +116,29 @@ void RestContact::stiffen() RT_SAFE {
   }
   if (!is_stiffer) return;
   shear_.solve();
-  for (std::size_t i = 0; i < kMaxSpheres; ++i) shift_m_[i] = shift_m_[i] + change_m[i];
+  for (std::size_t i = 0; i < count(); ++i) shift_m_[i] = shift_m_[i] + change_m[i];
 }
 
 // Limits |f| to mu F by slip of t; held tissue has no cap. Slip of one sphere changes the forces of
-// the others: kSweeps sweeps over all spheres. A remaining excess is removed from the force only.
+// the others: sweeps until no sphere was above its cap by more than kSettled_ratio.
+// Each slip loses energy: W falls by (f + f') . K^-1 (f - f') / 2, whatever the other spheres do.
 void RestContact::resist_sliding() RT_SAFE {
-  constexpr int kSweeps = 4;
-  for (int sweep = 0; sweep <= kSweeps; ++sweep) {
-    bool slipped = false;
+  constexpr int kMaxSweeps = 5;
+  bool is_settled = false;
+  for (int sweep = 0; sweep < kMaxSweeps && !is_settled; ++sweep) {
+    is_settled = true;
     for (std::size_t i = 0; i < count(); ++i) {
       if (!is_coupled_[i]) continue;
       const Vec2 spring_N = shear_.force_N(shift_m_, i);
       shear_N_[i] = spring_N;
       const double cap_N = scene_.parameters.friction_ratio * pressing_[i].response.law.force_N;
-      if (sphere_[i].is_held || !(norm(spring_N) > cap_N * kAboveCap)) continue;
-      slipped = true;
+      const double length_N = norm(spring_N);
+      if (sphere_[i].is_held || !(length_N > cap_N)) continue;
+      if (length_N > (1.0 + kSettled_ratio) * cap_N) is_settled = false;
       const Tensor2 own_N_per_m = shear_.own_N_per_m(i);
       shear_N_[i] = slipping_N(spring_N, own_N_per_m, cap_N);
-      if (sweep < kSweeps) shift_m_[i] = shift_m_[i] - solve(own_N_per_m, spring_N - shear_N_[i]);
+      shift_m_[i] = shift_m_[i] - solve(own_N_per_m, spring_N - shear_N_[i]);
     }
-    if (!slipped) return;
   }
 }
 

@@ -6,7 +6,8 @@
 //
 //     t_i   tangential displacement of contact point i, m     f_i   its force, N: in two axes each
 //     G_i   MC-5, m/N, a tensor: depends on the direction, and falls while the contact grows
-//     c     h + b of MC-2, limited so that diag(G) + c P is positive definite
+//     c     h + b of MC-2, limited so that diag(G) + c P is positive definite: by a third of 0.9 of
+//           each of the two springs, and all of a sphere's by 0.9 of its spring
 //     P_ij  projects the axes of j on those of i
 //
 // On a half-space h is exact across the line between two contact points; along it a factor of
@@ -35,12 +36,15 @@ class Shear {
  public:
   using Shifts = std::array<Vec2, kMaxSpheres>;
 
+  explicit Shear(std::size_t spheres = kMaxSpheres) RT_SAFE : count_(spheres) {}
+
   /// Each of these takes effect with the next solve().
-  void set_own(std::size_t i, const OwnCompliance& own) RT_SAFE { own_[i] = own; }
+  void set_own(std::size_t i, const OwnCompliance& own) RT_SAFE;
   void couple(std::size_t i, std::size_t j, double m_per_N, const Axes& of_i,
               const Axes& of_j) RT_SAFE;
   /// The sphere does not press: removes its spring and its couplings.
   void leave(std::size_t i) RT_SAFE;
+  /// Only what has changed: O(n^2) for each of few springs, O(n^3) for many or a coupling.
   void solve() RT_SAFE;
 
   const OwnCompliance& own(std::size_t i) const RT_SAFE { return own_[i]; }
@@ -59,10 +63,16 @@ class Shear {
   using Matrix = std::array<std::array<double, 2 * kMaxSpheres>, 2 * kMaxSpheres>;
 
   /// Rows of i.
-  static Vec2 times(const Matrix& m, std::size_t i, const Shifts& v) RT_SAFE;
+  Vec2 times(const Matrix& m, std::size_t i, const Shifts& v) const RT_SAFE;
+  double compliance_m_per_N(std::size_t row, std::size_t column) const RT_SAFE;
+  void invert() RT_SAFE;
+  void update(std::size_t i) RT_SAFE;
 
-  std::array<OwnCompliance, kMaxSpheres> own_{};
-  Matrix coupling_m_per_N_{};   // c P, limited
+  std::size_t count_;                                        // spheres of the tool
+  std::array<OwnCompliance, kMaxSpheres> own_{}, solved_{};  // now, and at the last solve()
+  bool is_recoupled_ = false;                                // since the last solve()
+  std::array<std::array<double, kMaxSpheres>, kMaxSpheres> pair_m_per_N_{};  // c, limited
+  Matrix coupling_m_per_N_{};                                                // c P
   Matrix stiffness_N_per_m_{};  // (diag(G) + c P)^-1 of the pressing spheres, else 0
 };
 

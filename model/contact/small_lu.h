@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // small_lu.h - linear equations of at most N unknowns, factorised once and solved often, without
-// allocation: P A = L U by elimination, with optional row exchange.
+// allocation: P A = L U by elimination, with optional row exchange. Only the part in use is written
+// or read, so N costs no time.
 #pragma once
 
 #include <algorithm>
@@ -21,21 +22,22 @@ enum class Pivot : std::uint8_t { kOfColumn, kOfDiagonal };
 template <std::size_t N>
 class SmallLu {
  public:
-  using Square = std::array<std::array<double, N>, N>;  // [row][column]
   using Column = std::array<double, N>;
 
-  /// Factorises the first n rows and columns of a. False if a pivot is not above least_pivot;
+  SmallLu() RT_SAFE {}
+  /// Element of A, to be set before each factorise().
+  double& at(std::size_t row, std::size_t column) RT_SAFE { return lu_[row][column]; }
+  /// Factorises the first n rows and columns in place. False if a pivot is not above least_pivot;
   /// solve() must then not be called.
-  bool factorise(const Square& a, std::size_t n, Pivot pivot, double least_pivot) RT_SAFE {
+  bool factorise(std::size_t n, Pivot pivot, double least_pivot) RT_SAFE {
     n_ = n;
-    for (std::size_t i = 0; i < n; ++i) std::copy_n(a[i].begin(), n, lu_[i].begin());
     for (std::size_t k = 0; k < n; ++k) {
       std::size_t best = k;
       for (std::size_t i = k + 1; pivot == Pivot::kOfColumn && i < n; ++i)
         if (std::abs(lu_[i][k]) > std::abs(lu_[best][k])) best = i;
       const double least = pivot == Pivot::kOfColumn ? std::abs(lu_[best][k]) : lu_[best][k];
       if (!(least > least_pivot)) return false;
-      if (best != k) std::swap(lu_[best], lu_[k]);
+      if (best != k) std::swap_ranges(lu_[best].begin(), lu_[best].begin() + n, lu_[k].begin());
       row_[k] = best;
       const double inverse = 1.0 / lu_[k][k];
       for (std::size_t i = k + 1; i < n; ++i) {
@@ -58,8 +60,10 @@ class SmallLu {
   }
 
  private:
-  Square lu_{};
-  std::array<std::size_t, N> row_{};  // exchanged with k
+  using Square = std::array<std::array<double, N>, N>;  // [row][column]
+
+  Square lu_;
+  std::array<std::size_t, N> row_;  // exchanged with k
   std::size_t n_ = 0;
 };
 

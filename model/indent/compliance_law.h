@@ -50,6 +50,7 @@ class ComplianceCurve final : public law::Law {
 
   /// CL-1 by bounded bisection and Newton; depth_m >= 0. For set-up, tools and telemetry.
   TipState exact(double depth_m) const RT_SAFE;
+  std::size_t memory_bytes() const { return sizeof *this + press_.memory_bytes(); }
   double regular_m_per_N() const RT_SAFE { return regular_m_per_N_; }
   double pulled_stiffness_N_per_m() const RT_SAFE { return pulled_N_per_m_; }  // 1 / (c_disc + r)
 

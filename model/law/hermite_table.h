@@ -9,8 +9,8 @@
 // knots. Evaluation is O(1) and has no state.
 #pragma once
 
-#include <array>
 #include <cstddef>
+#include <vector>
 
 #include "model/rt.h"
 
@@ -28,11 +28,10 @@ class HermiteTable {
 
   /// Knots at x_k = k h, k = 0 .. knots - 1; h may be negative. `curve(x)` gives value and slope.
   template <typename Curve>
-  HermiteTable(double step, std::size_t knots, const Curve& curve)
-      : step_(step), cells_(knots - 1) {
+  HermiteTable(double step, std::size_t knots, const Curve& curve) : step_(step), cell_(knots - 1) {
     double integral = 0.0;
     CurvePoint here = curve(0.0);
-    for (std::size_t k = 0; k < cells_; ++k) {
+    for (std::size_t k = 0; k < cell_.size(); ++k) {
       const CurvePoint next = curve(static_cast<double>(k + 1) * step);
       const double m0 = step * here.slope, m1 = step * next.slope, d = next.value - here.value;
       cell_[k] = {here.value, m0, 3.0 * d - 2.0 * m0 - m1, m0 + m1 - 2.0 * d, integral};
@@ -41,20 +40,21 @@ class HermiteTable {
     }
   }
 
+  std::size_t memory_bytes() const { return cell_.size() * sizeof(Cell); }
   /// x of the last knot.
-  double end() const RT_SAFE { return step_ * static_cast<double>(cells_); }
+  double end() const RT_SAFE { return step_ * static_cast<double>(cell_.size()); }
 
   /// The curve at x between 0 and end(); the caller has checked x.
   CurvePoint at(double x) const RT_SAFE {
     const double u = x / step_;
     std::size_t k = u > 0.0 ? static_cast<std::size_t>(u) : 0;
-    if (k >= cells_) k = cells_ - 1;
+    if (k >= cell_.size()) k = cell_.size() - 1;
     return evaluate(cell_[k], u - static_cast<double>(k));
   }
 
  private:
   struct Cell {
-    double f0, m0, c2, c3, u0;
+    double f0 = 0.0, m0 = 0.0, c2 = 0.0, c3 = 0.0, u0 = 0.0;
   };
 
   CurvePoint evaluate(const Cell& c, double t) const RT_SAFE {
@@ -65,8 +65,7 @@ class HermiteTable {
   }
 
   double step_ = 1.0;
-  std::size_t cells_ = 1;
-  std::array<Cell, kMaxKnots - 1> cell_{};
+  std::vector<Cell> cell_{Cell{}};
 };
 
 }  // namespace tact::model::law

@@ -24,6 +24,9 @@ class TabulatedLaw final : public Law {
   std::size_t profile(double depth_m, std::span<double> ring_m) const RT_SAFE override {
     return source_->profile(depth_m, ring_m);
   }
+  std::size_t memory_bytes() const {
+    return sizeof *this + press_.memory_bytes() + pull_.memory_bytes();
+  }
   double ring_pitch_m() const RT_SAFE override { return source_->ring_pitch_m(); }
 
  private:

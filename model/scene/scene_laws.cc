@@ -31,7 +31,7 @@ void visit_tolerance(Keys& k, ToleranceSettings& tolerance) {
            tolerance.force_error_ratio);
   k.number("shape_error_ratio", {0.001, 10.0}, "RMS error of the shape over the depth",
            tolerance.shape_error_ratio);
-  k.number("tick_budget_us", {0.1, 1e4}, "of the law, p99.9; non-rt: median",
+  k.number("tick_budget_us", {0.1, 1e4}, "of a tick in contact: p99.9; non-rt: median",
            tolerance.tick_budget_us);
 }
 

@@ -25,7 +25,7 @@ TissueLawBuilder::Step TissueLawBuilder::add_curve(const LawRow& row) {
   if (curve->untabled_bytes > 0) return finish_curve(**pulled);
   auto table = tabulate(**pulled, scene_.table_knots);
   if (!table) return blame(table.error());
-  law_->memory_bytes_ += sizeof(law::TabulatedLaw);
+  law_->memory_bytes_ += table->memory_bytes();
   return finish_curve(keep(std::move(*table)));
 }
 
@@ -35,12 +35,13 @@ TissueLawBuilder::Step TissueLawBuilder::add_compliance() {
                              large_strain ? "large" : "small", scene_.compliance.curves);
   auto family = read_scene_family(scene_, large_strain);
   if (!family) return family.error();
-  for (indent::ComplianceCurve& curve : family->curve)
+  for (indent::ComplianceCurve& curve : family->curve) {
+    law_->memory_bytes_ += curve.memory_bytes();
     law_->curves_.push_back(&keep(std::move(curve)));
+  }
   law_->press_coordinate_ = std::move(family->press_coordinate);
   law_->pull_coordinate_ = std::move(family->pull_coordinate);
   law_->curve_rings_times_E_per_m_ = std::move(family->ring_times_E_per_m);
-  law_->memory_bytes_ += law_->curves_.size() * sizeof(indent::ComplianceCurve);
   return finish_field();
 }
 

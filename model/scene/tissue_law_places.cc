@@ -51,13 +51,13 @@ TissueLawBuilder::Step TissueLawBuilder::vary_by_place(const law::Law& curve) {
     if (!series) return blame(series.error());
     auto table = tabulate(keep(std::move(*series)), scene_.table_knots);
     if (!table) return blame(table.error());
+    law_->memory_bytes_ += table->memory_bytes();
     law_->curves_.push_back(&keep(std::move(*table)));
   }
   law_->title_ += ", in series with the organ";
   law_->press_coordinate_ = std::move(family->press_coordinate);
   law_->pull_coordinate_ = std::move(family->pull_coordinate);
   law_->curve_rings_times_E_per_m_ = std::move(family->ring_times_E_per_m);
-  law_->memory_bytes_ += law_->curves_.size() * sizeof(law::TabulatedLaw);
   return finish_field();
 }
 

@@ -78,7 +78,8 @@ Result<std::unique_ptr<SpringPatch>> make_spring_patch(const contact::SurfaceVie
   if (auto wrong = check_meaning("spring patch", p)) return *wrong;
   if (!is_positive(p.tick_s)) return Error{"spring patch: tick_s must be finite and above 0"};
   if (p.spheres < 1 || p.spheres > contact::kMaxSpheres)
-    return Error{"spring patch: spheres must lie between 1 and 4"};
+    return Error{"spring patch: spheres must lie between 1 and " +
+                 std::to_string(contact::kMaxSpheres)};
   if (surface.triangle.empty()) return Error{"spring patch: the surface has no triangles"};
   if (const auto vertex = crowded_vertex(surface))
     return Error{"spring patch: vertex " + std::to_string(*vertex) + " has " +
@@ -165,7 +166,7 @@ void SpringPatch::follow_contacts() RT_SAFE {
   std::array<std::uint32_t, contact::kMaxSpheres> triangle{};
   std::size_t count = 0;
   bool must_gather = false;
-  for (std::size_t i = 0; i < contact::kMaxSpheres; ++i) {
+  for (std::size_t i = 0; i < parameters_.spheres; ++i) {
     if (!contact_[i].active) continue;
     const std::uint32_t t = contact_[i].surface_point.triangle;
     triangle[count++] = t;
@@ -174,7 +175,7 @@ void SpringPatch::follow_contacts() RT_SAFE {
     if (t != gathered_[i] && !region_.holds(t)) must_gather = true;
   }
   if (!must_gather) return;
-  for (std::size_t i = 0; i < contact::kMaxSpheres; ++i)
+  for (std::size_t i = 0; i < parameters_.spheres; ++i)
     gathered_[i] = contact_[i].active ? contact_[i].surface_point.triangle : contact::kNoTriangle;
   region_.gather({triangle.data(), count});
 }

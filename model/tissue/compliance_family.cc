@@ -69,6 +69,15 @@ Vec3 vector_of(const std::array<float, 3>& v) {
 }
 
 /// s v v'
+/// As TangentTensors has it.
+std::array<float, 6> symmetric(const Mat3& m) {
+  std::array<float, 6> out{};
+  std::ranges::transform(
+      std::array{m.row[0].x, m.row[1].y, m.row[2].z, m.row[1].z, m.row[2].x, m.row[0].y},
+      out.begin(), [](double v) { return static_cast<float>(v); });
+  return out;
+}
+
 Mat3 square(double s, const Vec3& v) { return {{s * v.x * v, s * v.y * v, s * v.z * v}}; }
 
 /// Where a compliance stands among the curves.
@@ -133,7 +142,8 @@ std::vector<TangentTensors> tangent_compliance(const ComplianceMap& map,
     const double most = n1 * n1 / room(s1) + n2 * n2 / room(s2);
     const double share = 1.0 / std::max(normal, most);
     const Mat3 s = square(s1, a1) + square(s2, a2);
-    out.push_back({.touching = s, .held = s + square(-share, n1 * a1 + n2 * a2)});
+    out.push_back({.touching_per_m = symmetric(s),
+                   .held_per_m = symmetric(s + square(-share, n1 * a1 + n2 * a2))});
   }
   return out;
 }

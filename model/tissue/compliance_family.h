@@ -37,8 +37,9 @@ struct ComplianceFamily {
 
   /// What the loop may touch.
   std::size_t memory_bytes() const {
-    return curve.size() * sizeof(indent::ComplianceCurve) +
-           (press_coordinate.size() + pull_coordinate.size()) * sizeof(float);
+    std::size_t bytes = (press_coordinate.size() + pull_coordinate.size()) * sizeof(float);
+    for (const indent::ComplianceCurve& of_family : curve) bytes += of_family.memory_bytes();
+    return bytes;
   }
 };
 

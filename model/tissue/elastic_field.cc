@@ -73,7 +73,17 @@ ElasticField::Part ElasticField::part_at(const contact::SurfacePoint& surface_po
                                        f * (stiff.stiffness_N_per_m - soft.stiffness_N_per_m),
                   .energy_J = soft.energy_J + f * step_J,
                   .status = worse(soft.status, stiff.status)},
-          .slope_N = step_J * coordinate_slope(surface_point.triangle, depth_m)};
+          .coordinate_slope_J = step_J};
+}
+
+// Kept while the sphere stays on its triangle: it is asked several times a tick.
+const ElasticField::Gradient& ElasticField::gradient_at(const contact::Indentation& in) RT_SAFE {
+  Gradient& gradient = gradient_[in.sphere];
+  if (parts_.curves.size() < 2 || gradient.triangle == in.surface_point.triangle) return gradient;
+  gradient.triangle = in.surface_point.triangle;
+  gradient.per_m = {coordinate_slope(gradient.triangle, 0.0),
+                    coordinate_slope(gradient.triangle, -1.0)};
+  return gradient;
 }
 
 // Where nothing varies, the place does not matter.
@@ -86,8 +96,10 @@ contact::ContactLawResponse ElasticField::respond(const contact::Indentation& in
   if (!is_known(in)) return {.law = {.status = law::LawStatus::kInvalid}};
   const law::Relaxation& relaxation = parts_.relaxation;
   law::RelaxationState& next = next_[in.sphere];
+  spheres_ = std::max(spheres_, in.sphere + 1);
   // From now_, not from next_: asked again in the same tick, the last answer counts.
   if (relaxation.terms() > 0) next = relaxation.after(now_[in.sphere], in.indentation_m, in.held);
+  const Gradient& gradient = gradient_at(in);
   contact::ContactLawResponse sum{};
   for (std::size_t i = 0; i <= relaxation.terms(); ++i) {
     const double depth_m = i == 0 ? in.indentation_m : next.stretch_m[i - 1];
@@ -99,7 +111,7 @@ contact::ContactLawResponse ElasticField::respond(const contact::Indentation& in
     sum.law.stiffness_N_per_m += g * part.law.stiffness_N_per_m;
     sum.law.energy_J += g * part.law.energy_J;
     sum.law.status = i == 0 ? part.law.status : worse(sum.law.status, part.law.status);
-    sum.slope_N += g * part.slope_N;
+    sum.slope_N += g * (part.coordinate_slope_J * gradient.per_m[depth_m < 0.0 ? 1 : 0]);
   }
   return sum;
 }
@@ -180,13 +192,16 @@ contact::TangentCompliance ElasticField::tangent_compliance(
       .rest_m_per_N = {}};
   if (near.tangent_times_E_per_m.empty() || !is_on_surface(surface_point, parts_.surface))
     return give;
-  Mat3 s_m_per_N;
+  std::array<double, 6> s{};
   for (std::size_t i = 0; i < 3; ++i) {
     const TangentTensors& both =
         near.tangent_times_E_per_m[parts_.surface.triangle[surface_point.triangle][i]];
-    s_m_per_N = s_m_per_N + surface_point.weight[i] / near.youngs_modulus_Pa *
-                                (held ? both.held : both.touching);
+    const double weight_per_Pa = surface_point.weight[i] / near.youngs_modulus_Pa;
+    for (std::size_t k = 0; k < s.size(); ++k)
+      s[k] +=
+          weight_per_Pa * static_cast<double>(held ? both.held_per_m[k] : both.touching_per_m[k]);
   }
+  const Mat3 s_m_per_N{{Vec3{s[0], s[5], s[4]}, Vec3{s[5], s[1], s[3]}, Vec3{s[4], s[3], s[2]}}};
   const Vec3 &a = axes.unit[0], &b = axes.unit[1], s_a = s_m_per_N * a, s_b = s_m_per_N * b;
   give.rest_m_per_N = {.xx = dot(a, s_a), .xy = dot(a, s_b), .yy = dot(b, s_b)};
   return give;

@@ -22,6 +22,7 @@
 //     G   m/N, 2 x 2, along the surface     S  of the map (CF-4)     a   radius of the contact, m
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <vector>
@@ -32,9 +33,9 @@
 
 namespace tact::model::tissue {
 
-/// S E of a vertex, 1/m, tangential, in the scene's axes: where it may sink, and where it is held.
+/// S E of a vertex, tangential, symmetric, in the scene's axes: where it may sink, and held.
 struct TangentTensors {
-  Mat3 touching, held;
+  std::array<float, 6> touching_per_m{}, held_per_m{};  // xx yy zz yz zx xy
 };
 
 /// What two contact points of one elastic body are to each other. Without a map the body is a
@@ -83,7 +84,7 @@ class ElasticField final : public contact::ContactLaw {
                                                 const contact::Axes& axes) const RT_SAFE override;
   void leave(std::size_t sphere) RT_SAFE override { now_[sphere] = next_[sphere] = {}; }
   void advance() RT_SAFE override {
-    if (parts_.relaxation.terms() > 0) now_ = next_;
+    if (parts_.relaxation.terms() > 0) std::copy_n(next_.begin(), spheres_, now_.begin());
   }
   std::size_t profile(const contact::Indentation& in,
                       std::span<double> ring_m) const RT_SAFE override;
@@ -98,10 +99,15 @@ class ElasticField final : public contact::ContactLaw {
     std::size_t low = 0;    // k
     double fraction = 0.0;  // f
   };
-  /// One part of the potential: the law at one stretch, and what it adds along the surface.
+  /// One part of the potential: the law at one stretch, and dU/dkappa.
   struct Part {
     law::LawResponse law;
-    Vec3 slope_N{};
+    double coordinate_slope_J = 0.0;
+  };
+  /// grad kappa of the triangle under a sphere, of press and of pull.
+  struct Gradient {
+    std::uint32_t triangle = contact::kNoTriangle;
+    std::array<Vec3, 2> per_m{};
   };
   bool is_known(const contact::Indentation& in) const RT_SAFE;
   std::span<const float> coordinate(double depth_m) const RT_SAFE;
@@ -112,10 +118,13 @@ class ElasticField final : public contact::ContactLaw {
   void add_organ(const contact::Indentation& in, std::span<double> ring_m) const RT_SAFE;
   void report_own_rings(const contact::Indentation& in, std::span<double> ring_m) const RT_SAFE;
   Vec3 coordinate_slope(std::uint32_t triangle, double depth_m) const RT_SAFE;
+  const Gradient& gradient_at(const contact::Indentation& in) RT_SAFE;
 
   ElasticFieldParts parts_;
   std::vector<double> stiffest_N_per_m_;  // of each curve
   std::array<law::RelaxationState, contact::kMaxSpheres> now_{}, next_{};
+  std::size_t spheres_ = 0;  // seen so far
+  std::array<Gradient, contact::kMaxSpheres> gradient_{};
 };
 
 }  // namespace tact::model::tissue

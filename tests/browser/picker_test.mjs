@@ -26,7 +26,7 @@ import {
   waits,
 } from "./stage.mjs";
 
-const kScenes = ["gum", "heart", "liver", "liver_twist", "maintenance", "skin"];
+const kScenes = ["grasper", "gum", "heart", "liver", "liver_twist", "maintenance", "skin"];
 const kSoft_Pa = "set_disc_stack.youngs_modulus_Pa";
 
 const words = (page) => page.textContent("#picker_words");

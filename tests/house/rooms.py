@@ -57,7 +57,7 @@ ROOMS = {
     "firmware/console": ["model", "model/io", "hal", "firmware/loop", "firmware/watch",
                          "firmware/protocol", "firmware/telemetry"],
     "firmware/admission": ["model", "model/contact", "model/indent", "model/law", "model/mesh", "model/scene", "hal",
-                           "hal/can", "firmware/loop", "firmware/pc"],
+                           "hal/can", "firmware/gate", "firmware/loop", "firmware/pc"],
     "firmware/run": [*LOOP, *SCENE, "hal/gpio", "hal/list", "hal/registry", "firmware/loop",
                      "firmware/watch", "firmware/protocol", "firmware/telemetry", "firmware/black_box", "firmware/pc",
                      "firmware/console", "firmware/guardian", "firmware/admission"],

@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 # What a list of rooms declares: tact_room, tact_room_text, tact_room_scripts, tact_program, tact_test.
 
-# tact_room(ROOM [SOURCES a.cc part/b.cc...] [ALONE a.cc...] LINKS target... [MOSTLY_LIBRARY])
+# tact_room(ROOM [SOURCES a.cc part/b.cc...] [ALONE a.cc...] LINKS target... [MOSTLY_LIBRARY | LOOP])
 # A folder as a library: the room model/law is the target tact_model_law, its SOURCES are in model/law/. LINKS names the
 # rooms that it may include (tests/house/layering_test.py holds it to them) and the libraries that it uses. ALONE:
 # those of SOURCES that no unity build takes up, as a test defines their functions in their place, or they define the
 # heap's.
 # MOSTLY_LIBRARY: more code of libraries' templates than computing. It is optimised less (-O1: host/server compiles
 # in half the time), and not at all under a sanitizer.
+# LOOP: computes in each tick. No bit changes: -O3 inlines and unrolls more, errno and traps alone are given up.
 function(tact_room room)
-  cmake_parse_arguments(ARG "MOSTLY_LIBRARY" "" "SOURCES;ALONE;LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "MOSTLY_LIBRARY;LOOP" "" "SOURCES;ALONE;LINKS" ${ARGN})
   tact_target(target ${room})
   if(ARG_SOURCES)
     list(TRANSFORM ARG_SOURCES PREPEND ${PROJECT_SOURCE_DIR}/${room}/)
@@ -21,6 +22,12 @@ function(tact_room room)
       target_compile_options(${target} PRIVATE -O0)
     elseif(ARG_MOSTLY_LIBRARY)
       target_compile_options(${target} PRIVATE -O1)
+    endif()
+    if(ARG_LOOP)
+      target_compile_options(${target} PRIVATE -fno-math-errno -fno-trapping-math)
+    endif()
+    if(ARG_LOOP AND PROJECT_IS_TOP_LEVEL AND NOT TACT_SANITIZE)
+      target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O3>)
     endif()
   else()
     add_library(${target} INTERFACE)

@@ -55,7 +55,24 @@ TEST(Records, TheTablesNameEachMemberOnce) {
   expect_all_named<host::record::OperatorRecord>();
   // Holes by alignment: a member of up to 7 bytes without a row changes the sum.
   EXPECT_EQ(sizeof(LoggedTick) - packed_bytes(LoggedTick::fields()), 17u);
-  EXPECT_EQ(sizeof(Frame) - packed_bytes(Frame::fields()), 18u);
+  EXPECT_EQ(sizeof(Frame) - packed_bytes(Frame::fields()), 54u);
+}
+
+TEST(Records, AFrameHoldsTheContactsThatTheToolHas) {
+  Frame frame;
+  for (std::size_t i = 0; i < kMaxContacts; ++i)
+    frame.contact[i].depth_m = static_cast<float>(i + 1);
+  for (const std::size_t spheres : {std::size_t{1}, std::size_t{2}, kMaxContacts}) {
+    const FieldTable fields = Frame::fields(spheres);
+    std::string bytes;
+    pack(fields, &frame, bytes);
+    EXPECT_EQ(packed_bytes(Frame::fields()) - bytes.size(),
+              (kMaxContacts - spheres) * packed_bytes(FrameContact::fields()));
+    Frame back;
+    ASSERT_TRUE(Unpacker::make(json_of(fields), Frame::fields())->unpack(bytes, &back));
+    for (std::size_t i = 0; i < kMaxContacts; ++i)
+      EXPECT_EQ(back.contact[i].depth_m, i < spheres ? frame.contact[i].depth_m : 0.0f) << i;
+  }
 }
 
 template <typename Record>

@@ -143,7 +143,7 @@ TEST_P(EveryScene, TheSameRunGivesTheSameBits) {
 }
 
 INSTANTIATE_TEST_SUITE_P(ClosedLoop, EveryScene,
-                         testing::Values("liver", "liver_twist", "heart", "skin", "gum",
+                         testing::Values("liver", "liver_twist", "grasper", "heart", "skin", "gum",
                                          "maintenance"),
                          [](const auto& one) { return std::string(one.param); });
 

@@ -51,7 +51,7 @@ class Viewer {
     if (size <= 0) return false;
     const auto chunk = protocol::chunk_in({bytes, static_cast<std::size_t>(size)});
     return chunk && chunk->kind == protocol::ChunkKind::kFrame &&
-           protocol::Unpacker::make(json_of(Frame::fields()), Frame::fields())
+           protocol::Unpacker::make(json_of(Frame::fields(1)), Frame::fields())
                ->unpack(chunk->content, &frame);
   }
   /// The first message, with the descriptor of the memory file.
@@ -87,7 +87,7 @@ class WholeController {
                     /*hard_real_time=*/true),
         loop_({.period_ns = 1'000'000}, *device_, lines_, controller_, clock_, requests_, *ring_),
         telemetry_(*ring_, FrameBuilder(tissue_->law().contact_law(), controller_.shapes(), true),
-                   FramePace{}, {.socket = open(path)}) {
+                   FramePace{}, {.socket = open(path), .frame_fields = Frame::fields(1)}) {
     requests_.arm_at_start.store(true);
   }
 
@@ -105,7 +105,7 @@ class WholeController {
  private:
   std::optional<TelemetrySocket> open(const std::string& path) {
     const std::string start = start_of_run(header_of(scene_, *tissue_), mesh_bytes(scene_),
-                                           {protocol::schema_of<Frame>()});
+                                           {protocol::schema_of<Frame>(Frame::fields(1))});
     return std::move(*TelemetrySocket::open(path, *make_memory_file(start)));
   }
 

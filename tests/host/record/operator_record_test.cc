@@ -22,7 +22,8 @@ namespace tact::host::record::operator_record_test {
 using tests::message_of;
 
 constexpr std::size_t kFrames = 20;
-const std::size_t kFrameBytes = chunk_of(Frame{}).size();
+const firmware::protocol::FieldTable kFields = Frame::fields(2);  // the spheres of make_header
+const std::size_t kFrameBytes = chunk_of(Frame{}, kFields).size();
 const std::size_t kStride = kFrameBytes + firmware::protocol::chunk_of(OperatorRecord{}).size();
 
 tracking::TrackedOperator operator_at(std::size_t i) {
@@ -195,7 +196,7 @@ TEST_F(TrackedFile, WithoutATrackerTheFileHasNoOperators) {
   ASSERT_EQ(message_of(writer.close()), "");
   std::ifstream file(path_, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};
-  const std::string content = start_of_recording(header_, mesh_) + chunk_of(frame(0));
+  const std::string content = start_of_recording(header_, mesh_) + chunk_of(frame(0), kFields);
   model::io::Seal seal;
   seal.add(content);
   EXPECT_EQ(bytes, content + seal.bytes());

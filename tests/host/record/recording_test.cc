@@ -28,7 +28,8 @@ namespace tact::host::record::recording_test {
 using tests::message_of;
 
 constexpr std::size_t kFrames = 50;
-const std::size_t kFrameBytes = chunk_of(Frame{}).size();
+const firmware::protocol::FieldTable kFields = Frame::fields(2);  // the spheres of make_header
+const std::size_t kFrameBytes = chunk_of(Frame{}, kFields).size();
 
 class RecordingFile : public ::testing::Test {
  protected:
@@ -75,7 +76,7 @@ TEST_F(RecordingFile, ComesBackAsItWasWritten) {
   EXPECT_EQ(read.recording.mesh, mesh_);
   EXPECT_NEAR(read.recording.length_s(), 0.49, 1e-12);
   for (std::size_t i = 0; i < kFrames; ++i)
-    EXPECT_EQ(chunk_of(read.recording.frames[i]), chunk_of(frame(i)));
+    EXPECT_EQ(chunk_of(read.recording.frames[i], kFields), chunk_of(frame(i), kFields));
 }
 
 TEST_F(RecordingFile, KeepsEveryWholeFrameOfATruncatedFile) {

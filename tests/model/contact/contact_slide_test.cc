@@ -157,6 +157,29 @@ TEST_F(Grain, SteadySlidingIsOpposedAlongItsOwnDirection) {
   EXPECT_NEAR(rendered.force_N.y, -0.8 * cap_N, 1e-3 * cap_N);
 }
 
+// MC-9 for slips of any length: the force is at its cap, parallel to the slip, and energy is lost.
+TEST_F(Grain, OneSlipLosesEnergyAlongItsOwnForce) {
+  Grained law(0.0);
+  for (int k = 1; k <= 200; ++k) {
+    Contact jerked = contact_with(law, 0.3);
+    render_at(jerked, {0, 0, kRadius_m + 1_mm});
+    render_at(jerked, {0, 0, kRadius_m - 3_mm});
+    const double length_m = 0.05_mm * k, angle_rad = 0.7 * k;
+    const Vec2 moved_m{length_m * std::cos(angle_rad), length_m * std::sin(angle_rad)};
+    const Vec3 centre_m{moved_m.x, moved_m.y, kRadius_m - 3_mm};
+    const Vec3 force_N = -render_at(jerked, centre_m).force_N;
+    const double cap_N = -0.3 * force_N.z,
+                 spring_N = std::hypot(moved_m.x / 0.08, moved_m.y / 0.02);
+    const Vec2 f_N{force_N.x, force_N.y};
+    const Vec2 slip_m = moved_m - Vec2{0.08 * f_N.x, 0.02 * f_N.y};
+    if (!(spring_N > cap_N)) continue;
+    EXPECT_NEAR(norm(f_N), cap_N, 1e-12) << k;
+    const double before_J = 0.5 * (moved_m.x * moved_m.x / 0.08 + moved_m.y * moved_m.y / 0.02);
+    EXPECT_LE(0.5 * (0.08 * f_N.x * f_N.x + 0.02 * f_N.y * f_N.y), before_J) << k;
+    EXPECT_GT(dot(f_N, slip_m), 0.999 * norm(f_N) * norm(slip_m)) << k << ": parallel";
+  }
+}
+
 TEST_F(Grain, FromPlaceToPlaceItGivesBackNoMoreThanItTook) {
   Grained law(1.3);
   for (int k = 0; k < 20; ++k) {

@@ -117,6 +117,24 @@ TEST(WholeTool, NoStrokeGivesBackMoreThanItTook) {
   EXPECT_LT(most_lost_J, -1e-5) << "rubbing and tearing cost energy";
 }
 
+// Two jaws of eight spheres each, 28 mm long.
+std::vector<ProbeSphere> grasper() {
+  std::vector<ProbeSphere> all;
+  for (int i = 0; i < 16; ++i)
+    all.push_back({{(i / 2 - 3.5) * 4_mm, i % 2 == 0 ? -4_mm : 4_mm, 0}, kRadius_m});
+  return all;
+}
+
+TEST(WholeTool, AStrokeOfSixteenSpheresGivesBackNoMoreThanItTook) {
+  std::mt19937 random(17);
+  for (int k = 0; k < 4; ++k) {
+    Bench bench(grasper());
+    bench.parameters.sliding_stiffness_N_per_m = k % 2 == 0 ? 20.0 : 0.0;
+    Contact contact = bench.contact();
+    EXPECT_LE(given_J(contact, random_stroke(random, 0.5), 4000), 1e-7) << k;
+  }
+}
+
 TEST(WholeTool, WithoutFrictionAStrokeReturnsAll) {
   std::mt19937 random(12);
   for (int k = 0; k < 30; ++k) {
@@ -214,6 +232,24 @@ TEST(WholeTool, FrictionOfEachJawStaysInItsCone) {
       }
     }
   }
+}
+
+// What is left of an excess would slip in the next tick, even with a tool at rest.
+TEST(WholeTool, SlipOfCoupledSpheresSettlesInOneTick) {
+  std::mt19937 random(16);
+  double changed_ratio = 0.0;
+  for (int k = 0; k < 6; ++k) {
+    Bench bench(jaws(4));
+    bench.parameters.sliding_stiffness_N_per_m = 0.0;  // that of the tissue
+    Contact contact = bench.contact();
+    const Stroke stroke = random_stroke(random, 0.0);
+    for (int i = 0; i <= 2000; ++i) {
+      const Vec3 moving_N = render_at(contact, stroke.at(i / 2000.0)).force_N;
+      const Vec3 resting_N = render_at(contact, stroke.at(i / 2000.0)).force_N;
+      changed_ratio = std::max(changed_ratio, norm(resting_N - moving_N) / (norm(moving_N) + 0.01));
+    }
+  }
+  EXPECT_LT(changed_ratio, 1e-5);
 }
 
 TEST(WholeTool, APinchedLobeIsDraggedTheSameWayOnBothSides) {

@@ -62,7 +62,8 @@ TEST(LawNumbers, NothingBeyondTheToldRangeIsTaken) {
 
 /// The page of tools/run names a scene, and tools/run takes the file of that name.
 TEST(LawNumbers, OfAShippedSceneTheNameIsThatOfItsFile) {
-  for (const char* name : {"liver", "liver_twist", "heart", "skin", "gum", "maintenance"})
+  for (const char* name :
+       {"liver", "liver_twist", "grasper", "heart", "skin", "gum", "maintenance"})
     EXPECT_EQ(load(name, {})->name, name);
 }
 

@@ -267,7 +267,7 @@ TEST(SpringPatch, SaysWhatIsWrongWithItsParameters) {
   names("node_mass", [](auto& p) { p.node_mass_kg = 0.0; });
   names("working_depth", [](auto& p) { p.working_depth_m = 0.0; });
   names("tick_s", [](auto& p) { p.tick_s = 0.0; });
-  names("spheres", [](auto& p) { p.spheres = 5; });
+  names("spheres", [](auto& p) { p.spheres = contact::kMaxSpheres + 1; });
   names("nodes", [](auto& p) { p.nodes = 2000; });
   names("alpha", [](auto& p) { p.method.alpha = 0.0; });
   names("iterations", [](auto& p) { p.iterations = 0; });
