@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// liveness_lock.h - a page shared by two processes: each learns that the other has ended or is held.
+// liveness_lock.h - a page that two processes share: each learns that the other ended or is held.
 //
 //     let_go() by the holder     await() returns kLetGo: a regular end
-//     holder's thread has ended  await() returns kDied: the kernel marks the robust mutex as soon as
-//     without let_go()           the thread exits, before it frees memory of the process (RT-18)
-//     holder counts no further   await() returns kSilent: a core dump, SIGSTOP, a debugger, a frozen
-//                                cgroup. At 0 it is not watched
-//     waiter counts no further   the holder's watch sees it by the waiter's count
+//     holder's thread has ended  await() returns kDied: the kernel marks the robust mutex when the
+//     without let_go()           thread exits, before it frees memory of the process (RT-18)
+//     holder counts no more      await() returns kSilent: a core dump, SIGSTOP, a debugger, a
+//                                frozen cgroup. At 0 it is not watched
+//     waiter counts no more      the holder's watch sees it by the waiter's count
 //
 // It lies in an anonymous memory file shared by descriptor. All but await() is set-up code.
 #pragma once

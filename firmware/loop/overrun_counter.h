@@ -2,8 +2,8 @@
 // overrun_counter.h - when do overruns of the loop latch a fault?
 //
 //     hard real time   20 periods skipped at once, or 20 late ticks in a row (RT-15)
-//     elsewhere        0.3 s skipped at once, or 100 late ticks in a row; shorter stalls are normal on
-//                      a stock kernel
+//     elsewhere        0.3 s skipped at once, or 100 late ticks in a row; shorter stalls are normal
+//                      on a stock kernel
 //
 // A late tick ends after the next release, so at least one period is skipped. A loop that is late
 // in every tick is too slow for its rate: each force is held too long, which adds energy.

@@ -3,7 +3,8 @@
 //
 // It wakes every 5 periods, halfway between two deadlines of the loop (release_schedule.h), above
 // the loop's priority and, if possible, on another core. It acts when the loop stalls, hangs in a
-// call or runs away (runaway.h), when call_filter.h refused a call, when the guardian is lost or held, or after the PC was suspended:
+// call or runs away (runaway.h), when call_filter.h refused a call, when the guardian is lost or
+// held, or after the PC was suspended:
 //
 //     it sets the fault               the loop's next tick gives zero force and latches the fault
 //     it drops enable and heartbeat   itself, at this check and at every later one

@@ -255,16 +255,6 @@ TEST_F(ControllerTest, WithoutHardRealTimeAStallIsBorneAndOnlyTheRowLatches) {
   EXPECT_EQ(late.written, model::Wrench{});
 }
 
-// SIGSTOP and SIGCONT, a debugger, a virtual machine that was moved: where the hand is now, nobody
-// knows.
-TEST_F(ControllerTest, APauseOfAThirdOfASecondLatchesOnAnyKernel) {
-  use(false);
-  press();
-  const TickOutput paused = tick(300);
-  EXPECT_EQ(paused.fault, Fault::kLoopLate);
-  EXPECT_EQ(paused.written, model::Wrench{});
-}
-
 TEST_F(ControllerTest, ALateLoopThatPushesNothingIsNoFault) {
   for (int i = 0; i < 50; ++i) EXPECT_EQ(tick(30).fault, Fault::kNone);
   EXPECT_EQ(tick().state, State::kReady);
