@@ -80,7 +80,8 @@ model::Result<std::unique_ptr<Guardian>> Guardian::start(const hal::ShutdownFram
   const Orders orders{.words = words,
                       .priority = settings.priority,
                       .process = getpid(),
-                      .silence_ns = settings.silence_ns};
+                      .silence_ns = settings.silence_ns,
+                      .period_ns = settings.period_ns};
   if (!give_orders(guardian->socket_, orders, guardian->liveness_.descriptor()))
     return refused(program, std::strerror(errno));
   if (!guardian->is_ready()) return refused(program, "it does not answer");

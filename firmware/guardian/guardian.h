@@ -28,6 +28,7 @@ namespace tact::firmware::guardian {
 struct GuardianSettings {
   int priority = 0;  // SCHED_FIFO, of the guardian and of the thread that holds the lock
   std::int64_t silence_ns = 300'000'000;  // tactd counts no further: the guardian acts
+  std::int64_t period_ns = 1'000'000;     // of the loop, whose deadlines it leaves alone
   std::string program;                    // empty: tact-guardian in the folder of this program
 };
 

@@ -130,7 +130,7 @@ int stand_guard(int socket) {
   enter_real_time(orders.priority);
   filter_calls(orders.words.fd, socket);
   write_all(socket, "r");
-  const LivenessLock::End end = liveness->await(orders.silence_ns);
+  const LivenessLock::End end = liveness->await(orders.silence_ns, orders.period_ns);
   if (end == LivenessLock::End::kLetGo) return 0;
   const std::size_t sent = hal::say_all(orders.words) == 0 ? 1 : 0;
   write_all(STDERR_FILENO,

@@ -10,6 +10,7 @@
 #include <ctime>
 #include <utility>
 
+#include "firmware/loop/release_schedule.h"
 #include "model/time_ns.h"
 
 namespace tact::firmware::guardian {
@@ -21,12 +22,13 @@ LivenessPage* map(int fd) {
   return memory == MAP_FAILED ? nullptr : static_cast<LivenessPage*>(memory);
 }
 
-timespec from_now(std::int64_t after_ns) {
+/// Halfway between two deadlines of the loop, so that a look falls into no tick (RT-14).
+timespec next_look(std::int64_t after_ns, std::int64_t period_ns) {
   timespec at{};
   clock_gettime(CLOCK_MONOTONIC, &at);
-  at.tv_sec += (at.tv_nsec + after_ns) / model::kSecond_ns;
-  at.tv_nsec = (at.tv_nsec + after_ns) % model::kSecond_ns;
-  return at;
+  const std::int64_t now_ns = at.tv_sec * model::kSecond_ns + at.tv_nsec;
+  const std::int64_t look_ns = loop::next_half_way_ns(now_ns + after_ns, period_ns);
+  return {.tv_sec = look_ns / model::kSecond_ns, .tv_nsec = look_ns % model::kSecond_ns};
 }
 
 model::Error refused(int fd, int error) {
@@ -75,11 +77,11 @@ void LivenessLock::hold() { pthread_mutex_lock(&page_->mutex); }
 void LivenessLock::let_go() { pthread_mutex_unlock(&page_->mutex); }
 
 // The kernel reports the death as EOWNERDEAD; any other error of the lock counts as a death, too.
-LivenessLock::End LivenessLock::await(std::int64_t silence_ns) {
-  constexpr int kLooks = 4;  // in the time of a silence
+LivenessLock::End LivenessLock::await(std::int64_t silence_ns, std::int64_t period_ns) {
+  constexpr int kLooks = 2;  // in the time of a silence
   std::uint64_t before = 0;
   for (int same = 0;;) {
-    const timespec until = from_now(silence_ns / kLooks);
+    const timespec until = next_look(silence_ns / kLooks, period_ns);
     const int ended = pthread_mutex_clocklock(&page_->mutex, CLOCK_MONOTONIC, &until);
     if (ended == 0) {
       pthread_mutex_unlock(&page_->mutex);

@@ -41,8 +41,9 @@ class LivenessLock {
   /// Call from the thread to be monitored; only that thread may call let_go().
   void hold();
   void let_go();
-  /// Until the holder has ended, or has counted nothing for `silence_ns`. Counts itself.
-  End await(std::int64_t silence_ns);
+  /// Until the holder has ended, or has counted nothing for `silence_ns`, at most half as long
+  /// again. It looks, and counts, twice in that time, between two periods of the loop.
+  End await(std::int64_t silence_ns, std::int64_t period_ns);
 
   LivenessPage& page() const { return *page_; }
 

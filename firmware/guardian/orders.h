@@ -20,6 +20,7 @@ struct Orders {
   std::int32_t priority = 0;    // SCHED_FIFO
   std::int32_t process = 0;     // process id of tactd, for the message
   std::int64_t silence_ns = 0;  // tactd counts no further for so long: as if it had died
+  std::int64_t period_ns = 0;   // of the loop
 };
 
 struct TakenOrders {

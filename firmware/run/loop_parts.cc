@@ -61,8 +61,10 @@ Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsS
   // Longer than the watch's own delays: on a stock kernel half a second (chosen).
   const watch::StallDetector stall(model::period_ns(scene.rate_Hz), true);
   const std::int64_t silence_ns = setup.non_rt ? model::kSecond_ns / 2 : stall.longest_ns();
-  auto guardian = start_guardian(
-      *parts.device, {.priority = setup.rt.priority + 1, .silence_ns = silence_ns, .program = {}});
+  auto guardian = start_guardian(*parts.device, {.priority = setup.rt.priority + 1,
+                                                 .silence_ns = silence_ns,
+                                                 .period_ns = stall.period_ns(),
+                                                 .program = {}});
   if (!guardian) return guardian.error();
   parts.guardian = std::move(*guardian);
   if (auto error = admit(scene, setup, parts)) return *error;

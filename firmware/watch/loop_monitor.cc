@@ -44,9 +44,9 @@ void LoopMonitor::check() RT_SAFE {
   if (requests_.fault.load(std::memory_order_relaxed) != model::Fault::kNone) lines_.drop();
 }
 
-// It counts every quarter of its silence, 75 ms at most.
+// It counts twice in its silence: every 0.25 s at most.
 bool LoopMonitor::is_guardian_gone() RT_SAFE {
-  constexpr std::int64_t kHeld_ns = 500 * model::kMillisecond_ns;  // chosen
+  constexpr std::int64_t kHeld_ns = 600 * model::kMillisecond_ns;  // chosen
   if (guardian_.is_lost == nullptr) return false;
   if (guardian_.is_lost->load(std::memory_order_relaxed)) return true;
   if (guardian_.its_count == nullptr) return false;

@@ -50,7 +50,7 @@ ROOMS = {
     "firmware/gate": ["model", "hal"],
     "firmware/loop": LOOP,
     "firmware/watch": ["model", "hal", "firmware/loop", "firmware/pc"],
-    "firmware/guardian": ["model", "hal"],
+    "firmware/guardian": ["model", "hal", "firmware/loop"],
     "firmware/protocol": ["model", "model/io", "firmware/loop"],
     "firmware/telemetry": [*LOOP, "firmware/loop", "firmware/protocol", "model/io", "model/scene"],
     "firmware/black_box": ["model", "firmware/loop", "firmware/protocol", "firmware/telemetry"],

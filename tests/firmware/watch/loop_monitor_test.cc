@@ -120,12 +120,12 @@ TEST_F(MonitoredLoop, AGuardianThatIsHeldIsLost) {
   LoopMonitor beside(StallDetector(kMs, false), loop->progress(), requests, lines,
                      {.is_lost = &lost, .own_count = &own, .its_count = &its});
   for (int check = 0; check < 1000; ++check) {
-    if (check % 15 == 0) ++its;  // every 75 ms
+    if (check % 50 == 0) ++its;  // every 250 ms
     beside.check();
   }
   EXPECT_EQ(requests.fault.load(), model::Fault::kNone);
   EXPECT_EQ(own.load(), 1000u);
-  for (int check = 0; check <= 115; ++check) beside.check();
+  for (int check = 0; check <= 120; ++check) beside.check();
   EXPECT_EQ(requests.fault.load(), model::Fault::kGuardianLost);
   EXPECT_GT(lines.drops.load(), 0);
   beside.stop();

@@ -139,7 +139,7 @@ CASES = [
       for back_end in (ODRIVE06, CIA402, MOTEUS)),
     done_to(ODRIVE06, "guardian-held", "a controller whose guardian is held stops",
             "inject kill -STOP $(pgrep tact-guardian)",
-            Latches("guardian lost", detect_ms=520)),
+            Latches("guardian lost", detect_ms=620)),
     done_to(ODRIVE06, "guardian-killed", "a controller whose guardian is killed stops",
             "inject kill -KILL $(pgrep tact-guardian)",
             Latches("guardian lost", detect_ms=7)),
