@@ -20,6 +20,8 @@ wrong = []
 
 def is_missed(value, goal):
     """Of goals that are numbers; a value that was not found misses them all."""
+    if goal == "sleep only":
+        return value != "clock_nanosleep"
     limit = re.fullmatch(r"(<=|>=|) ?([\d.]+)", goal)
     if not limit:
         return False
@@ -92,7 +94,9 @@ def wake_up():
         floor.append(quantile_us(json.loads(out.read_text())["thread"]["0"]["histogram"], 0.999))
     command = "cyclictest -m -p 80 -i 1000, in turn"
     row("cyclictest's wake-up, p99.9", sorted(floor)[1], "us", "", command)
-    row("  tactd's over cyclictest's", round(sorted(own)[1] / sorted(floor)[1], 2), "", "<= 1.2", command)
+    if sorted(floor)[1] == 0:
+        raise ValueError("cyclictest counts whole us, and has none")
+    row("  tactd's over cyclictest's, whole us", round(int(sorted(own)[1]) / sorted(floor)[1], 2), "", "<= 1.2", command)
 
 
 def contact_times(scene):

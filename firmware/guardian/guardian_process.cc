@@ -90,10 +90,10 @@ void filter_calls(int device, int socket) {
   void* filter = seccomp_init(kRefuse);
   if (filter == nullptr) return;
   bool good = true;
-  // Waiting for the liveness lock, the pause of a millisecond between two steps, the exit, and the
-  // return from an interrupting signal.
-  for (const int call : {SYS_futex, SYS_clock_nanosleep, SYS_exit_group, SYS_exit,
-                         SYS_restart_syscall, SYS_rt_sigreturn})
+  // Waiting for the liveness lock, the clock (of a PC whose clock needs the kernel), the pause of a
+  // millisecond between two steps, the exit, and the return from an interrupting signal.
+  for (const int call : {SYS_futex, SYS_clock_gettime, SYS_clock_nanosleep, SYS_exit_group,
+                         SYS_exit, SYS_restart_syscall, SYS_rt_sigreturn})
     good = good && seccomp_rule_add(filter, SCMP_ACT_ALLOW, call, 0) == 0;
   // Shutdown frames over CAN take one call per step, those over USB transfers on its endpoint.
   good = good && allow_on(filter, SYS_sendmmsg, device) &&
@@ -117,8 +117,7 @@ int stand_guard(int socket) {
   // In this order: calls for files and priority come before the filter, which would refuse
   // it; the ready byte "r" comes last.
   const Orders orders = taken->orders;
-  constexpr const char *kDied = "died",
-                       *kHeld = "is held (stopped, frozen, or its core is being dumped)",
+  constexpr const char *kDied = "died", *kHeld = "is held, or its loop stalls",
                        *kSent = "zero force and power off were sent to its device",
                        *kUnsent =
                            "its device did not take zero force and power off: switch it off now";

@@ -15,14 +15,20 @@ void LoopMonitor::start(const pc::RtSettings& loop) {
     // pc::probe_rt_threads has already reported what is refused here.
     enter_watch_thread(loop, known);
     run();
+    leave_guardian();
     pc::leave_rt_thread();
   });
+}
+
+// At real-time priority, so that a regular end is not taken for a silence.
+void LoopMonitor::leave_guardian() RT_SAFE {
+  if (guardian_.own_count != nullptr) guardian_.own_count->store(0, std::memory_order_relaxed);
 }
 
 void LoopMonitor::stop() {
   ending_.store(true, std::memory_order_relaxed);
   if (thread_.joinable()) thread_.join();
-  if (guardian_.own_count != nullptr) guardian_.own_count->store(0, std::memory_order_relaxed);
+  leave_guardian();
 }
 
 void LoopMonitor::run() RT_SAFE {

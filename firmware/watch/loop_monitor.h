@@ -52,6 +52,7 @@ class LoopMonitor {
  private:
   void run() RT_SAFE;
   bool is_guardian_gone() RT_SAFE;
+  void leave_guardian() RT_SAFE;
   std::int64_t next_ns(std::int64_t now_ns) const RT_SAFE;
 
   StallDetector stall_;

@@ -120,10 +120,12 @@ void RestContact::stiffen() RT_SAFE {
 }
 
 // Limits |f| to mu F by slip of t; held tissue has no cap. Slip of one sphere changes the forces of
-// the others: sweeps until no sphere was above its cap by more than kSettled_ratio.
+// the others: kMaxSweeps sweeps at most, until no sphere was above its cap by more than
+// kSettled_ratio. A remaining excess is removed from the force only, and slips in the next tick.
 // Each slip loses energy: W falls by (f + f') . K^-1 (f - f') / 2, whatever the other spheres do.
 void RestContact::resist_sliding() RT_SAFE {
   constexpr int kMaxSweeps = 5;
+  constexpr double kRounding_N = 1e-12;  // without friction the cap is 0
   bool is_settled = false;
   for (int sweep = 0; sweep < kMaxSweeps && !is_settled; ++sweep) {
     is_settled = true;
@@ -134,11 +136,19 @@ void RestContact::resist_sliding() RT_SAFE {
       const double cap_N = scene_.parameters.friction_ratio * pressing_[i].response.law.force_N;
       const double length_N = norm(spring_N);
       if (sphere_[i].is_held || !(length_N > cap_N)) continue;
-      if (length_N > (1.0 + kSettled_ratio) * cap_N) is_settled = false;
+      if (length_N > (1.0 + kSettled_ratio) * cap_N + kRounding_N) is_settled = false;
       const Tensor2 own_N_per_m = shear_.own_N_per_m(i);
       shear_N_[i] = slipping_N(spring_N, own_N_per_m, cap_N);
       shift_m_[i] = shift_m_[i] - solve(own_N_per_m, spring_N - shear_N_[i]);
     }
+  }
+  for (std::size_t i = 0; i < count() && !is_settled; ++i) {
+    if (!is_coupled_[i]) continue;
+    const double cap_N = scene_.parameters.friction_ratio * pressing_[i].response.law.force_N;
+    shear_N_[i] = shear_.force_N(shift_m_, i);
+    const double length_N = norm(shear_N_[i]);
+    if (!sphere_[i].is_held && length_N > cap_N)
+      shear_N_[i] = (std::max(cap_N, 0.0) / length_N) * shear_N_[i];
   }
 }
 

@@ -16,7 +16,13 @@ constexpr int kThisProcess = -987654;  // comm_fortran of the version without MP
 constexpr int kNegativePivots = 12, kPrint = 1, kOrdering = 7, kMoreMemory_percent = 14,
               kSparseLoads = 20, kLoadsAtOnce = 27;
 constexpr int kScotch = 3, kSkipWhatNoLoadReaches = 3, kBestLoadsAtOnce = 64;
-constexpr int kOutOfMemory = -13, kWorkspaceTooSmall = -9;
+constexpr std::array kWantsMoreWorkspace{-8, -9}, kOutOfMemory{-7, -8, -9, -13, -19},
+    kSingular{-6, -10};
+
+template <std::size_t kCount>
+bool is_one_of(int error, const std::array<int, kCount>& errors) {
+  return std::find(errors.begin(), errors.end(), error) != errors.end();
+}
 
 /// Do the nodes span an area? On a point or a line the body could still turn.
 bool hold_still(const TetMesh& mesh, const std::vector<std::uint32_t>& fixed) {
@@ -100,7 +106,7 @@ int LinearSolver::Factor::factor(const StiffnessMatrix& matrix) {
   for (int more_percent = 20; error == 0 && more_percent <= 320; more_percent *= 2) {
     set(kMoreMemory_percent, more_percent);
     const int failed = run(Job::kFactor);
-    if (failed != kWorkspaceTooSmall || more_percent == 320) {
+    if (!is_one_of(failed, kWantsMoreWorkspace) || more_percent == 320) {
       error = failed;
       break;
     }
@@ -170,12 +176,14 @@ Result<LinearSolver> make_linear_solver(const TetMesh& mesh, const Elasticity& m
   const auto matrix = assemble_stiffness(mesh, material, factor->free);
   if (!matrix) return matrix.error();
   const int error = factor->factor(*matrix);
-  if (error == kOutOfMemory || error == kWorkspaceTooSmall)
+  if (is_one_of(error, kOutOfMemory))
     return Error{fmt::format(
         "finite elements: no memory for {} unknowns; take a coarser mesh or close programs",
         factor->free.unknowns)};
   // Not positive definite: a part of the body can move without force.
-  if (error != 0 || factor->mumps.infog[kNegativePivots - 1] > 0) return loose;
+  if (is_one_of(error, kSingular) || factor->mumps.infog[kNegativePivots - 1] > 0) return loose;
+  if (error != 0)
+    return Error{fmt::format("finite elements: MUMPS cannot factor, error {}", error)};
   return LinearSolver(std::move(factor));
 }
 

@@ -2,7 +2,7 @@
 // linear_solver.h - a linear elastic body, factored once, then solved for any loads: K u = f.
 //
 // Sparse K = L D L' over the free nodes by MUMPS, which skips the part of L that a local load does
-// not reach. Measured against Eigen and SuperLU in model/fem/README.md. Offline only.
+// not reach. Measured against Eigen and SuperLU: model/decisions.md. Offline only.
 #pragma once
 
 #include <cstdint>

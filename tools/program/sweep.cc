@@ -80,11 +80,14 @@ class SharedMemory {
   void* at_;
 };
 
-/// Waits for all, and shows how far they are. False if one did not end well.
-bool wait_for(std::vector<pid_t> workers, Progress& progress, const Board& board) {
+/// Waits for all, and shows how far they are. After Ctrl-C, or when one did not end well, it ends
+/// the others: then it is false.
+bool wait_for(std::vector<pid_t> workers, const Progress& progress, const Board& board) {
   using namespace std::chrono_literals;
   bool good = true;
   while (!workers.empty()) {
+    if (!good || is_interrupted())
+      for (const pid_t worker : workers) kill(worker, SIGKILL);
     std::erase_if(workers, [&](pid_t worker) {
       int status = 0;
       if (waitpid(worker, &status, WNOHANG) == 0) return false;
@@ -124,14 +127,16 @@ bool run_jobs(std::size_t jobs, const SweepOptions& options,
 std::optional<model::Error> run_in_processes(
     std::size_t jobs, std::span<float> results, const SweepOptions& options,
     const std::function<void(std::size_t job, std::span<float> result)>& work) {
+  if (jobs == 0) return std::nullopt;
   const SharedMemory memory(results.size_bytes()), board_memory(sizeof(Board));
   if (memory.get() == nullptr || board_memory.get() == nullptr)
     return model::Error{"no memory for the results of the workers; close programs"};
   const std::span<float> shared(static_cast<float*>(memory.get()), results.size());
   Board& board = *new (board_memory.get()) Board;
   const std::size_t each = results.size() / jobs;
+  const pid_t parent = getpid();
   const auto worker = [&] {
-    while (!is_interrupted()) {
+    for (;;) {
       const std::size_t job = board.next.fetch_add(1);
       if (job >= jobs) return;
       work(job, shared.subspan(job * each, each));
@@ -142,14 +147,16 @@ std::optional<model::Error> run_in_processes(
   for (unsigned i = worker_count(jobs, options); i > 0; --i) {
     const pid_t child = fork();
     if (child == 0) {
+      // Ctrl-C is for the parent, which ends its workers; none of them outlives it.
+      for (const int signal : {SIGINT, SIGQUIT, SIGTERM, SIGHUP}) std::signal(signal, SIG_IGN);
       prctl(PR_SET_PDEATHSIG, SIGKILL);
-      worker();
+      if (getppid() == parent) worker();
       _exit(0);
     }
     if (child > 0) workers.push_back(child);
   }
-  if (workers.empty()) worker();
-  Progress progress(options.label, jobs);
+  if (workers.empty()) return model::Error{"no process can be started; close programs"};
+  const Progress progress(options.label, jobs);
   const bool good = wait_for(std::move(workers), progress, board);
   if (is_interrupted()) return interruption();
   if (!good || board.done.load() != jobs)
