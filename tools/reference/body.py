@@ -127,8 +127,9 @@ def with_middles(node_m, corners, triangle):
     inside_out = np.einsum("ei,ei->e", a, np.cross(b, c)) < 0.0
     corners[inside_out] = corners[inside_out][:, [0, 2, 1, 3]]
     ends = np.sort(corners[:, EDGES], axis=2)
-    key, middle = np.unique(ends[..., 0] << 32 | ends[..., 1], return_inverse=True)
-    element = np.hstack([corners, len(node_m) + middle.reshape(-1, 6)])
+    edges = ends[..., 0] << 32 | ends[..., 1]
+    key = surface.as_met(edges, edges)
+    element = np.hstack([corners, surface.middle_of(key, edges, len(node_m))])
     middles = surface.middle_of(key, surface.edges_of(triangle)[1], len(node_m))
     if (middles < 0).any():  # every triangle of the skin has to be a face of an element, or its six nodes are not known
         raise Failure("gmsh changed the surface; ask tact-mesh whether it crosses itself")

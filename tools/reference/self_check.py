@@ -7,11 +7,11 @@
     space   a big block under a sphere against the half-space (contact.py)
 """
 import json
+import math
 import pathlib
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.spatial
 
 import calculix
 import contact
@@ -35,25 +35,30 @@ class Known:
     bar_ratio: float  # of the force
 
 
-def disc():
-    """Points (n, 2) of the unit disc, ring k has 6 k of them, and triangles of about one size."""
+def disc(radius_m):
+    """Points (n, 2), ring k has 6 k of them, and triangles of about one size."""
     ring = np.repeat(np.arange(DISC_RINGS + 1), [1, *(SIDES * k for k in range(1, DISC_RINGS + 1))])
-    step = np.arange(len(ring)) - np.searchsorted(ring, ring)
-    angle_rad = 2.0 * np.pi * step / np.maximum(SIDES * ring, 1)
-    point = np.stack([np.cos(angle_rad), np.sin(angle_rad)], axis=1) * ring[:, None] / DISC_RINGS
-    triangle = scipy.spatial.Delaunay(point).simplices
-    a, b, c = point[triangle].transpose(1, 0, 2)
-    return point, np.where(np.cross(b - a, c - a)[:, None] > 0.0, triangle, triangle[:, [0, 2, 1]])
+    start = np.searchsorted(ring, np.arange(DISC_RINGS + 1))
+    angle_rad = 2.0 * np.pi * (np.arange(len(ring)) - start[ring]) / np.maximum(SIDES * ring, 1)
+    triangles = []
+    for k in range(1, DISC_RINGS + 1):
+        i = np.arange(SIDES * k)
+        inner, after = (start[k - 1] + (i - i // k + more) % max(SIDES * (k - 1), 1) for more in (0, 1))
+        outer, following = start[k] + i, start[k] + (i + 1) % len(i)
+        # The last of a side has no second triangle.
+        triangles.append(surface.in_place([(i >= 0, inner, outer, following), ((i + 1) % k > 0, inner, following, after)]))
+    point_m = (radius_m * ring / DISC_RINGS)[:, None] * np.array([(math.cos(a), math.sin(a)) for a in angle_rad])
+    return point_m, np.vstack(triangles)
 
 
 def make_block(size_m, modulus_Pa=MODULUS_PA, poisson_ratio=POISSON):
     """As wide as high, standing on its held bottom. Vertex 0 is the middle of the top, z = 0."""
-    point, top = disc()
+    point, top = disc(size_m)
     n, rim = len(point), SIDES * DISC_RINGS
-    point = np.hstack([size_m * point, np.zeros((n, 1))])
+    point = np.hstack([point, np.zeros((n, 1))])
     a = n - rim + np.arange(rim)
     b = np.roll(a, -1)
-    side = np.vstack([np.stack([a, a + n, b + n], axis=1), np.stack([a, b + n, b], axis=1)])
+    side = surface.in_place([(a >= 0, a, a + n, b + n), (a >= 0, a, b + n, b)])
     vertex_m = np.vstack([point, point - [0, 0, size_m]])
     far_m = np.full(3, 4.0 * size_m)
     block = Organ(vertex_m, np.vstack([top, n + top[:, [0, 2, 1]], side]), np.zeros_like(vertex_m), -far_m,

@@ -72,22 +72,36 @@ def turned(triangle, first):
 
 
 def middle_of(marked, key, vertices):
-    """Number of the new vertex of each edge, -1 for one that is not among the sorted `marked`."""
-    place = np.minimum(np.searchsorted(marked, key), len(marked) - 1)
+    """Number of the new vertex of each edge, counted from `vertices` in the order of `marked`; -1 if it is not among them."""
+    order = np.argsort(marked)
+    place = order[np.minimum(np.searchsorted(marked, key, sorter=order), len(marked) - 1)]
     return np.where(marked[place] == key, vertices + place, -1)
+
+
+def as_met(key, marked):
+    """The marked edges, each once, in the order in which `key` (T, k) has them."""
+    met = key[np.isin(key, marked)]
+    return met[np.sort(np.unique(met, return_index=True)[1])]
+
+
+def in_place(parts):
+    """Triangles (n, 3) of parts (chosen triangles (T,), three corners (T,)): those of one triangle together, in their order."""
+    out = np.vstack([np.stack(corners, axis=1)[chosen] for chosen, *corners in parts])
+    return out[np.argsort(np.concatenate([np.flatnonzero(chosen) for chosen, *_ in parts]), kind="stable")]
 
 
 def halved(vertex_m, triangle, key, longest, marked):
     """Every marked edge split at its middle; a triangle that has one also splits its longest."""
     a, b, c = turned(triangle, longest).T
-    ab, bc, ca = turned(middle_of(marked, key, len(vertex_m)), longest).T
-    out = [triangle[ab < 0]]
-    for p, q, middle in ((b, c, bc), (c, a, ca)):
-        split, twice = ab >= 0, (ab >= 0) & (middle >= 0)
-        out.append(np.stack([ab, p, np.where(middle < 0, q, middle)], axis=1)[split])
-        out.append(np.stack([ab, middle, q], axis=1)[twice])
+    key = turned(key, longest)
+    marked = as_met(key, marked)
+    ab, bc, ca = middle_of(marked, key, len(vertex_m)).T
+    split = ab >= 0
+    parts = [(~split, *triangle.T)]
+    for p, q, m in ((b, c, bc), (c, a, ca)):
+        parts += [(split, ab, p, np.where(m < 0, q, m)), (split & (m >= 0), ab, m, q)]
     new_m = 0.5 * (vertex_m[marked >> 32] + vertex_m[marked & 0xFFFFFFFF])
-    return np.vstack([vertex_m, new_m]), np.vstack(out)
+    return np.vstack([vertex_m, new_m]), in_place(parts)
 
 
 def refine(vertex_m, triangle, lengths):
@@ -100,12 +114,12 @@ def refine(vertex_m, triangle, lengths):
         if len(triangle) >= MAX_TRIANGLES:
             break
         ends, key = edges_of(triangle)
-        length_m = np.linalg.norm(vertex_m[ends[..., 0]] - vertex_m[ends[..., 1]], axis=2)
-        longest = np.lexsort((key, -length_m), axis=1)[:, 0]  # of equal ones the least key, so neighbours agree
+        length2_m2 = ((vertex_m[ends[..., 0]] - vertex_m[ends[..., 1]])**2).sum(axis=2)
+        longest = np.lexsort((key, -length2_m2), axis=1)[:, 0]  # of equal ones the least key, so neighbours agree
         rows = np.arange(len(triangle))
         key_of_longest, longest_ends = key[rows, longest], ends[rows, longest]
         goal_m = lengths.at(0.5 * vertex_m[longest_ends].sum(axis=1))
-        marked, before = np.unique(key_of_longest[length_m[rows, longest] > goal_m]), -1
+        marked, before = np.unique(key_of_longest[np.sqrt(length2_m2[rows, longest]) > goal_m]), -1
         if len(marked) == 0:
             return vertex_m, triangle
         while len(marked) != before:  # to the neighbours, until all agree
@@ -150,12 +164,13 @@ def cut_along(vertex_m, triangle, circle, reach_m):
     cut = from_corner | ((s * s1 < 0) & (s * s2 < 0))  # or cuts the corner off
     first = cut.argmax(axis=1)
     a, b, c = turned(triangle, first).T
-    ab, bc, ca = turned(middle_of(marked, key, len(vertex_m)), first).T
+    key = turned(key, first)
+    marked = as_met(key, marked)
+    ab, bc, ca = middle_of(marked, key, len(vertex_m)).T
     whole, corner = ~cut.any(axis=1), from_corner.any(axis=1)
     off = ~whole & ~corner
-    parts = [(whole, a, b, c), (corner, a, b, bc), (corner, a, bc, c), (off, a, ab, ca), (off, ab, b, c), (off, ab, c, ca)]
-    return (np.vstack([vertex_m, crossings(vertex_m, marked, circle)]),
-            np.vstack([np.stack(corners, axis=1)[chosen] for chosen, *corners in parts]))
+    parts = [(whole, *triangle.T), (corner, a, b, bc), (corner, a, bc, c), (off, a, ab, ca), (off, ab, b, c), (off, ab, c, ca)]
+    return np.vstack([vertex_m, crossings(vertex_m, marked, circle)]), in_place(parts)
 
 
 def thickness(corner_m, face_normal, from_m, direction):
