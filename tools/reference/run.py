@@ -15,6 +15,7 @@ import tempfile
 import time
 
 PR_SET_PDEATHSIG = 1
+LIBC = ctypes.CDLL(None)
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
 LAST_LINES = 12
 
@@ -81,6 +82,11 @@ class Scratch:
         self.path = self.path.rename(kept)  # takes the place of the empty folder
 
 
+def end_with_parent() -> None:
+    """In a new process: the kernel ends it when its parent ends, however that ends."""
+    LIBC.prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+
+
 def run_program(words: list[str], scratch: Scratch, package: str, time_limit_s: float, any_status: bool = False) -> str:
     """What the program printed, if it ended with status 0; else a Failure, and the scratch folder is kept. It runs there."""
     program = words[0]
@@ -90,7 +96,7 @@ def run_program(words: list[str], scratch: Scratch, package: str, time_limit_s: 
         one_core = {"OMP_NUM_THREADS": "1", "CCX_NPROC_STIFFNESS": "1"}
         try:
             child = subprocess.Popen(words, cwd=scratch.path, env=os.environ | one_core, stdin=subprocess.DEVNULL, stdout=out,
-                                     stderr=subprocess.STDOUT)
+                                     stderr=subprocess.STDOUT, preexec_fn=end_with_parent)
         except FileNotFoundError:
             raise Failure(f"{program} is not installed; apt install {package}") from None
         except OSError as error:
@@ -139,7 +145,7 @@ def write(path: pathlib.Path, text: str):
 def answer(pipe, work, job):
     """A job's own process, which leads the group of the programs that it starts."""
     os.setpgid(0, 0)
-    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)  # without the parent nobody reads what comes
+    end_with_parent()  # without the parent nobody reads what comes
     for number in SIGNALS:
         signal.signal(number, signal.SIG_IGN)  # a terminal tells the parent, which ends this group
     signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)
