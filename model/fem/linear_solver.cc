@@ -16,8 +16,9 @@ constexpr int kThisProcess = -987654;  // comm_fortran of the version without MP
 constexpr int kNegativePivots = 12, kPrint = 1, kOrdering = 7, kMoreMemory_percent = 14,
               kSparseLoads = 20, kLoadsAtOnce = 27;
 constexpr int kScotch = 3, kSkipWhatNoLoadReaches = 3, kBestLoadsAtOnce = 64;
-constexpr std::array kWantsMoreWorkspace{-8, -9}, kOutOfMemory{-7, -8, -9, -13, -19},
-    kSingular{-6, -10};
+constexpr std::array kWantsMoreWorkspace{-8, -9};
+constexpr std::array kOutOfMemory{-7, -8, -9, -13, -19};
+constexpr std::array kSingular{-6, -10};
 
 template <std::size_t kCount>
 bool is_one_of(int error, const std::array<int, kCount>& errors) {
