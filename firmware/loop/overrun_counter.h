@@ -9,6 +9,7 @@
 // in every tick is too slow for its rate: each force is held too long, which adds energy.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "model/rt.h"
@@ -19,8 +20,9 @@ class OverrunCounter {
  public:
   OverrunCounter(bool hard_real_time, double period_s)
       : hard_real_time_(hard_real_time),
-        skipped_at_once_(hard_real_time ? kSkippedAtOnce
-                                        : static_cast<std::uint32_t>(kPause_s / period_s + 0.5)) {}
+        skipped_at_once_(hard_real_time
+                             ? kSkippedAtOnce
+                             : static_cast<std::uint32_t>(std::lround(kPause_s / period_s))) {}
 
   /// Call once per tick, with the periods skipped before it. True: stop.
   bool step(std::uint32_t skipped_periods) RT_SAFE {

@@ -7,13 +7,16 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <string>
 
+#include "host/server/access.h"
 #include "model/io/json.h"
 
 namespace tact::host::server {
 namespace {
 
 namespace beast = boost::beast;
+namespace http = boost::beast::http;
 namespace websocket = boost::beast::websocket;
 using beast::error_code;
 
