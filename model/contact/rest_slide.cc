@@ -23,7 +23,7 @@ constexpr double kSettled_ratio = 1e-4;  // excess over the cap at which steps a
 // setting the length then shortens f'. With f' . K^-1 f' <= f . K^-1 f the slip loses energy after
 // any number of steps.
 Vec2 slipping_N(const Vec2& f_N, const Tensor2& stiffness_N_per_m, double cap_N) RT_SAFE {
-  constexpr int kMaxSteps = 3;
+  constexpr int kNewtonSteps = 3;
   // Also of the excess, as an error in each tick's direction of slip adds up while it slides.
   constexpr double kOfExcess_ratio = 1e-3;
   if (!(cap_N > 0.0)) return {};
@@ -33,7 +33,7 @@ Vec2 slipping_N(const Vec2& f_N, const Tensor2& stiffness_N_per_m, double cap_N)
   double g_m_per_N = 0.0, length_N = norm(f_N);
   const double settled_N =
       cap_N + std::min(kOfExcess_ratio * (length_N - cap_N), kSettled_ratio * cap_N);
-  for (int step = 0; step < kMaxSteps && length_N > settled_N; ++step) {
+  for (int step = 0; step < kNewtonSteps && length_N > settled_N; ++step) {
     g_m_per_N += (length_N / cap_N - 1.0) * length_N * length_N / dot(left_N, solve(m, k * left_N));
     m = {1.0 + g_m_per_N * k.xx, g_m_per_N * k.xy, 1.0 + g_m_per_N * k.yy};
     left_N = solve(m, f_N);
