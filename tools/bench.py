@@ -58,12 +58,12 @@ def ticks():
     row("tick, median", us(total["p50_ns"]), "us", "<= 3", command)
     row("tick, p99.9", us(total["p99.9_ns"]), "us", "<= 20", command)
     row("tick, worst seen", us(total["max_ns"]), "us", "", command)
-    row("wake-up, median", us(wake["p50_ns"]), "us", "", command)
-    row("wake-up, p99.9", us(wake["p99.9_ns"]), "us", "", command)
-    row("wake-up, worst seen", us(wake["max_ns"]), "us", "", command)
     for phase in ("read", "detect", "render", "limit", "write", "publish"):
         what, goal = ("limit: gate and supervisor", "<= 300") if phase == "limit" else (phase, "")
         row(f"  {what}, median", report["phases"][phase]["p50_ns"], "ns", goal, command)
+    row("wake-up, median", us(wake["p50_ns"]), "us", "", command)
+    row("wake-up, p99.9", us(wake["p99.9_ns"]), "us", "", command)
+    row("wake-up, worst seen", us(wake["max_ns"]), "us", "", command)
     row("ticks late", report["late"], f"of {report['ticks']}", "", command)
     thread = report["thread"]
     row("heap calls in the loop", thread["allocations"], "", "0", command)
