@@ -85,8 +85,8 @@ def front_page():
         values = json.loads((RESULTS / "bench.json").read_text())["values"] | {"missed": missed}
         return list(tables.measured(lambda name: values if name == "bench" else
                                     json.loads((RESULTS / f"{name}.json").read_text())["values"]))
-    if [line for line in lines_of([row]) if line not in lines_of([])] != [
-            "| goals of the bench that were **missed** | law table 1140.4 kB (<= 64) | none | `tools/bench` |"]:
+    if [line for line in lines_of([row]) if line and line not in lines_of([])] != [
+            "Goals of `tools/bench` that were **missed**: law table 1140.4 kB (<= 64)."]:
         yield "tools/results/tables.py:1: a row of tools/bench that misses its goal is not in the table"
 
 

@@ -36,7 +36,9 @@ def measured(load):
     missed = [f"{row['what'].strip()} {row['value']} {row['unit']}".strip() + f" ({row['goal']})" for row in bench["missed"]
               if row["what"] not in ("tick, median", "tick, p99.9")]
     if missed:
-        yield f"| goals of the bench that were **missed** | {'; '.join(missed)} | none | `tools/bench` |"
+        yield ""
+        yield from textwrap.wrap(f"Goals of `tools/bench` that were **missed**: {'; '.join(missed)}.", 130,
+                                 break_long_words=False, break_on_hyphens=False)
 
 
 def tick_size(load):
