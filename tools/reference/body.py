@@ -55,9 +55,9 @@ class Body:
     def within(self, circle):
         """Faces (F,) whose centre is within the circle's radius of its axis and two of its middle, and that look against it."""
         centre_m = self.node_m[self.face[:, :3]].mean(axis=1)
-        return ((circle.away_m(centre_m) <= circle.radius_m)
-                & (np.abs((centre_m - circle.at_m) @ circle.axis) < 2.0 * circle.radius_m)
-                & (self.normal @ circle.axis < -surface.FACING))
+        is_near = circle.away_m(centre_m) <= circle.radius_m
+        is_beside = np.abs((centre_m - circle.at_m) @ circle.axis) < 2.0 * circle.radius_m
+        return is_near & is_beside & (self.normal @ circle.axis < -surface.FACING)
 
 
 def gmsh_version():

@@ -138,12 +138,12 @@ def deck_of(organ, body, load, reported):
     axes = axes_of(load)
     sets = {"HELD": body.held, "MOVED": load.moved, "REPORTED": reported}
     return (f"*NODE,NSET=ALL\n{rows(1, body.node_m @ axes.T * MM)}"
-            f"*ELEMENT,TYPE=C3D10,ELSET=BODY\n{rows(1, body.element + 1)}"
-            + "".join(node_set(name, nodes) for name, nodes in sets.items() if len(nodes))
-            + material_text(organ, load.large_strain)
-            + (ball_text(organ, body, load.ball, axes) if load.ball else "")
-            + ("*BOUNDARY\nHELD,1,3\n" if len(body.held) else "") + step_text(load)
-            + f"*NODE PRINT,NSET={'HELD' if load.ball else 'MOVED'},FREQUENCY=1000\nRF\n"
+            f"*ELEMENT,TYPE=C3D10,ELSET=BODY\n{rows(1, body.element + 1)}" +
+            "".join(node_set(name, nodes) for name, nodes in sets.items() if len(nodes)) +
+            material_text(organ, load.large_strain) +
+            (ball_text(organ, body, load.ball, axes) if load.ball else "") +
+            ("*BOUNDARY\nHELD,1,3\n" if len(body.held) else "") + step_text(load) +
+            f"*NODE PRINT,NSET={'HELD' if load.ball else 'MOVED'},FREQUENCY=1000\nRF\n"
             "*NODE PRINT,NSET=REPORTED,FREQUENCY=1000\nU\n*END STEP\n")
 
 

@@ -67,7 +67,7 @@ def tool(places, solver, tool_places):
              "orientation_wxyz": short(place.orientation, 9), **({"skin": place.skin} if place.skin else {}),
              "cases": [case_of(c, sphere_N=short(c.sphere_N, 6), **({"skin_m": short(c.skin_m, 4)} if c.skin_m else {}))
                        for c in place.cases]} for place in tool_places]
-    rows = (f"{place.name:>9} {c.depth_m * 1e3:>9.3g} {c.force_N:>10.5f} {percent(c.force_error_ratio):>11}  "
-            + " ".join(f"{force_N:.5f}" for force_N in c.sphere_N) for place in tool_places for c in place.cases)
+    rows = (f"{place.name:>9} {c.depth_m * 1e3:>9.3g} {c.force_N:>10.5f} {percent(c.force_error_ratio):>11}  " +
+            " ".join(f"{force_N:.5f}" for force_N in c.sphere_N) for place in tool_places for c in place.cases)
     return (file_text("tact-tool-reference", places.organ, solver, spheres=spheres, places=data),
             table("    place  depth mm    force N  mesh err %  of each sphere N", rows))
