@@ -54,9 +54,9 @@ std::vector<model::contact::ContactPoint> circle(const model::mesh::SurfaceMesh&
 }
 
 /// From outside to half of the deepest and back, in 1257 ticks, along the circle.
-std::vector<model::Tool> touching_path(const model::scene::Scene& scene,
-                                       const model::contact::ContactScene& contact,
-                                       double deepest_m) {
+std::vector<model::Tool> contact_path(const model::scene::Scene& scene,
+                                      const model::contact::ContactScene& contact,
+                                      double deepest_m) {
   const auto start = nearest_contact_point(contact.tree, contact.surface, scene.hand_site_m,
                                            model::contact::kAnywhere_m, 0);
   const auto way = circle(scene.organ_mesh, start.surface_point.triangle);
@@ -75,7 +75,7 @@ std::vector<model::Tool> touching_path(const model::scene::Scene& scene,
   return path;
 }
 
-bool touches(const loop::Controller& controller) {
+bool is_in_contact(const loop::Controller& controller) {
   return std::ranges::any_of(controller.contacts(), [](const model::contact::SphereContact& c) {
     return c.force_N != Vec3{};
   });
@@ -91,11 +91,11 @@ double at_share(const std::vector<double>& ascending, double share) {
 
 TickTime measure_tick(const model::scene::Scene& scene, const model::contact::ContactScene& twin,
                       double deepest_m) {
-  const std::vector<model::Tool> path = touching_path(scene, twin, deepest_m);
+  const std::vector<model::Tool> path = contact_path(scene, twin, deepest_m);
   const auto controller = std::make_unique<loop::Controller>(
       twin, gate::Gate(scene.limits, twin.period_s, 1.0), /*hard_real_time=*/true);
   loop::MonotonicClock clock;
-  std::vector<double> all_us, touching_us;
+  std::vector<double> all_us, contact_us;
   double unused_N = 0.0;
   const std::int64_t begin_ns = clock.now_ns(), period_ns = model::period_ns(scene.rate_Hz);
   for (std::size_t k = 0; k < kMaxTicks && clock.now_ns() - begin_ns < kLongest_ns; ++k) {
@@ -107,13 +107,13 @@ TickTime measure_tick(const model::scene::Scene& scene, const model::contact::Co
     const std::int64_t start_ns = clock.now_ns();
     unused_N += norm(controller->tick(input).wanted.force_N);  // a diverged law is detected
     all_us.push_back(1e-3 * static_cast<double>(clock.now_ns() - start_ns));
-    if (touches(*controller)) touching_us.push_back(all_us.back());
+    if (is_in_contact(*controller)) contact_us.push_back(all_us.back());
   }
   constexpr double kNever = std::numeric_limits<double>::infinity();
   // A diverged law is never fast enough.
   if (!std::isfinite(unused_N))
     return {.median_us = kNever, .p999_us = kNever, .longest_us = kNever};
-  std::vector<double>& us = touching_us.empty() ? all_us : touching_us;
+  std::vector<double>& us = contact_us.empty() ? all_us : contact_us;
   std::ranges::sort(us);
   return {.median_us = at_share(us, 0.5), .p999_us = at_share(us, 0.999), .longest_us = us.back()};
 }

@@ -26,6 +26,7 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "model/contact/contact.h"
@@ -155,14 +156,16 @@ class ContactRules {
 
   std::optional<Breach> c(const Tick& now) {
     if (!is_outside_ || !now.is_saturated || force_N_ == 0.0) {
-      beyond_m_ = beyond_s_ = -1.0;
-      return {};
-    }
-    // When it began within a pause is not known, nor whether it touched again.
-    if (beyond_m_ < 0.0 || !stayed_out_) {
+      was_beyond_ = false;
       beyond_m_ = beyond_s_ = 0.0;
       return {};
     }
+    // Within a pause it is not known when it began, nor whether there was contact in between.
+    if (now.periods > 1 && (!std::exchange(was_beyond_, true) || !stayed_out_)) {
+      beyond_m_ = beyond_s_ = 0.0;
+      return {};
+    }
+    was_beyond_ = true;
     beyond_m_ += moved_m_;
     beyond_s_ += now.periods * s_.period_s;
     if (beyond_m_ > 2 * s_.range_m || beyond_s_ > kAfter_s)
@@ -273,13 +276,13 @@ class ContactRules {
   Side side_ = Side::kUnknown;
   double phi_m_ = 0.0;  // signed distance, as far as nearest_ was searched
   model::Vec3 last_m_;
-  bool is_outside_ = false, was_outside_ = false, stayed_out_ = false;
+  bool is_outside_ = false, was_outside_ = false, stayed_out_ = false, was_beyond_ = false;
   bool has_overlapped_ = false;  // surely, ever since the start
   bool lets_go_ = false;
   int without_ = 0;       // ticks in a row, deeper and without force
   bool entered_ = false;  // from outside, and not let go since
   double unsettled_s_ = 0.0;
-  double lag_m_ = -1.0, lag_s_ = -1.0, beyond_m_ = -1.0, beyond_s_ = -1.0;
+  double lag_m_ = -1.0, lag_s_ = -1.0, beyond_m_ = 0.0, beyond_s_ = 0.0;
   int lags_ = 0;
   bool in_stroke_ = false;
   int lagged_ = 0;

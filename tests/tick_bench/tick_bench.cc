@@ -59,7 +59,7 @@ Vec3 tick_N(Contact& contact, const Tool& tool) {
   return contact.render_force(tool, false).wrench.force_N;
 }
 
-bool touches(const Contact& contact) {
+bool is_in_contact(const Contact& contact) {
   return std::ranges::any_of(contact.contacts(),
                              [](const auto& sphere) { return norm(sphere.force_N) > 0.0; });
 }
@@ -82,7 +82,7 @@ double time_us(const Work& work) {
 
 struct TickTimes {
   std::vector<double> us = std::vector<double>(kTicks, HUGE_VAL);
-  std::vector<bool> touches = std::vector<bool>(kTicks, false);
+  std::vector<bool> in_contact = std::vector<bool>(kTicks, false);
   double work_J = 0.0;  // of the tool on the tissue
 };
 
@@ -92,10 +92,10 @@ void pass(const Ready& ready, std::size_t walked_B, TickTimes& times) {
   times.work_J = 0.0;
   for (std::size_t k = 0; k < kTicks; ++k) {
     const Tool& tool = ready.path[k];
-    if (walked_B > 0 && k > 0 && times.touches[k - 1]) walk(walked_B);
+    if (walked_B > 0 && k > 0 && times.in_contact[k - 1]) walk(walked_B);
     Vec3 force_N;
     times.us[k] = std::min(times.us[k], time_us([&] { force_N = tick_N(contact, tool); }));
-    times.touches[k] = touches(contact);
+    times.in_contact[k] = is_in_contact(contact);
     times.work_J -= dot(force_N, tool.velocity_mps) / ready.scene.rate_Hz;
   }
 }
@@ -103,7 +103,7 @@ void pass(const Ready& ready, std::size_t walked_B, TickTimes& times) {
 void report(benchmark::State& state, const TickTimes& times) {
   std::vector<double> us;
   for (std::size_t k = 0; k < kTicks; ++k)
-    if (times.touches[k]) us.push_back(times.us[k]);
+    if (times.in_contact[k]) us.push_back(times.us[k]);
   std::ranges::sort(us);
   if (us.empty()) us.push_back(HUGE_VAL);  // a path without contact meets no goal
   const auto last = static_cast<double>(us.size() - 1);
@@ -125,8 +125,8 @@ void passes(benchmark::State& state, const Ready& ready, std::size_t walked_B, i
 void first_contact(benchmark::State& state, const Ready& ready, int count) {
   TickTimes known;
   pass(ready, 0, known);
-  const auto first =
-      static_cast<std::size_t>(std::ranges::find(known.touches, true) - known.touches.begin());
+  const auto first = static_cast<std::size_t>(std::ranges::find(known.in_contact, true) -
+                                              known.in_contact.begin());
   std::vector<double> us(first < kTicks ? 0 : 1, HUGE_VAL);
   for (auto _ : state)
     for (int i = 0; i < count && first < kTicks; ++i) {

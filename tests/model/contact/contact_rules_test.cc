@@ -106,7 +106,7 @@ TEST_F(Rules, CSeesForceFarBehindTheBody) {
   double z_m = -24_mm;
   for (; broken.empty() && z_m > -80_mm; z_m -= 1_mm) broken = right(z_m);
   EXPECT_EQ(broken, "c");
-  EXPECT_NEAR(z_m, -24_mm - 2 * kRange_m, 3_mm) << "it counts from the second tick on";
+  EXPECT_NEAR(z_m, -24_mm - 2 * kRange_m, 2_mm);
 }
 
 TEST_F(Rules, CSeesForceThatStaysBehindTheBody) {
