@@ -61,10 +61,10 @@ Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsS
   parts.device = std::move(*device);
   // Immediately, because from here on a crash would leave an open device.
   // Chosen, longer than the watch's own delays: at least 20 ms; on a stock kernel half a second.
-  constexpr std::int64_t kLeast_ns = 20 * model::kMillisecond_ns;
+  constexpr std::int64_t kMinSilence_ns = 20 * model::kMillisecond_ns;
   const watch::StallDetector stall(model::period_ns(scene.rate_Hz), true);
   const std::int64_t silence_ns =
-      setup.non_rt ? model::kSecond_ns / 2 : std::max(kLeast_ns, stall.longest_ns());
+      setup.non_rt ? model::kSecond_ns / 2 : std::max(kMinSilence_ns, stall.longest_ns());
   auto guardian = start_guardian(*parts.device, {.priority = setup.rt.priority + 1,
                                                  .silence_ns = silence_ns,
                                                  .period_ns = stall.period_ns(),
