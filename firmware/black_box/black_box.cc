@@ -39,7 +39,7 @@ void BlackBox::work() {
   if (writer_.joinable()) writer_.join();
   writing_.store(true);
   // Copied in this thread, because the buffers keep changing; formatted and written in the other.
-  writer_ = std::thread([this, kept = Kept{waiting_, ticks_.all(), frames_.all()}] {
+  writer_ = std::thread([this, kept = Kept{waiting_, variants_, ticks_.all(), frames_.all()}] {
     write(kept);
     writing_.store(false);
   });

@@ -28,6 +28,7 @@ class BlackBox final : public telemetry::Recorder {
 
   void add(const loop::TickRecord& record) override;
   void add(const protocol::Frame& frame) override { frames_.add(frame); }
+  void add_variant(const std::string& chunk) override { variants_ += chunk; }
   void stands(model::Fault fault) override;
   /// Starts to write the pending file, once its 0.25 s have passed.
   void work() override;
@@ -45,6 +46,7 @@ class BlackBox final : public telemetry::Recorder {
   BlackBoxRun run_;
   NewestOnes<protocol::LoggedTick> ticks_;
   NewestOnes<protocol::Frame> frames_;
+  std::string variants_;       // all chunks so far
   std::uint64_t ticks_after_;  // kept after a fault, before the file is written
   model::Fault before_ = model::Fault::kNone, waiting_ = model::Fault::kNone;
   std::uint64_t to_wait_ = 0;  // ticks

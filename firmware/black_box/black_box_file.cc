@@ -111,6 +111,7 @@ Result<std::string> write_black_box(const BlackBoxRun& run, const Kept& kept) {
                                    {protocol::schema_of<protocol::LoggedTick>(),
                                     protocol::schema_of<protocol::Frame>(fields)}));
   if (!file) return file.error();
+  file->add(kept.variants);
   // Ticks before frames: a truncated file then still has the ticks.
   for (const protocol::LoggedTick& tick : kept.ticks) file->add(chunk_of(tick));
   for (const protocol::Frame& frame : with_last_ticks(kept)) file->add(chunk_of(frame, fields));

@@ -3,7 +3,7 @@
 //
 //     SCENE-DATE-NUMBER-FAULT.tactlog      liver-20260131T120000Z-105-loop-late.tactlog
 //
-// Head, meshes, ticks and frames (firmware/protocol/run_file.h); frames at the frame rate, and one
+// Head, meshes, changes of the law's numbers, ticks and frames (firmware/protocol/run_file.h); frames at the frame rate, and one
 // per tick in the last half second. An existing file is never overwritten.
 #pragma once
 
@@ -19,6 +19,7 @@ namespace tact::firmware::black_box {
 /// Ticks and frames, oldest first.
 struct Kept {
   model::Fault fault = model::Fault::kNone;
+  std::string variants;  // chunks
   std::vector<protocol::LoggedTick> ticks;
   std::vector<protocol::Frame> frames;
 };

@@ -135,7 +135,7 @@ bool ControlSocket::accept_one() {
 }
 
 std::optional<ControlRequest> ControlSocket::read(int client) {
-  std::array<char, 64> word{};
+  std::array<char, kLongestControlMessage> word{};
   const auto n = recv(client, word.data(), word.size(), MSG_DONTWAIT);
   if (n < 0 && errno == EAGAIN) return std::nullopt;
   // One word per connection: nothing after it is read.

@@ -27,6 +27,8 @@ std::string pack_answer(const Answer& answer);
 Answer unpack_answer(const std::string& message);
 
 inline constexpr std::size_t kLongestControlMessage = 1024;
+/// Begins a request for other numbers of the law: KEY=VALUE, with spaces between several.
+inline constexpr std::string_view kSetWord = "set ";
 
 /// A client waits for the answer; the destructor closes its connection.
 class ControlRequest {

@@ -24,6 +24,21 @@ tact::model::Result<std::string> folder_of(const std::string& scene_path) {
   return own;
 }
 
+/// Appends KEY=VALUE to the word "set"; "KEY VALUE" as well.
+std::optional<tact::model::Error> add_numbers(std::string& word,
+                                              const std::vector<std::string>& numbers) {
+  if ((word == "set") == numbers.empty())
+    return tact::model::Error{numbers.empty() ? "set needs KEY=VALUE, or KEY VALUE"
+                                              : word + " takes no numbers"};
+  bool is_value = false;
+  for (const std::string& number : numbers) {
+    word += (is_value ? '=' : ' ') + number;
+    is_value = !is_value && number.find('=') == std::string::npos;
+  }
+  if (is_value) return tact::model::Error{numbers.back() + " has no value"};
+  return std::nullopt;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -37,15 +52,20 @@ int main(int argc, char** argv) {
   app.add_option("WORD", question.word,
                  "arm: force, after the words \"ready, force is off\"; disarm: no force, and ready "
                  "to be armed again; reset: leave a stop whose cause is gone; stop: force to zero, "
-                 "then end; status: how it is")
+                 "then end; status: how it is; set: other numbers of the law, used as soon as the "
+                 "tool touches nothing")
       ->required()
-      ->check(CLI::IsMember({"arm", "disarm", "reset", "stop", "status"}));
+      ->check(CLI::IsMember({"arm", "disarm", "reset", "stop", "status", "set"}));
+  std::vector<std::string> numbers;
+  app.add_option("NUMBERS", numbers,
+                 "with set: KEY=VALUE, or KEY VALUE; tactd SCENE --parameters lists the keys");
   app.add_option("--pid", question.process, "of several tactds that run it, the one of this pid")
       ->check(tact::model::io::within(1, 4'194'304));
   app.add_option("--folder", question.folder,
                  "runtime folder of tactd's user (default: tact in XDG_RUNTIME_DIR, or "
                  "/tmp/tact-UID; else /run/tact of the service)");
-  if (const auto status = tact::model::io::parse_command_line(app, "tactctl", argc, argv))
+  if (const auto status = tact::model::io::parse_command_line(
+          app, "tactctl", argc, argv, [&] { return add_numbers(question.word, numbers); }))
     return *status;
   const auto folder = question.folder.empty() ? folder_of(question.scene_path) : question.folder;
   if (folder) question.folder = *folder;

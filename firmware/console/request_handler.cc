@@ -27,10 +27,10 @@ void RequestHandler::obey(std::int64_t longest_ns) {
   const bool ends = signals_.wait_for_end(longest_ns, control_ != nullptr ? control_->fd() : -1);
   // Taken before show(): a request made before the ready message must not count as a response to
   // it.
-  const auto asked = next_request();
+  auto asked = next_request();
   if (ends) stop();
   const bool just_reported = show();
-  if (asked) asked->answer(do_word(asked->word(), just_reported));
+  if (asked) handle(std::move(*asked), just_reported);
 }
 
 std::optional<ControlRequest> RequestHandler::next_request() const {
@@ -40,8 +40,16 @@ std::optional<ControlRequest> RequestHandler::next_request() const {
 // Requests that arrived before the ready message, even just before it, are refused as too early.
 bool RequestHandler::show() {
   if (!view_.show(newest_())) return false;
-  while (const auto early = next_request()) early->answer(do_word(early->word(), true));
+  while (auto early = next_request()) handle(std::move(*early), true);
   return true;
+}
+
+// Other numbers of the law change no force where they are used, so no request is too early.
+void RequestHandler::handle(ControlRequest request, bool too_early) {
+  const std::string word = request.word();
+  if (set_ && word.starts_with(kSetWord))
+    return set_(std::move(request), word.substr(kSetWord.size()));
+  request.answer(do_word(word, too_early));
 }
 
 Answer RequestHandler::do_word(const std::string& word, bool too_early) {
@@ -50,7 +58,8 @@ Answer RequestHandler::do_word(const std::string& word, bool too_early) {
   if (word == "disarm") return disarm();
   if (word == "stop") return stop();
   if (word == "status") return {.done = true, .message = view_.status()};
-  return {.done = false, .message = "arm, disarm, reset, stop and status are known, nothing else"};
+  return {.done = false,
+          .message = "arm, disarm, reset, stop, status and set are known, nothing else"};
 }
 
 Answer RequestHandler::arm(bool too_early) {

@@ -22,16 +22,19 @@ void pause_a_moment();
 
 class RequestHandler {
  public:
+  /// Answers "set KEY=VALUE ..."; the request and what follows the word.
+  using Set = std::function<void(ControlRequest request, const std::string& set)>;
   /// `control`: null without tactctl. `pause`: sleeps while the loop works on a request.
   RequestHandler(const OperatorSignals& signals, loop::Requests& requests, OperatorView& view,
                  std::function<protocol::Frame()> newest, ControlSocket* control = nullptr,
-                 std::function<void()> pause = pause_a_moment)
+                 std::function<void()> pause = pause_a_moment, Set set = {})
       : signals_(signals),
         requests_(requests),
         view_(view),
         newest_(std::move(newest)),
         control_(control),
-        pause_(std::move(pause)) {}
+        pause_(std::move(pause)),
+        set_(std::move(set)) {}
 
   /// Waits at most `longest_ns` for a request, shows the newest frame, then handles the request.
   void obey(std::int64_t longest_ns);
@@ -39,6 +42,7 @@ class RequestHandler {
  private:
   std::optional<ControlRequest> next_request() const;
   bool show();
+  void handle(ControlRequest request, bool too_early);
   Answer do_word(const std::string& word, bool too_early);
   Answer arm(bool too_early);
   Answer reset(bool too_early);
@@ -55,6 +59,7 @@ class RequestHandler {
   std::function<protocol::Frame()> newest_;
   ControlSocket* control_;
   std::function<void()> pause_;
+  Set set_;
 };
 
 /// The socket for tactctl; null, with a report, if it cannot be opened.

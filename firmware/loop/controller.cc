@@ -35,7 +35,7 @@ double fastest_sphere_mps(const model::contact::ContactScene& scene, const gate:
 
 Controller::Controller(const model::contact::ContactScene& scene, const gate::Gate& gate,
                        bool hard_real_time, const std::optional<gate::GripGate>& grip_gate)
-    : contact_(scene),
+    : own_contact_(scene),
       gate_(gate),
       grip_gate_(grip_gate),
       overruns_(hard_real_time, gate.period_s()),
@@ -57,17 +57,17 @@ void Controller::detect_contact(const TickInput& input) RT_SAFE {
   const hal::Sample& sample = input.sample;
   const bool is_open = input.clutch == ClutchState::kOpen;
   // Opening the clutch resets contact; after release contact starts again at the tool's position.
-  if (is_open && !std::exchange(was_open_, is_open)) contact_.reset();
+  if (is_open && !std::exchange(was_open_, is_open)) contact_->reset();
   was_open_ = is_open;
   if (is_open) {
     if (sample.fresh) stamp_ns_ = sample.stamp_ns;
   } else if (sample.fresh) {
-    contact_.detect_contact(sample.tool, periods, reach_m(unseen_ + passed, sample.stamp_ns));
+    contact_->detect_contact(sample.tool, periods, reach_m(unseen_ + passed, sample.stamp_ns));
     stamp_ns_ = sample.stamp_ns;
     seen_ = true;
     unseen_ = 0;
   } else if (seen_) {
-    contact_.detect_contact(sample.tool, periods);
+    contact_->detect_contact(sample.tool, periods);
     unseen_ += passed;
   }
 }
@@ -76,13 +76,13 @@ void Controller::render_force(const TickInput& input) RT_SAFE {
   if (!seen_) return;  // before the first sample there is no pose
   // The blade cuts only while force can be rendered: armed after the last tick, clutch closed.
   const bool is_open = input.clutch == ClutchState::kOpen;
-  rendered_ = contact_.render_force(input.sample.tool, supervisor_.armed() && !is_open);
+  rendered_ = contact_->render_force(input.sample.tool, supervisor_.armed() && !is_open);
   if (rendered_.is_lost) ++contact_losses_;
-  jaw_force_N_ = jaw_force_N(contact_.contacts(), input.sample.tool.grip_ratio);
+  jaw_force_N_ = jaw_force_N(contact_->contacts(), input.sample.tool.grip_ratio);
 }
 
 void Controller::publish_shape() RT_SAFE {
-  if (contact_.shape(shape_)) shapes_.write(shape_);
+  if (contact_->shape(shape_)) shapes_.write(shape_);
 }
 
 // A latched fault of the device comes first, then sample, law and lateness.

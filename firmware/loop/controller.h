@@ -27,7 +27,8 @@ struct TickInput {
   ClutchState clutch = ClutchState::kCoupled;
   std::uint32_t skipped_periods = 0;  // between the previous tick and this one
   std::uint32_t clutches = 0;         // how often the clutch has opened so far
-  model::Vec3 clutch_shift_m{};       // of the tool from the handle, in W
+  std::uint32_t variant = 0;  // of the law's numbers, counted since the start; 0: the scene's own
+  model::Vec3 clutch_shift_m{};  // of the tool from the handle, in W
 };
 
 /// All outputs of a tick.
@@ -45,12 +46,28 @@ struct TickOutput {
 
 using ShapeSlot = hal::LatestSlot<model::contact::PatchShape>;
 
+/// A tissue with other numbers of its law, made beside the loop.
+struct OfferedContact {
+  std::uint32_t variant = 0;  // see TickInput
+  model::contact::Contact contact;
+};
+
 class Controller {
  public:
   /// `hard_real_time` sets the limits of the OverrunCounter.
   Controller(const model::contact::ContactScene& scene, const gate::Gate& gate, bool hard_real_time,
              const std::optional<gate::GripGate>& grip_gate = std::nullopt);
 
+  Controller(const Controller&) = delete;
+  Controller& operator=(const Controller&) = delete;
+
+  /// True while the tool touches nothing, so that another tissue changes no force.
+  bool is_clear() const RT_SAFE { return contact_->is_clear(); }
+  /// Uses this contact from now on; it outlives the controller or the next call.
+  void use(model::contact::Contact& contact) RT_SAFE {
+    contact.continue_from(*contact_);
+    contact_ = &contact;
+  }
   void detect_contact(const TickInput& input) RT_SAFE;
   void render_force(const TickInput& input) RT_SAFE;
   TickOutput limit(const TickInput& input) RT_SAFE;
@@ -67,7 +84,7 @@ class Controller {
   ShapeSlot& shapes() { return shapes_; }
 
   std::span<const model::contact::SphereContact> contacts() const RT_SAFE {
-    return contact_.contacts();
+    return contact_->contacts();
   }
   /// A sphere is inside the organ in this tick.
   bool is_inside() const RT_SAFE { return rendered_.is_inside; }
@@ -81,7 +98,8 @@ class Controller {
   gate::LimitedGrip limit_grip(const TickInput& input) RT_SAFE;
   double reach_m(std::uint64_t periods, std::int64_t stamp_ns) const RT_SAFE;
 
-  model::contact::Contact contact_;
+  model::contact::Contact own_contact_;               // of the scene's own numbers
+  model::contact::Contact* contact_ = &own_contact_;  // in use
   gate::Gate gate_;
   std::optional<gate::GripGate> grip_gate_;  // if the gripper has a motor
   OverrunCounter overruns_;

@@ -75,6 +75,17 @@ void RtLoop::hear_requests() RT_SAFE {
                             .disarm = request == Request::kDisarm};
 }
 
+// In one tick, in which no force depends on the tissue. Another thread may replace the offer in
+// between; then a later tick takes that one.
+void RtLoop::take_offered_contact() RT_SAFE {
+  OfferedContact* offered = requests_.offered.load(std::memory_order_acquire);
+  if (offered == nullptr || !controller_.is_clear()) return;
+  if (!requests_.offered.compare_exchange_strong(offered, nullptr, std::memory_order_acq_rel))
+    return;
+  controller_.use(offered->contact);
+  record_.input.variant = offered->variant;
+}
+
 // Answers a person's request in the tick that took it: done or refused.
 void RtLoop::answer_requests() RT_SAFE {
   const State state = record_.output.state;
@@ -184,6 +195,7 @@ void RtLoop::cycle(std::int64_t due_ns) RT_SAFE {
   record_phase(Phase::kWake, wake_ns - due_ns);
 
   hear_requests();
+  take_offered_contact();
   TickInput& input = record_.input;
   input.device_fault = read(wake_ns);
   // After both were read: a loss of power stops the force in the same tick.

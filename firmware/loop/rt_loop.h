@@ -80,6 +80,7 @@ class RtLoop {
   /// Copies the pending request into this tick's input.
   void hear_requests() RT_SAFE;
   void answer_requests() RT_SAFE;
+  void take_offered_contact() RT_SAFE;
   bool arms_at_start() const RT_SAFE;
   Fault read(std::int64_t now_ns) RT_SAFE;
   void use_clutch(bool pressed) RT_SAFE;

@@ -27,6 +27,8 @@ const char* name_of(ChunkKind kind) {
       return "frames";
     case ChunkKind::kOperator:
       return "operators";
+    case ChunkKind::kVariant:
+      return "changes of the law";
   }
   return "unknown parts";
 }

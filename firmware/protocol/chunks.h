@@ -22,6 +22,7 @@ enum class ChunkKind : std::uint32_t {
   kTick = 3,      // a LoggedTick
   kFrame = 4,     // a Frame
   kOperator = 5,  // the tracked operator at the frame before it
+  kVariant = 6,   // JSON: the law's numbers from the next tick on
 };
 
 struct ChunkHeader {

@@ -45,6 +45,8 @@ constexpr std::array kTick{
     INPUT(skipped_periods, "skipped_periods", "before this tick"),
     INPUT(clutches, "clutches", "count since start: how often the clutch has opened"),
     INPUT(clutch_shift_m, "clutch_shift_m", "of the tool from the handle"),
+    INPUT(variant, "variant",
+          "count since start: changes of the law's numbers while it ran; the file has their text"),
     OUTPUT(wanted.force_N, "wanted_force_N", "of the law, before the gate"),
     OUTPUT(wanted.torque_Nm, "wanted_torque_Nm", "of the law, before the gate"),
     OUTPUT(written.force_N, "force_N", "written to the device"),

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 namespace tact::firmware::protocol {
 
 model::Result<TickLog> TickLog::open(const std::string& path) {
@@ -21,11 +23,27 @@ bool TickLog::next(LoggedTick& tick) {
   skipped_ = false;
   while (reader_.next(chunk_)) {
     skipped_ = skipped_ || reader_.skipped();
+    if (chunk_.kind == ChunkKind::kVariant) keep_variant();
     if (chunk_.kind != ChunkKind::kTick || !unpacker_.unpack(chunk_.content, &tick)) continue;
     ++good_;
     return true;
   }
   return false;
+}
+
+// Invalid JSON is as if it were not there: its ticks then have no numbers.
+void TickLog::keep_variant() {
+  const auto json = nlohmann::json::parse(chunk_.content, nullptr, false);
+  if (!json.is_object() || !json.value("variant", nlohmann::json()).is_number_unsigned()) return;
+  std::vector<std::string> set;
+  for (const auto& each : json.value("set", nlohmann::json::array()))
+    if (each.is_string()) set.push_back(each);
+  variants_[json["variant"]] = std::move(set);
+}
+
+const std::vector<std::string>* TickLog::variant(std::uint32_t number) const {
+  const auto found = variants_.find(number);
+  return found == variants_.end() ? nullptr : &found->second;
 }
 
 std::string TickLog::damage() {

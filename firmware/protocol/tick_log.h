@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
+#include <vector>
 
 #include "firmware/protocol/logged_tick.h"
 #include "firmware/protocol/run_file.h"
@@ -19,18 +21,23 @@ class TickLog {
   const std::vector<std::string>& missing() const { return unpacker_.missing(); }
   /// The next good tick; skips damaged ones. False at the end.
   bool next(LoggedTick& tick);
+  /// The law's numbers of the ticks with this `variant`, each KEY=VALUE; null if the file has them
+  /// not, or not yet.
+  const std::vector<std::string>* variant(std::uint32_t number) const;
   /// True if the last tick comes after damage.
   bool skipped() const { return skipped_; }
   /// Call after the last tick: empty, or the damage and the number of good ticks.
   std::string damage();
 
  private:
+  void keep_variant();
   TickLog(RunReader reader, Unpacker unpacker)
       : reader_(std::move(reader)), unpacker_(std::move(unpacker)) {}
 
   RunReader reader_;
   Unpacker unpacker_;
   Chunk chunk_;
+  std::map<std::uint32_t, std::vector<std::string>> variants_;
   std::uint64_t good_ = 0;
   bool skipped_ = false;
 };

@@ -10,7 +10,7 @@
 #include "hal/registry/open_device.h"
 #include "model/io/json.h"
 #include "model/reader/scene_text.h"
-#include "model/scene/laws.h"
+#include "model/scene/variant.h"
 
 namespace tact::firmware::run {
 
@@ -51,24 +51,25 @@ std::string devices_as_json(const std::vector<FoundPart>& parts) {
 
 std::string parameters_as_text(model::scene::Scene scene) {
   std::string text;
-  for (const model::Parameter& p : parameters_of(*model::scene::find_law(scene.law), scene).all) {
+  for (const auto& [key, p] : law_numbers(scene)) {
     const std::string_view unit = model::io::unit_of(p.key);
-    fmt::format_to(std::back_inserter(text), "{:<42} {:<10g} {} .. {}{}{}{}  {}\n",
-                   fmt::format("{}.{}", scene.law, p.key), p.value(), p.range.low, p.range.high,
-                   unit.empty() ? "" : " ", unit, p.count ? ", whole" : "", p.meaning);
+    fmt::format_to(std::back_inserter(text), "{:<42} {:<10g} {} .. {}{}{}{}  {}\n", key, p.value(),
+                   p.range.low, p.range.high, unit.empty() ? "" : " ", unit,
+                   p.count ? ", whole" : "", p.meaning);
   }
   return text;
 }
 
 std::string parameters_as_json(model::scene::Scene scene) {
   nlohmann::json list = nlohmann::json::array();
-  for (const model::Parameter& p : parameters_of(*model::scene::find_law(scene.law), scene).all)
-    list.push_back({{"key", fmt::format("{}.{}", scene.law, p.key)},
+  for (const auto& [key, p] : law_numbers(scene))
+    list.push_back({{"key", key},
                     {"unit", model::io::unit_of(p.key)},
                     {"value", p.value()},
                     {"low", p.range.low},
                     {"high", p.range.high},
                     {"whole", p.count != nullptr},
+                    {"live", p.number != nullptr},
                     {"meaning", p.meaning}});
   const nlohmann::json out{{"format", "tactd-parameters"},
                            {"version", 1},

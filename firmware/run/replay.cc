@@ -8,6 +8,7 @@
 #include "firmware/pc/rt_setup.h"
 #include "firmware/telemetry/force_hash.h"
 #include "model/scene/plan_file.h"
+#include "model/scene/variant.h"
 #include "model/time_ns.h"
 
 namespace tact::firmware::run {
@@ -28,6 +29,38 @@ std::optional<model::Error> check_header(const protocol::RunHeader& header, cons
   return std::nullopt;
 }
 
+/// Tissues with other numbers of the law, in the order of their use.
+class ReplayedVariants {
+ public:
+  explicit ReplayedVariants(const model::scene::Scene& scene) : scene_(scene) {}
+
+  std::optional<model::Error> use(std::uint32_t number, const protocol::TickLog& log,
+                                  const std::string& path, loop::Controller& controller) {
+    if (number == number_) return std::nullopt;
+    const auto* const set = log.variant(number);
+    if (set == nullptr)
+      return model::Error{fmt::format(
+          "{}: has no numbers of the law for its change {}; the ticks before it can be replayed "
+          "from a record that ends there",
+          path, number)};
+    auto made = make_variant(scene_, *set);
+    if (!made) return model::Error{fmt::format("{}: {}", path, made.error().message)};
+    auto contact = std::make_unique<model::contact::Contact>(made->tissue->contact_scene());
+    controller.use(*contact);
+    // The contact before it is no longer used, nor is its tissue.
+    contact_ = std::move(contact);
+    in_use_ = std::move(*made);
+    number_ = number;
+    return std::nullopt;
+  }
+
+ private:
+  const model::scene::Scene& scene_;
+  std::uint32_t number_ = 0;
+  model::scene::Variant in_use_;
+  std::unique_ptr<model::contact::Contact> contact_;
+};
+
 }  // namespace
 
 model::Result<ReplayOutcome> replay(const std::string& path, const model::scene::Scene& scene,
@@ -45,6 +78,7 @@ model::Result<ReplayOutcome> replay(const std::string& path, const model::scene:
   loop::Controller controller(
       tissue.contact_scene(), gate::Gate(header.limits, period_s, header.force_share),
       !header.non_rt, gate::GripGate::make(header.limits, period_s, header.force_share));
+  ReplayedVariants variants(scene);
   ReplayOutcome outcome;
   outcome.force_hash = model::kFnvStart;
   protocol::LoggedTick tick;
@@ -60,6 +94,7 @@ model::Result<ReplayOutcome> replay(const std::string& path, const model::scene:
       outcome.gap_before = tick.tick;
       break;
     }
+    if (auto error = variants.use(tick.input.variant, *log, path, controller)) return *error;
     const loop::TickOutput output = controller.tick(tick.input);
     outcome.force_hash = telemetry::hash_wrench(outcome.force_hash, output.written);
     // Bits, so that -0 and NaN count, too.

@@ -31,6 +31,7 @@ struct RunFacts {
   model::Fault fault = model::Fault::kNone;
   std::string trouble;                 // detail of the fault, from the device or the lines
   std::uint32_t refused_requests = 0;  // requests to arm or reset
+  std::uint32_t variants = 0;          // changes of the law's numbers, by tactctl set
   std::uint64_t force_hash = 0;        // equal for equal runs; 0 when not computed
   long resident_peak_kB = 0;
   std::size_t law_table_bytes = 0;

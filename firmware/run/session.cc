@@ -9,12 +9,11 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "firmware/console/request_handler.h"
 #include "firmware/console/say.h"
 #include "firmware/console/service_manager.h"
-#include "firmware/loop/release_schedule.h"
 #include "firmware/run/loop_executor.h"
 #include "firmware/run/loop_parts.h"
+#include "firmware/run/operator_service.h"
 #include "firmware/run/report.h"
 #include "firmware/run/start_text.h"
 #include "firmware/run/telemetry_setup.h"
@@ -26,8 +25,6 @@ namespace tact::firmware::run {
 namespace {
 
 using console::say;
-
-constexpr std::int64_t kStatusPeriod_ns = 200'000'000;
 
 int fail(const std::string& message, int status) {
   say(stderr, "tactd: {}\n", message);
@@ -50,7 +47,6 @@ class Session {
   std::optional<model::Error> open_call_filter();
   void run_real_time();
   void run_free();
-  void serve_operator(LoopExecutor& executor);
   // Includes a fault of the watch that no tick has reported.
   model::Fault last_fault() const {
     const model::Fault latched = parts_.controller->newest().fault;
@@ -86,6 +82,7 @@ class Session {
   std::optional<loop::RtLoop> loop_;
   loop::Requests requests_;
   std::unique_ptr<watch::CallFilter> filter_;
+  std::optional<Variants> variants_;
   ThreadCosts costs_;
 };
 
@@ -198,42 +195,19 @@ void Session::run_real_time() {
                          .rt = rt_,
                          .period_ns = period_ns(),
                          .hard_real_time = !non_rt_});
-  serve_operator(executor);
+  variants_.emplace(scene_, parts_, requests_, *telemetry_);
+  serve_operator({.scene = scene_,
+                  .parts = parts_,
+                  .signals = *operator_,
+                  .requests = requests_,
+                  .telemetry = *telemetry_,
+                  .black_box = black_box_.get(),
+                  .variants = *variants_,
+                  .loop_ticks = [this] { return loop_->progress().ticks(); },
+                  .period_ns = period_ns()},
+                 executor);
   executor.join();
   costs_ = executor.costs();
-}
-
-// The main thread while the loop runs: waits for signals and requests, and reports events.
-void Session::serve_operator(LoopExecutor& executor) {
-  console::OperatorView view(*parts_.device, *parts_.lines, requests_.arm_at_start.load(),
-                             scene_.path);
-  const auto control = console::open_control(scene_.path, view);
-  console::RequestHandler request_handler(
-      *operator_, requests_, view, [this] { return telemetry_->newest_frame(); }, control.get());
-  console::ServiceManager service;
-  const auto report_news = [&] {
-    if (const auto lost = telemetry_->lost_record())
-      view.report(lost->message + "; the loop goes on without its record");
-    if (black_box_ == nullptr) return;
-    for (const std::string& message : black_box_->news()) view.report(message);
-  };
-  while (!executor.ended()) {
-    const std::int64_t now_ns = monotonic_clock_.now_ns();
-    const std::int64_t until_ns = loop::next_half_way_ns(now_ns + kStatusPeriod_ns, period_ns());
-    request_handler.obey(until_ns - now_ns);
-    service.report({now_ns, view.why_not_arm().empty(), loop_->progress().ticks(), view.status()});
-    report_news();
-    if (!executor.hangs()) continue;
-    executor.leave_behind(1, [&] {
-      view.report(
-          "the loop does not come back, so tactd ends without it: switch the device's power off");
-      // The loop is lost; an error of a sink no longer matters.
-      static_cast<void>(telemetry_->stop());
-      view.show(telemetry_->newest_frame());
-      report_news();
-    });
-  }
-  view.end();
 }
 
 // Collects the final state of device, lines and threads, prints the report, and returns the status.
@@ -282,6 +256,7 @@ RunFacts Session::collect_facts(model::Fault fault, const std::string& trouble) 
           .fault = fault,
           .trouble = trouble,
           .refused_requests = requests_.refused.load(),
+          .variants = variants_ ? variants_->count() : 0,
           .force_hash = telemetry_->force_hash(),
           .resident_peak_kB = process.ru_maxrss,
           .law_table_bytes = parts_.tissue->law().memory_bytes(),

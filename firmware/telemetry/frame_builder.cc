@@ -210,8 +210,8 @@ void FrameBuilder::add_contact(const model::contact::SphereContact& sphere_conta
   const model::contact::Indentation in{.surface_point = sphere_contact.surface_point,
                                        .normal = sphere_contact.normal,
                                        .indentation_m = sphere_contact.indentation_m};
-  const std::size_t count = indentations_.profile(in, ring_m);
-  put(contact.tilt, indentations_.tilt(in));
+  const std::size_t count = indentations_->profile(in, ring_m);
+  put(contact.tilt, indentations_->tilt(in));
   for (std::size_t j = 0; j < count; ++j) contact.profile_m[j] = static_cast<float>(ring_m[j]);
 }
 

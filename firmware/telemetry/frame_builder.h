@@ -39,8 +39,10 @@ class FrameBuilder {
   /// `indentations` and `shapes` must outlive the builder, which solves profiles outside the loop.
   FrameBuilder(const model::contact::IndentationView& indentations, loop::ShapeSlot& shapes,
                bool non_rt)
-      : indentations_(indentations), shapes_(shapes), non_rt_(non_rt) {}
+      : indentations_(&indentations), shapes_(shapes), non_rt_(non_rt) {}
 
+  /// The tissue of the records from now on.
+  void use(const model::contact::IndentationView& indentations) { indentations_ = &indentations; }
   void add(const loop::TickRecord& record);
   bool has_news() const { return !tick_us_.empty(); }
   bool non_rt() const { return non_rt_; }
@@ -51,7 +53,7 @@ class FrameBuilder {
                    FrameContact& contact) const;
   void add_patch(FramePatch& patch);
 
-  const model::contact::IndentationView& indentations_;
+  const model::contact::IndentationView* indentations_;
   loop::ShapeSlot& shapes_;
   model::contact::PatchShape shape_;
   bool non_rt_;

@@ -2,6 +2,7 @@
 #include "firmware/telemetry/telemetry.h"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "firmware/loop/clock.h"
@@ -56,6 +57,7 @@ void Telemetry::run() {
 void Telemetry::drain() {
   while (ring_.pop(record_)) {
     // Every record goes to every sink; which ticks become a frame is decided in publish().
+    if (record_.input.variant != variant()) change_variant();
     builder_.add(record_);
     force_hash_ = hash_wrench(force_hash_, record_.output.written);
     if (sinks_.log) sinks_.log->add(chunk_of(LoggedTick::of(record_, builder_.non_rt())));
@@ -71,6 +73,27 @@ void Telemetry::drain() {
 std::optional<model::Error> Telemetry::lost_record() {
   const std::lock_guard lock(newest_mutex_);
   return std::exchange(lost_, std::nullopt);
+}
+
+void Telemetry::expect_variant(std::uint32_t variant, const std::vector<std::string>& set,
+                               const model::contact::IndentationView& indentations) {
+  const nlohmann::json numbers{{"variant", variant}, {"set", set}};
+  const std::lock_guard lock(newest_mutex_);
+  expected_.push_back(
+      {variant, chunk_of(protocol::ChunkKind::kVariant, numbers.dump()), &indentations});
+}
+
+// Before the first tick of the new tissue. One that was replaced before the loop took it is dropped.
+void Telemetry::change_variant() {
+  const std::lock_guard lock(newest_mutex_);
+  for (const Expected& expected : std::exchange(expected_, {})) {
+    if (expected.variant > record_.input.variant) expected_.push_back(expected);
+    if (expected.variant != record_.input.variant) continue;
+    builder_.use(*expected.indentations);
+    if (sinks_.log) sinks_.log->add(expected.chunk);
+    if (sinks_.recorder) sinks_.recorder->add_variant(expected.chunk);
+  }
+  variant_.store(record_.input.variant, std::memory_order_release);
 }
 
 // A fault from the watch goes into the next frame. If the loop no longer ticks, the last frame is

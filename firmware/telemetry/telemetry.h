@@ -22,6 +22,8 @@ class Recorder {
   virtual ~Recorder() = default;
   virtual void add(const loop::TickRecord& record) = 0;
   virtual void add(const Frame& frame) = 0;
+  /// Other numbers of the law from the next tick on, as a chunk.
+  virtual void add_variant(const std::string& chunk) = 0;
   /// A fault that no tick can report, because the loop no longer ticks. kNone: no fault.
   virtual void stands(model::Fault fault) = 0;
   /// work(): called at each frame time. finish(): called at the end; returns when all is on disk.
@@ -62,6 +64,13 @@ class Telemetry {
   void drain();
   void publish();
 
+  /// Call before the loop is offered the tissue with these numbers, each KEY=VALUE. `indentations`
+  /// must stay until variant() is a later one.
+  void expect_variant(std::uint32_t variant, const std::vector<std::string>& set,
+                      const model::contact::IndentationView& indentations);
+  /// Of the last record that was read.
+  std::uint32_t variant() const { return variant_.load(std::memory_order_acquire); }
+
   Frame newest_frame() const;
   /// The tick log's error, returned once, as soon as it has lost data. Any thread.
   std::optional<model::Error> lost_record();
@@ -71,6 +80,7 @@ class Telemetry {
 
  private:
   void run();
+  void change_variant();
   std::optional<Frame> next_frame();
   model::Fault watch_fault() const {
     return watch_fault_ == nullptr ? model::Fault::kNone : watch_fault_->load();
@@ -86,6 +96,13 @@ class Telemetry {
   mutable std::mutex newest_mutex_;  // the loop never takes it
   Frame newest_;
   std::optional<model::Error> lost_;  // guarded by newest_mutex_
+  struct Expected {
+    std::uint32_t variant;
+    std::string chunk;
+    const model::contact::IndentationView* indentations;
+  };
+  std::vector<Expected> expected_;  // guarded by newest_mutex_
+  std::atomic<std::uint32_t> variant_{0};
   bool reported_lost_ = false;
   loop::TickRecord record_;
   std::uint64_t force_hash_;

@@ -67,7 +67,7 @@ class Answers {
     boost::asio::async_read_until(input_, boost::asio::dynamic_buffer(text_, kMaxLine_bytes), '\n',
                                   [this](boost::system::error_code wrong, std::size_t bytes) {
                                     if (wrong) return;  // no program can answer any more
-                                    picker_.refuse(text_.substr(0, bytes - 1));
+                                    picker_.answer(text_.substr(0, bytes - 1));
                                     text_.erase(0, bytes);
                                     read_next();
                                   });

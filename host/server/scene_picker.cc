@@ -17,6 +17,7 @@ using model::Error;
 using model::io::text_of;
 using nlohmann::json;
 
+constexpr std::string_view kDone = "done ";
 constexpr std::string_view kRemedy = "write it again: tactd SCENE --parameters --json FILE";
 
 bool is_offer(const json& reported) {
@@ -80,11 +81,35 @@ void ScenePicker::ask(const json& request) {
   } else {
     answer_.clear();
     asked_ = choice;
-    std::string line = "request " + choice.scene;
-    for (const auto& [key, value] : choice.set.items()) line += " " + key + "=" + text_of(value);
-    send_(line);
+    send_(line_of(choice));
   }
   publish();
+}
+
+/// The scene runs, and all that differs may change while it does.
+bool ScenePicker::is_set_live(const Choice& choice) const {
+  if (choice.scene != shown_.scene || choice.set == shown_.set) return false;
+  return std::ranges::all_of(offers_.at(choice.scene)["parameters"], [&](const json& row) {
+    const std::string key = row["key"];
+    return row.value("live", false) ||
+           choice.set.value(key, row["value"]) == shown_.set.value(key, row["value"]);
+  });
+}
+
+std::string ScenePicker::line_of(const Choice& choice) const {
+  const bool is_live = is_set_live(choice);
+  std::string line = (is_live ? "set " : "request ") + choice.scene;
+  if (is_live) {
+    for (const json& row : offers_.at(choice.scene)["parameters"]) {
+      const std::string key = row["key"];
+      if (row.value("live", false))
+        line += fmt::format(" {}={}", key, text_of(choice.set.value(key, row["value"])));
+    }
+  } else {
+    for (const auto& [key, value] : choice.set.items())
+      line += fmt::format(" {}={}", key, text_of(value));
+  }
+  return line;
 }
 
 bool ScenePicker::is_simulated() const { return view_.has_scene() && view_.header().simulated; }
@@ -92,6 +117,7 @@ bool ScenePicker::is_simulated() const { return view_.has_scene() && view_.heade
 void ScenePicker::begin() {
   const std::string& name = view_.header().scene_name;
   const auto asked = std::exchange(asked_, std::nullopt);
+  note_.clear();
   if (asked) answer_.clear();
   if (asked && asked->scene == name)
     shown_ = *asked;
@@ -100,9 +126,12 @@ void ScenePicker::begin() {
   publish();
 }
 
-void ScenePicker::refuse(const std::string& reason) {
-  asked_.reset();
-  answer_ = reason;
+void ScenePicker::answer(const std::string& line) {
+  const auto asked = std::exchange(asked_, std::nullopt);
+  const bool is_done = asked && line.starts_with(kDone);
+  if (is_done) shown_ = *asked;
+  note_ = is_done ? line.substr(kDone.size()) : "";
+  answer_ = is_done ? "" : line;
   publish();
 }
 
@@ -111,7 +140,8 @@ void ScenePicker::publish() {
   view_.report_picker({{"scene", shown_.scene},
                        {"set", shown_.set},
                        {"asked", asked_ ? asked_->scene : ""},
-                       {"answer", answer_}});
+                       {"answer", answer_},
+                       {"note", note_}});
 }
 
 }  // namespace tact::host::server

@@ -5,8 +5,12 @@
 //     {"request": {"scene": "heart", "set": {"disc_stack.layers": 12}}}
 //
 // tact-view starts and sets nothing: a request becomes a line for the program that started it
-// (tools/run), which starts tactd again or answers with the reason. Only tactd checks the numbers;
-// here only the names are compared with the offered ones. One request at a time.
+// (tools/run), which starts tactd again, or sets the numbers while it runs, or answers with the
+// reason. Only tactd checks the numbers; here only the names are compared with the offered ones.
+// One request at a time.
+//
+//     request SCENE KEY=VALUE ...   another start; keys that are not named are as shipped
+//     set SCENE KEY=VALUE ...       all numbers that may change while the scene runs
 #pragma once
 
 #include <functional>
@@ -35,8 +39,9 @@ class ScenePicker {
   void ask(const nlohmann::json& request);
   /// Call after LiveView::begin: compares the scene that now runs with the request.
   void begin();
-  /// The program that started tact-view refuses the request, with the reason.
-  void refuse(const std::string& reason);
+  /// The answer of the program that started tact-view: "done" and what it says about numbers that
+  /// it has set, or the reason of a refusal.
+  void answer(const std::string& line);
 
  private:
   struct Choice {
@@ -45,6 +50,8 @@ class ScenePicker {
   };
   bool is_simulated() const;
   std::optional<model::Error> check(const Choice& choice) const;
+  bool is_set_live(const Choice& choice) const;
+  std::string line_of(const Choice& choice) const;
   void publish();
 
   LiveView& view_;
@@ -53,6 +60,7 @@ class ScenePicker {
   Choice shown_;                                  // the scene that runs
   std::optional<Choice> asked_;                   // the pending request
   std::string answer_;                            // why the last request was refused; or empty
+  std::string note_;                              // about the numbers that were set last
 };
 
 }  // namespace tact::host::server

@@ -44,6 +44,23 @@ void Contact::reset() RT_SAFE {
   closed_ = closing_ = is_lost_ = was_unsettled_ = false;
 }
 
+bool Contact::is_clear() const RT_SAFE {
+  return std::all_of(
+      sphere_.begin(), sphere_.begin() + static_cast<std::ptrdiff_t>(contacts().size()),
+      [](const Sphere& sphere)
+          RT_SAFE { return !sphere.is_in_contact() && sphere.reported_N == Vec3{}; });
+}
+
+// Also the clearances: they depend on the surface and on the spheres only.
+void Contact::continue_from(const Contact& before) RT_SAFE {
+  goal_m_ = before.goal_m_;
+  sphere_ = before.sphere_;
+  contact_ = before.contact_;
+  closed_ = before.closed_;
+  tool_before_ = before.tool_before_;
+  blade_tool_before_ = before.blade_tool_before_;
+}
+
 // Positions of spheres and blade become unknown, so that the blade cuts nothing in between.
 void Contact::forget() RT_SAFE {
   for (Sphere& sphere : spheres()) {

@@ -63,6 +63,11 @@ class Contact {
   ContactResponse render_force(const Tool& tool, bool blade_may_cut) RT_SAFE;
   /// Ends all contacts, as at the start.
   void reset() RT_SAFE;
+  /// No sphere is in contact, and no force is left to ramp down.
+  bool is_clear() const RT_SAFE;
+  /// Begins where `before` is, which is clear and has the same surface and spheres: a tissue with
+  /// other numbers takes the place of one that nothing touches.
+  void continue_from(const Contact& before) RT_SAFE;
 
   /// See ContactLaw::shape.
   bool shape(PatchShape& out) RT_SAFE { return scene_.law->shape(out); }

@@ -71,6 +71,7 @@ struct Scene {
   Vec3 hand_site_m;  // the point that the simulated hand touches, W
   Vec3 hand_inward;  // its way in, unit, W
   Limits limits;
+  std::vector<std::string> live;  // keys that may change on hardware while it runs (variant.h)
   double frame_rate_Hz = 0.0;
   std::string hash;              // of text, overrides, meshes and a map that is felt, 16 hex digits
   mesh::SurfaceMesh organ_mesh;  // in W, m

@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "model/scene/scene_limits.h"
+#include "model/scene/variant.h"
 
 namespace tact::model::scene {
 namespace {
@@ -124,6 +126,24 @@ void visit_hand(Keys& k, SceneText& out) {
   script.home_position = k.position_of("home_m");
 }
 
+void visit_live(Keys& k, Scene& scene) {
+  constexpr CountRange kCount{0, 16};
+  k.entries("live", kCount, "a number that may change on hardware while it runs: tactctl SCENE set",
+            [&](Keys& live) {
+              live.text("key", "of a law, or elastic.youngs_modulus_Pa", scene.live.emplace_back());
+            });
+  const std::vector<LawNumber> numbers = law_numbers(scene);
+  const auto may_change = [&numbers](const std::string& key) {
+    return std::ranges::any_of(numbers,
+                               [&](const LawNumber& n) { return n.is_live() && n.key == key; });
+  };
+  for (const std::string& key : scene.live)
+    if (!may_change(key))
+      k.refuse({"live"}, fmt::format("live.key = \"{}\" is no number of the law in use; "
+                                     "tactd SCENE --parameters lists those",
+                                     key));
+}
+
 }  // namespace
 
 void visit_scene(Keys& k, DeviceKeys device_keys, SceneText& out) {
@@ -134,6 +154,7 @@ void visit_scene(Keys& k, DeviceKeys device_keys, SceneText& out) {
   visit_laws(k, scene);
   visit_law_options(k, scene);
   visit_truth(k, scene);
+  visit_live(k, scene);
   k.section("organ", "what is touched", [&](Keys& organ) {
     visit_mesh(organ, out.organ_mesh);
     organ.vector("orientation_deg", {-360.0, 360.0},

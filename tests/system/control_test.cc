@@ -62,6 +62,42 @@ TEST_F(Control, DisarmsWithoutEndingItAndItCanBeArmedAgain) {
   EXPECT_EQ(report("a").at("refused_requests"), 0);
 }
 
+TEST_F(Control, SetsNumbersOfTheLawWhileItRunsAndTheRecordReplays) {
+  const Outcome out = in_bash(
+      program_path("tactd") +
+      " liver.toml --seconds 20 --no-telemetry --no-black-box --record run.tactlog "
+      "--json a.json 2>a.told & a=$!\n"
+      "until ctl liver.toml status | grep -q armed; do sleep .1; done\n"
+      "ctl liver.toml set elastic.youngs_modulus_Pa 4800 rhombus.growth=6.5\n"
+      "until grep -q 'elastic.youngs_modulus_Pa=4800 rhombus.growth=6.5: set' a.told; do sleep .1; "
+      "done\n"
+      "ctl liver.toml set elastic.youngs_modulus_Pa=4500\n"
+      "until grep -q 'rhombus.growth=6.5 elastic.youngs_modulus_Pa=4500: set' a.told; do sleep .1; "
+      "done\n"
+      "ctl liver.toml set elastic.youngs_modulus_Pa=9e8; ctl liver.toml set limits.force_N=4\n"
+      "ctl liver.toml stop; wait $a; " +
+      program_path("tactd") + " liver.toml --replay run.tactlog");
+  EXPECT_TRUE(has(out, " 0 differ")) << out.output;
+  EXPECT_TRUE(has(out, "not set: limits.force_N cannot change while the scene runs")) << out.output;
+  ASSERT_FALSE(report("a").is_discarded()) << out.output;
+  EXPECT_EQ(report("a").at("variants"), 2);
+  EXPECT_EQ(report("a").at("refused_requests"), 2);
+}
+
+TEST_F(Control, OnHardwareSetsOnlyWhatTheSceneDeclaresLive) {
+  const Outcome out = in_bash(
+      "cp liver.toml live.toml; printf '\\n[[live]]\\nkey = \"elastic.youngs_modulus_Pa\"\\n' "
+      ">> live.toml\n"
+      "start a live.toml; a=$!; ready a; ctl live.toml set rhombus.growth=6.5\n"
+      "ctl live.toml set elastic.youngs_modulus_Pa=4800; ctl live.toml stop; wait $a");
+  EXPECT_TRUE(has(out,
+                  "not set: the device is hardware, and the scene has no [[live]] with key = "
+                  "\"rhombus.growth\"\nstatus 1"))
+      << out.output;
+  ASSERT_FALSE(report("a").is_discarded()) << out.output;
+  EXPECT_EQ(report("a").at("variants"), 1) << out.output;
+}
+
 TEST_F(Control, RefusesWithTheReason) {
   const Outcome out = in_bash(
       "start a liver.toml; a=$!; ready a; ctl liver.toml reset\n"

@@ -20,7 +20,9 @@ constexpr const char* kHeart = R"({"format":"tactd-parameters","version":1,"scen
   {"key":"disc_stack.poisson_ratio","unit":"","value":0.3,"low":0,"high":0.495,"whole":false,
    "meaning":"mu"}]})";
 constexpr const char* kLiver =
-    R"({"format":"tactd-parameters","scene":"liver","simulated":true,"parameters":[]})";
+    R"({"format":"tactd-parameters","scene":"liver","simulated":true,"parameters":[
+  {"key":"rhombus.growth","value":6.5,"live":true},{"key":"rhombus.units","value":10,"live":false},
+  {"key":"elastic.youngs_modulus_Pa","value":5000,"live":true}]})";
 
 class Picker : public ::testing::Test {
  protected:
@@ -67,6 +69,25 @@ TEST_F(Picker, SendsAGoodRequestAndTellsWhenItRuns) {
   EXPECT_EQ(reported()["set"]["disc_stack.layers"], 12);
 }
 
+TEST_F(Picker, SetsNumbersOfTheSceneThatRunsWithoutAnotherStart) {
+  show("liver", true);
+  ask(R"({"scene":"liver","set":{"elastic.youngs_modulus_Pa":4000}})");
+  EXPECT_EQ(lines_.back(), "set liver rhombus.growth=6.5 elastic.youngs_modulus_Pa=4000");
+  EXPECT_EQ(reported()["asked"], "liver");
+  picker_.answer("done elastic.youngs_modulus_Pa=4000: set");
+  EXPECT_EQ(reported()["asked"], "");
+  EXPECT_EQ(reported()["note"], "elastic.youngs_modulus_Pa=4000: set");
+  EXPECT_EQ(reported()["set"]["elastic.youngs_modulus_Pa"], 4000);
+  ask(R"({"scene":"liver","set":{}})");
+  EXPECT_EQ(lines_.back(), "set liver rhombus.growth=6.5 elastic.youngs_modulus_Pa=5000")
+      << "as shipped again";
+  picker_.answer("not set: too stiff");
+  EXPECT_EQ(answer(), "not set: too stiff");
+  EXPECT_EQ(reported()["set"]["elastic.youngs_modulus_Pa"], 4000) << "what runs";
+  ask(R"({"scene":"liver","set":{"elastic.youngs_modulus_Pa":4000,"rhombus.units":9}})");
+  EXPECT_EQ(lines_.back(), "request liver elastic.youngs_modulus_Pa=4000 rhombus.units=9");
+}
+
 TEST_F(Picker, RefusesWhatIsNotOfferedByName) {
   show("liver", true);
   for (const auto& [request, reason] :
@@ -108,7 +129,7 @@ TEST_F(Picker, SendsOneRequestAtATime) {
 TEST_F(Picker, TellsWhyARequestWasRefusedAndTakesTheNext) {
   show("liver", true);
   ask(R"({"scene":"heart"})");
-  picker_.refuse("tactd: too stiff \xff");
+  picker_.answer("tactd: too stiff \xff");
   EXPECT_EQ(answer(), "tactd: too stiff \xef\xbf\xbd") << "what is no UTF-8 is replaced";
   EXPECT_EQ(reported()["scene"], "liver");
   EXPECT_EQ(reported()["asked"], "");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // scene_picker.ts - another scene, other numbers of its law. It asks; who has started the simulation
-// starts tactd again, or says why not. What is good is decided there, not here.
+// starts tactd again, or sets the numbers while it runs, or says why not. What is good is decided there,
+// not here.
 
 import { by_id } from "../document/dom";
 import type { OfferedScene, Parameter, Picker, SceneRequest } from "../link/protocol";
@@ -27,7 +28,7 @@ class Row {
   constructor(
     readonly of: Parameter,
     value: number,
-    readonly runs: number,
+    public runs: number,
   ) {
     const { name } = this;
     const small = element("small", {
@@ -84,6 +85,7 @@ export class ScenePicker {
   private heard = ""; // the answer that is known already
   private refusal = ""; // why the last request came to nothing, until something is edited
   private elsewhere = false; // another page chose what runs
+  private waits = false; // an edit, for the answer to the request before it
   private rows: Row[] = [];
   private readonly select = by_id<HTMLSelectElement>("requested_scene");
 
@@ -96,6 +98,10 @@ export class ScenePicker {
       this.edited();
     });
     by_id("parameters").addEventListener("input", () => this.edited());
+    // A slider that was let go, or a field that was left.
+    by_id("parameters").addEventListener("change", () => {
+      if (this.is_live()) this.apply();
+    });
     by_id("request").addEventListener("submit", (event) => {
       event.preventDefault();
       this.apply();
@@ -129,13 +135,28 @@ export class ScenePicker {
     if (runs !== this.shown) {
       this.elsewhere = this.shown !== "" && runs !== this.requested;
       this.shown = runs;
-      this.select.value = picker.scene;
-      this.show(picker.set);
+      // What this page asked for stands there already, and perhaps the next edit.
+      if (runs === this.requested && this.select.value === picker.scene)
+        for (const row of this.rows) row.runs = picker.set[row.of.key] ?? row.of.value;
+      else {
+        this.select.value = picker.scene;
+        this.show(picker.set);
+      }
     }
     if (picker.answer !== this.heard) this.refusal = this.heard = picker.answer;
-    if (picker.asked) this.say(`starting ${picker.asked} …`);
+    if (picker.asked) this.say(`asked for ${picker.asked} …`);
     else if (this.refusal) this.say(this.refusal, "bad");
     else this.say(this.words(picker));
+    if (!picker.asked && this.waits) {
+      this.waits = false;
+      this.apply();
+    }
+  }
+
+  /** Only numbers that may change while the scene runs differ from those that it has. */
+  private is_live(): boolean {
+    const changed = this.rows.filter((row) => row.value !== row.runs);
+    return this.select.value === this.now?.scene && changed.length > 0 && changed.every((row) => row.of.live);
   }
 
   /** What runs, or what is not asked for yet. */
@@ -144,6 +165,7 @@ export class ScenePicker {
     const edits = this.rows.filter((row) => row.value !== row.runs).length;
     if (edits > 0) return `${edits} ${edits === 1 ? "change" : "changes"} not applied yet`;
     const changed = Object.keys(picker.set).length;
+    if (picker.note && !this.elsewhere) return picker.note;
     const runs = `${picker.scene} runs, ${changed === 0 ? "as shipped" : `${changed} changed`}`;
     return this.elsewhere ? `the scene was chosen elsewhere: ${runs}` : runs;
   }
@@ -166,6 +188,10 @@ export class ScenePicker {
   private apply(): void {
     this.refusal = this.rows.find((row) => Number.isNaN(row.value))?.correct() ?? "";
     if (this.refusal) return this.tell();
+    if (this.now?.asked) {
+      this.waits = true;
+      return;
+    }
     const changed = this.rows.filter((row) => row.value !== row.of.value);
     const request = { scene: this.select.value, set: Object.fromEntries(changed.map((row) => [row.of.key, row.value])) };
     this.requested = text_of(request);

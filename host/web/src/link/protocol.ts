@@ -100,6 +100,7 @@ export interface Parameter {
   low: number;
   high: number;
   whole: boolean;
+  live: boolean; // may change while the scene runs
   meaning: string;
 }
 
@@ -119,7 +120,8 @@ export interface SceneRequest {
 /** What runs, what was asked for and has not come yet, why the last request was refused. */
 export interface Picker extends SceneRequest {
   asked: string;
-  answer: string;
+  answer: string; // why the last request was refused
+  note: string; // about the numbers that were set last
 }
 
 export interface Status {

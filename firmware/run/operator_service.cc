@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/run/operator_service.h"
+
+#include "firmware/console/request_handler.h"
+#include "firmware/console/service_manager.h"
+#include "firmware/loop/clock.h"
+#include "firmware/loop/release_schedule.h"
+
+namespace tact::firmware::run {
+namespace {
+
+constexpr std::int64_t kStatusPeriod_ns = 200'000'000;
+
+}  // namespace
+
+void serve_operator(const ServiceParts& s, LoopExecutor& executor) {
+  console::OperatorView view(*s.parts.device, *s.parts.lines, s.requests.arm_at_start.load(),
+                             s.scene.path);
+  const auto control = console::open_control(s.scene.path, view);
+  const auto set = [&](console::ControlRequest request, const std::string& numbers) {
+    if (const auto told = s.variants.ask(std::move(request), numbers)) view.report(*told);
+  };
+  console::RequestHandler request_handler(
+      s.signals, s.requests, view, [&s] { return s.telemetry.newest_frame(); }, control.get(),
+      console::pause_a_moment, set);
+  console::ServiceManager service;
+  loop::MonotonicClock clock;
+  const auto report_news = [&] {
+    if (const auto told = s.variants.work()) view.report(*told);
+    if (const auto lost = s.telemetry.lost_record())
+      view.report(lost->message + "; the loop goes on without its record");
+    if (s.black_box == nullptr) return;
+    for (const std::string& message : s.black_box->news()) view.report(message);
+  };
+  while (!executor.ended()) {
+    const std::int64_t now_ns = clock.now_ns();
+    const std::int64_t until_ns = loop::next_half_way_ns(now_ns + kStatusPeriod_ns, s.period_ns);
+    request_handler.obey(until_ns - now_ns);
+    service.report({now_ns, view.why_not_arm().empty(), s.loop_ticks(), view.status()});
+    report_news();
+    if (!executor.hangs()) continue;
+    executor.leave_behind(1, [&] {
+      view.report(
+          "the loop does not come back, so tactd ends without it: switch the device's power off");
+      // The loop is lost; an error of a sink no longer matters.
+      static_cast<void>(s.telemetry.stop());
+      view.show(s.telemetry.newest_frame());
+      report_news();
+    });
+  }
+  view.end();
+}
+
+}  // namespace tact::firmware::run

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// variants.h - changes the law's numbers while the loop runs, at the request of a person.
+//
+// An ordinary thread makes the tissue with the new numbers and checks it as at the start. The loop
+// takes it in one tick in which the tool touches nothing (Requests::offered), so that no force
+// steps. On hardware only the keys of the scene's [[live]] may change.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <list>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "firmware/console/control_socket.h"
+#include "firmware/loop/controller.h"
+#include "firmware/loop/requests.h"
+#include "firmware/run/loop_parts.h"
+#include "firmware/telemetry/telemetry.h"
+#include "model/scene/variant.h"
+
+namespace tact::firmware::run {
+
+class Variants {
+ public:
+  /// All of these outlive it. The destructor is called after the loop has ended.
+  Variants(const model::scene::Scene& scene, const LoopParts& parts, loop::Requests& requests,
+           telemetry::Telemetry& telemetry);
+  ~Variants();
+  Variants(const Variants&) = delete;
+  Variants& operator=(const Variants&) = delete;
+
+  /// Takes "KEY=VALUE KEY=VALUE" and answers now, if it is refused, with a report for the operator;
+  /// or in a later work(). Keys that are not named keep what they are.
+  std::optional<std::string> ask(console::ControlRequest request, const std::string& set);
+  /// Offers what is made and answers the request. Returns a report for the operator, or nothing.
+  std::optional<std::string> work();
+  /// Tissues that were offered to the loop.
+  std::uint32_t count() const { return count_; }
+
+ private:
+  struct Made {
+    explicit Made(model::scene::Variant made)
+        : variant(std::move(made)),
+          contact{0, model::contact::Contact(variant.tissue->contact_scene())} {}
+    model::scene::Variant variant;
+    loop::OfferedContact contact;
+  };
+  using Outcome = model::Result<std::unique_ptr<Made>>;
+
+  std::optional<std::string> why_not(const std::vector<std::string>& set) const;
+  std::string refuse(const console::ControlRequest& request, const std::string& why) const;
+  void run();
+  Outcome make(const std::vector<std::string>& set) const;
+  console::ControlRequest take_waiting();
+  void offer(std::unique_ptr<Made> made);
+  void forget_old();
+
+  const model::scene::Scene& scene_;
+  const LoopParts& parts_;
+  loop::Requests& requests_;
+  telemetry::Telemetry& telemetry_;
+  std::vector<std::string> set_;    // of the newest tissue, each KEY=VALUE
+  std::vector<std::string> asked_;  // in work
+  std::optional<console::ControlRequest> waiting_;
+  std::uint32_t count_ = 0;                // tissues offered so far
+  bool is_in_work_ = false;                // the numbers that waiting_ asked for
+  bool is_offered_ = false;                // numbers that are not reported as used yet
+  int turns_left_ = 0;                     // until waiting_ is answered although the tool touches
+  std::list<std::unique_ptr<Made>> kept_;  // offered, and those that telemetry still reads
+
+  std::mutex mutex_;  // guards the rest; the loop never takes it
+  std::condition_variable changed_;
+  std::optional<std::vector<std::string>> job_;
+  std::optional<Outcome> outcome_;
+  bool ends_ = false;
+  std::thread thread_;
+};
+
+}  // namespace tact::firmware::run
