@@ -48,7 +48,7 @@ class Session {
   std::optional<model::Error> open();
   std::optional<model::Error> open_telemetry();
   std::optional<model::Error> open_call_filter();
-  void run_real_time();
+  std::optional<model::Error> run_real_time();
   void run_free();
   void serve_operator(LoopExecutor& executor);
   // Includes a fault of the watch that no tick has reported.
@@ -118,8 +118,8 @@ int Session::run() {
   requests_.arm_at_start.store(options_.arm || arms_itself);
   if (options_.free_run)
     run_free();
-  else
-    run_real_time();
+  else if (const auto error = run_real_time())
+    return fail(error->message, 2);
   return report();
 }
 
@@ -186,9 +186,9 @@ void Session::run_free() {
   loop_->release_device();
 }
 
-void Session::run_real_time() {
+std::optional<model::Error> Session::run_real_time() {
   say(stderr, "tactd: limits {} (the page shows them too)\n", parts_.limits_checksum);
-  telemetry_->start();
+  if (auto error = telemetry_->start()) return error;
   LoopExecutor executor({.turns = {{loop_->progress(), [this] { loop_->run(); }}},
                          .device = *parts_.device,
                          .lines = *parts_.lines,
@@ -199,8 +199,9 @@ void Session::run_real_time() {
                          .period_ns = period_ns(),
                          .hard_real_time = !non_rt_});
   serve_operator(executor);
-  executor.join();
+  auto error = executor.join();
   costs_ = executor.costs();
+  return error;
 }
 
 // The main thread while the loop runs: waits for signals and requests, and reports events.
