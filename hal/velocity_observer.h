@@ -19,21 +19,24 @@ namespace tact::hal {
 
 using model::Vec3;
 
+/// Chosen: five quanta of 0.0236 mm at 4 kHz, and no hand's next millisecond.
+inline constexpr double kJump_mps = 0.5, kJump_radps = 10.0;
+
 class VelocityObserver {
  public:
-  /// A step larger than jump_m between prediction and sample is a new start, not a motion.
-  VelocityObserver(double bandwidth_Hz, double jump_m)
-      : bandwidth_Hz_(bandwidth_Hz), jump_m_(jump_m) {}
+  /// Where a step differs from the prediction by more than jump_mps, v is the whole step over T.
+  VelocityObserver(double bandwidth_Hz, double jump_mps)
+      : bandwidth_Hz_(bandwidth_Hz), jump_mps_(jump_mps) {}
 
-  /// Velocity after a sample taken elapsed_s after the one before. A first sample, a jump or a NaN
-  /// gives zero; elapsed_s of zero keeps the last value.
+  /// Velocity after a sample taken elapsed_s after the one before. A first sample or a NaN gives
+  /// zero; elapsed_s of zero keeps the last value.
   Vec3 step(const Vec3& position_m, double elapsed_s) RT_SAFE;
 
   void reset() RT_SAFE { started_ = false, velocity_mps_ = {}; }
 
  private:
   double bandwidth_Hz_;
-  double jump_m_;
+  double jump_mps_;
   bool started_ = false;
   Vec3 position_m_;
   Vec3 velocity_mps_;

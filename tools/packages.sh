@@ -149,7 +149,7 @@ packages_of() {
     layering) echo python3=python3 git=git shellcheck=shellcheck pyflakes3=pyflakes3 pycodestyle=pycodestyle optional:similarity-tester=sim_c++ ;;
     spin) echo spin python3=python3 gcc=gcc ;;
     page) echo "${BUILD_PACKAGES[@]}" "${PAGE_PACKAGES[@]}" ;;
-    build | tests | vectors) echo "${BUILD_PACKAGES[@]}" "${tests[@]}" python3=python3 ;;
+    build | tests | vectors | failing) echo "${BUILD_PACKAGES[@]}" "${tests[@]}" python3=python3 ;;
     browser) echo "${BUILD_PACKAGES[@]}" "${PAGE_PACKAGES[@]}" "${tests[@]}" chromium stunnel4=stunnel openssl=openssl python3-numpy ;;
     run) echo "${BUILD_PACKAGES[@]}" ;;
     size) echo "${BUILD_PACKAGES[@]}" libgtest-dev "${clang[@]}" llvm-22 python3=python3 ;;

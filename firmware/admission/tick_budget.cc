@@ -8,11 +8,11 @@
 #include <limits>
 #include <memory>
 #include <numbers>
-#include <thread>
 #include <vector>
 
 #include "firmware/loop/clock.h"
 #include "firmware/loop/controller.h"
+#include "hal/thread.h"
 #include "model/scene/scene_strokes.h"
 #include "model/time_ns.h"
 
@@ -130,12 +130,14 @@ model::Result<TimeMargin> check_budget(const model::scene::Scene& scene,
   margin.tail_counts = hard_real_time.has_value();
   margin.budget_us = scene.tolerance ? scene.tolerance->tick_budget_us : 0.5e6 / scene.rate_Hz;
   // In a separate thread, which keeps its priority, core and flushed denormals to itself.
-  std::thread([&] {
+  auto thread = hal::start_thread("tact-budget", [&] {
     std::vector<pc::Shortfall> known;  // probe_rt_threads has reported them
     if (hard_real_time) pc::enter_rt_thread(*hard_real_time, known);
     pc::flush_denormals();
     margin.measured = measure_tick(scene, twin, (*law)->range().press_m);
-  }).join();
+  });
+  if (!thread) return thread.error();
+  thread->join();
   margin.checked_us = margin.tail_counts ? margin.measured.p999_us : margin.measured.median_us;
   if (margin.checked_us <= margin.budget_us) return margin;
   return model::Error{fmt::format(

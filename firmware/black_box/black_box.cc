@@ -3,18 +3,41 @@
 
 #include <fmt/format.h>
 
+#include <new>
+#include <utility>
+
 namespace tact::firmware::black_box {
 
 BlackBox::BlackBox(BlackBoxRun run, double rate_Hz, double frame_rate_Hz)
     : run_(std::move(run)),
       ticks_(static_cast<std::size_t>(kKeep_s * rate_Hz)),
       frames_(static_cast<std::size_t>(kKeep_s * frame_rate_Hz)),
-      ticks_after_(static_cast<std::uint64_t>(kAfter_s * rate_Hz)) {}
+      ticks_after_(static_cast<std::uint64_t>(kAfter_s * rate_Hz)),
+      spare_(kSpare_bytes, 1) {
+  // Touched, too: what a fault needs is there before the loop.
+  ticks_.reserve(kept_.ticks);
+  frames_.reserve(kept_.frames);
+  news_.reserve(kMaxNews);
+}
 
-BlackBox::~BlackBox() { finish(); }
+model::Result<std::unique_ptr<BlackBox>> BlackBox::make(BlackBoxRun run, double rate_Hz,
+                                                        double frame_rate_Hz) {
+  std::unique_ptr<BlackBox> box(new BlackBox(std::move(run), rate_Hz, frame_rate_Hz));
+  auto thread = hal::start_thread("tact-box", [&box = *box] { box.keep_writing(); });
+  if (!thread) return thread.error();
+  box->writer_ = std::move(*thread);
+  return box;
+}
+
+BlackBox::~BlackBox() {
+  if (!writer_.joinable()) return;
+  finish();
+  ending_ = true;
+  due_.release();
+}
 
 void BlackBox::add(const loop::TickRecord& record) {
-  ticks_.add(protocol::LoggedTick::of(record, run_.header.non_rt));
+  ticks_.add(protocol::LoggedTick::of(record, run_.non_rt));
   if (to_wait_ > 0) --to_wait_;
   const model::Fault fault = record.output.fault;
   // A fault during the 0.25 s of an earlier one goes into the same file, with its ticks.
@@ -34,41 +57,63 @@ void BlackBox::stands(model::Fault fault) {
 
 void BlackBox::work() {
   // While a file is being written, the next one stays pending and this thread continues.
-  if (waiting_ == model::Fault::kNone || to_wait_ > 0 || writing_.load()) return;
-  // The writer has finished (writing_), so join() returns almost at once.
-  if (writer_.joinable()) writer_.join();
-  writing_.store(true);
+  if (waiting_ == model::Fault::kNone || to_wait_ > 0 || !idle_.try_acquire()) return;
   // Copied in this thread, because the buffers keep changing; formatted and written in the other.
-  writer_ = std::thread([this, kept = Kept{waiting_, variants_, ticks_.all(), frames_.all()}] {
-    write(kept);
-    writing_.store(false);
-  });
-  waiting_ = model::Fault::kNone;
+  kept_.fault = std::exchange(waiting_, model::Fault::kNone);
+  kept_.variants = variants_;
+  ticks_.copy_to(kept_.ticks);
+  frames_.copy_to(kept_.frames);
+  due_.release();
 }
 
 void BlackBox::finish() {
-  if (writer_.joinable()) writer_.join();
   to_wait_ = 0;
+  // The file in work, then the pending one.
+  idle_.acquire();
+  idle_.release();
   work();
-  if (writer_.joinable()) writer_.join();
+  idle_.acquire();
+  idle_.release();
 }
 
-void BlackBox::write(const Kept& kept) {
-  // The disk first, without the lock: news() and files() must not wait for it.
-  const auto path = write_black_box(run_, kept);
-  const std::lock_guard lock(reported_mutex_);
-  if (!path) {
-    news_.push_back("black box: " + path.error().message);
-    return;
+void BlackBox::keep_writing() {
+  for (;;) {
+    due_.acquire();
+    if (ending_) return;
+    write();
+    idle_.release();
   }
-  files_.push_back(*path);
-  news_.push_back(fmt::format("black box of fault {}: {}; tact-view --open shows it",
-                              static_cast<int>(kept.fault), *path));
+}
+
+void BlackBox::write() {
+  std::string lost = "black box: no memory is left to write it";  // made while there is some
+  std::vector<char>().swap(spare_);                               // for what writing needs
+  try {
+    // The disk first, without the lock: news() and files() must not wait for it.
+    const auto path = write_black_box(run_, kept_);
+    std::string news = path ? fmt::format("black box of fault {}: {}; tact-view --open shows it",
+                                          static_cast<int>(kept_.fault), *path)
+                            : "black box: " + path.error().message;
+    const std::lock_guard lock(reported_mutex_);
+    if (path) files_.push_back(*path);
+    report(std::move(news));
+    spare_.assign(kSpare_bytes, 1);
+  } catch (const std::bad_alloc&) {
+    const std::lock_guard lock(reported_mutex_);
+    report(std::move(lost));
+  }
+}
+
+void BlackBox::report(std::string news) {
+  if (news_.size() < kMaxNews) news_.push_back(std::move(news));
 }
 
 std::vector<std::string> BlackBox::news() {
   const std::lock_guard lock(reported_mutex_);
-  return std::exchange(news_, {});
+  std::vector<std::string> out;
+  out.reserve(kMaxNews);
+  news_.swap(out);
+  return out;
 }
 
 std::vector<std::string> BlackBox::files() const {

@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // black_box.h - the last 10 s of every tick, written to a file whenever a fault latches.
 //
-// The telemetry thread, not the loop, adds ticks and frames. A separate thread writes, so a slow
-// disk loses neither. A file is written 0.25 s after its fault, so that it contains the decay of
-// the force, or at once if the loop no longer ticks. Several faults of a run give several files. A
-// failed write is reported in a message, and the run continues.
+// The telemetry thread, not the loop, adds ticks and frames. A thread of its own writes, so a slow
+// disk loses neither; it and its memory are there before the loop. A file is written 0.25 s after
+// its fault, so that it contains the decay of the force, or at once if the loop no longer ticks.
+// Several faults of a run give several files. A failed write is reported in a message, and the run
+// continues.
 #pragma once
 
 #include <atomic>
+#include <memory>
 #include <mutex>
-#include <thread>
+#include <semaphore>
 
 #include "firmware/black_box/black_box_file.h"
 #include "firmware/black_box/newest_ones.h"
 #include "firmware/telemetry/telemetry.h"
+#include "hal/thread.h"
 
 namespace tact::firmware::black_box {
 
@@ -21,7 +24,9 @@ class BlackBox final : public telemetry::Recorder {
  public:
   static constexpr double kKeep_s = 10.0, kAfter_s = 0.25;
 
-  BlackBox(BlackBoxRun run, double rate_Hz, double frame_rate_Hz);
+  /// Takes all memory that a fault needs, and starts the thread that writes.
+  static model::Result<std::unique_ptr<BlackBox>> make(BlackBoxRun run, double rate_Hz,
+                                                       double frame_rate_Hz);
   ~BlackBox() override;
   BlackBox(const BlackBox&) = delete;
   BlackBox& operator=(const BlackBox&) = delete;
@@ -41,7 +46,13 @@ class BlackBox final : public telemetry::Recorder {
   std::vector<std::string> files() const;
 
  private:
-  void write(const Kept& kept);
+  // Chosen: more than the strings of one file need; more messages than anybody reads.
+  static constexpr std::size_t kSpare_bytes = 1 << 18, kMaxNews = 100;
+
+  BlackBox(BlackBoxRun run, double rate_Hz, double frame_rate_Hz);
+  void keep_writing();
+  void write();
+  void report(std::string news);
 
   BlackBoxRun run_;
   NewestOnes<protocol::LoggedTick> ticks_;
@@ -50,10 +61,13 @@ class BlackBox final : public telemetry::Recorder {
   std::uint64_t ticks_after_;  // kept after a fault, before the file is written
   model::Fault before_ = model::Fault::kNone, waiting_ = model::Fault::kNone;
   std::uint64_t to_wait_ = 0;  // ticks
-  std::atomic<bool> writing_{false};
-  std::thread writer_;
+  Kept kept_;                  // of the writer while it is not idle
+  std::vector<char> spare_;
+  std::binary_semaphore due_{0}, idle_{1};
+  std::atomic<bool> ending_{false};
   mutable std::mutex reported_mutex_;  // the loop never takes it
   std::vector<std::string> news_, files_;
+  hal::Thread writer_;  // last: it uses the others
 };
 
 }  // namespace tact::firmware::black_box

@@ -36,7 +36,7 @@ std::string plain(std::string text) {
 std::string free_path(const BlackBoxRun& run, model::Fault fault) {
   const std::time_t now = std::time(nullptr);
   const std::string stem =
-      fmt::format("{}/{}-{:%Y%m%dT%H%M%SZ}-{}-{}", run.folder, plain(run.header.scene_name),
+      fmt::format("{}/{}-{:%Y%m%dT%H%M%SZ}-{}-{}", run.folder, plain(run.scene_name),
                   fmt::gmtime(now), static_cast<int>(fault), plain(model::describe(fault).name));
   std::string path = stem + ".tactlog";
   // Two faults in one second. If the file appears meanwhile, RunWriter::create refuses it.
@@ -76,18 +76,16 @@ Result<std::string> black_box_folder(const std::string& asked) {
   return folder.string();
 }
 
-std::vector<protocol::Frame> with_last_ticks(const Kept& kept) {
-  std::vector<protocol::Frame> out;
-  if (kept.frames.empty() || kept.ticks.empty()) return kept.frames;
+void each_frame(const Kept& kept, const std::function<void(const protocol::Frame&)>& add) {
   const auto tick = [&kept](std::uint64_t number) {
     return std::lower_bound(
         kept.ticks.begin(), kept.ticks.end(), number,
         [](const protocol::LoggedTick& t, std::uint64_t n) { return t.tick < n; });
   };
-  const std::int64_t from_ns = kept.ticks.back().due_ns - kEveryTick_ns;
+  const std::int64_t from_ns = kept.ticks.empty() ? 0 : kept.ticks.back().due_ns - kEveryTick_ns;
   for (std::size_t i = 0; i < kept.frames.size(); ++i) {
     const protocol::Frame& picture = kept.frames[i];
-    out.push_back(picture);
+    add(picture);
     const bool last = i + 1 == kept.frames.size();
     const auto shown = tick(picture.tick);
     // The tick of this frame is no longer kept: no frames of ticks can follow it.
@@ -95,26 +93,31 @@ std::vector<protocol::Frame> with_last_ticks(const Kept& kept) {
     const auto end = last ? kept.ticks.end() : tick(kept.frames[i + 1].tick);
     for (auto t = shown + 1; t < end; ++t)
       if (t->due_ns >= from_ns)
-        out.push_back(
-            telemetry::frame_of_tick(picture, *t, picture.time_ns + t->due_ns - shown->due_ns));
+        add(telemetry::frame_of_tick(picture, *t, picture.time_ns + t->due_ns - shown->due_ns));
   }
-  return out;
 }
+
+BlackBoxRun::BlackBoxRun(std::string to, const protocol::RunHeader& header,
+                         std::span<const std::byte> meshes)
+    : folder(std::move(to)),
+      scene_name(header.scene_name),
+      non_rt(header.non_rt),
+      frame_fields(protocol::Frame::fields(header.spheres.size())),
+      start(protocol::start_of_run(header, meshes,
+                                   {protocol::schema_of<protocol::LoggedTick>(),
+                                    protocol::schema_of<protocol::Frame>(frame_fields)})) {}
 
 Result<std::string> write_black_box(const BlackBoxRun& run, const Kept& kept) {
   std::error_code failed;  // RunWriter::create then fails and reports it
   fs::create_directories(run.folder, failed);
   const std::string path = free_path(run, kept.fault);
-  const protocol::FieldTable fields = protocol::Frame::fields(run.header.spheres.size());
-  auto file = protocol::RunWriter::create(
-      path, protocol::start_of_run(run.header, run.meshes,
-                                   {protocol::schema_of<protocol::LoggedTick>(),
-                                    protocol::schema_of<protocol::Frame>(fields)}));
+  const protocol::FieldTable& fields = run.frame_fields;
+  auto file = protocol::RunWriter::create(path, run.start);
   if (!file) return file.error();
   file->add(kept.variants);
   // Ticks before frames: a truncated file then still has the ticks.
   for (const protocol::LoggedTick& tick : kept.ticks) file->add(chunk_of(tick));
-  for (const protocol::Frame& frame : with_last_ticks(kept)) file->add(chunk_of(frame, fields));
+  each_frame(kept, [&](const protocol::Frame& frame) { file->add(chunk_of(frame, fields)); });
   if (auto error = file->close()) return std::move(*error);
   return path;
 }

@@ -8,6 +8,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,9 +28,12 @@ struct Kept {
 
 /// The same in every file of a run.
 struct BlackBoxRun {
-  std::string folder;
-  protocol::RunHeader header;
-  std::vector<std::byte> meshes;
+  BlackBoxRun(std::string to, const protocol::RunHeader& header, std::span<const std::byte> meshes);
+
+  std::string folder, scene_name;
+  bool non_rt;
+  protocol::FieldTable frame_fields;
+  std::string start;  // head and meshes, as bytes
 };
 
 /// `asked`, else $XDG_STATE_HOME/tact/black-box, else the same below ~/.local/state. It need not
@@ -38,8 +43,8 @@ model::Result<std::string> black_box_folder(const std::string& asked);
 /// The new file's path; an error names what was not written to the disk.
 model::Result<std::string> write_black_box(const BlackBoxRun& run, const Kept& kept);
 
-/// The frames, with one more for each tick of the last half second: organ from the frame before it,
-/// tool, force and state from the tick.
-std::vector<protocol::Frame> with_last_ticks(const Kept& kept);
+/// Calls `add` for each frame, and once more for each tick of the last half second: organ from the
+/// frame before it, tool, force and state from the tick.
+void each_frame(const Kept& kept, const std::function<void(const protocol::Frame&)>& add);
 
 }  // namespace tact::firmware::black_box

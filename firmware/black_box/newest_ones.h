@@ -18,14 +18,13 @@ class NewestOnes {
     next_ = (next_ + 1) % items_.size();
     size_ = std::min(size_ + 1, items_.size());
   }
-  std::size_t size() const { return size_; }
-  /// A copy, oldest first.
-  std::vector<T> all() const {
-    std::vector<T> out;
-    out.reserve(size_);
+  /// Takes the memory that copy_to() needs.
+  void reserve(std::vector<T>& out) const { (out = items_).clear(); }
+  /// Oldest first.
+  void copy_to(std::vector<T>& out) const {
+    out.clear();
     for (std::size_t i = 0; i < size_; ++i)
       out.push_back(items_[(next_ + items_.size() - size_ + i) % items_.size()]);
-    return out;
   }
 
  private:

@@ -29,13 +29,15 @@ std::string end_of(const std::string& scene_path) {
 std::vector<ControlName> controls_that_end_in(const std::string& folder, std::string_view end) {
   std::vector<ControlName> found;
   std::error_code failed;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, failed)) {
-    const std::string name = entry.path().filename();
+  // increment(), as ++ throws; either makes the end of it.
+  for (std::filesystem::directory_iterator at(folder, failed), end_of_folder; at != end_of_folder;
+       at.increment(failed)) {
+    const std::string name = at->path().filename();
     if (!name.starts_with(kBegin) || !name.ends_with(end)) continue;
     pid_t process = 0;
     // from_chars stops at the next dash; without digits `process` stays 0.
     std::from_chars(name.data() + kBegin.size(), name.data() + name.size(), process);
-    found.push_back({.process = process, .path = entry.path()});
+    found.push_back({.process = process, .path = at->path()});
   }
   std::ranges::sort(found, {}, &ControlName::process);
   return found;

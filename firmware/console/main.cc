@@ -8,6 +8,7 @@
 #include "firmware/console/control_name.h"
 #include "firmware/console/say.h"
 #include "model/io/program/command_line.h"
+#include "model/io/program/program_end.h"
 #include "model/io/program/within.h"
 #include "model/io/socket_file.h"
 
@@ -43,6 +44,7 @@ std::optional<tact::model::Error> add_numbers(std::string& word,
 
 int main(int argc, char** argv) {
   using namespace tact::firmware;
+  tact::model::io::report_uncaught("tactctl");
   CLI::App app{
       "tactctl: asks the tactd that runs SCENE, on this computer and of the same user (or as "
       "root).\n"

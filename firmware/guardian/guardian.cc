@@ -71,8 +71,10 @@ model::Result<std::unique_ptr<Guardian>> Guardian::start(const hal::ShutdownFram
   core.rlim_cur = std::min<rlim_t>(core.rlim_max, 1);
   setrlimit(RLIMIT_CORE, &core);
   if (const auto why = guardian->spawn(program)) return refused(program, std::strerror(*why));
-  guardian->thread_ =
-      std::thread([self = guardian.get(), settings] { self->keep(settings.priority); });
+  auto thread = hal::start_thread(
+      "tact-guard", [self = guardian.get(), settings] { self->keep(settings.priority); });
+  if (!thread) return thread.error();
+  guardian->thread_ = std::move(*thread);
   // The lock must be held before the guardian receives it: the guardian takes a free lock for a
   // regular end.
   guardian->held_.acquire();
@@ -129,9 +131,6 @@ bool Guardian::is_ready() const {
 /// thread is SCHED_FIFO, because a killed thread must be scheduled before the kernel releases its
 /// lock.
 void Guardian::keep(int priority) {
-  pthread_setname_np(pthread_self(), "tact-guard");
-  const sigset_t all = all_signals();
-  pthread_sigmask(SIG_BLOCK, &all, nullptr);
   liveness_.hold();
   held_.release();
   become_fifo(priority);

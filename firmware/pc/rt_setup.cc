@@ -13,9 +13,9 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
-#include <thread>
 
 #include "firmware/pc/pc_files.h"
+#include "hal/thread.h"
 
 #if defined(__x86_64__)
 #include <xmmintrin.h>
@@ -146,10 +146,12 @@ void enter_watch_thread(const RtSettings& loop, std::vector<Shortfall>& shortfal
 
 std::vector<Shortfall> probe_rt_threads(const RtSettings& loop) {
   std::vector<Shortfall> shortfalls;
-  std::thread([&] {
+  auto thread = hal::start_thread("tact-probe", [&] {
     enter_rt_thread(loop, shortfalls);
     enter_watch_thread(loop, shortfalls);
-  }).join();
+  });
+  if (!thread) return {{thread.error().message}};
+  thread->join();
   return shortfalls;
 }
 

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <thread>
 
 #include "firmware/run/thread_costs.h"
 
@@ -22,20 +23,41 @@ constexpr unsigned kShutdownFrames_s = 6;
 
 LoopExecutor::LoopExecutor(const GuardedLoop& guarded)
     : guarded_(guarded), runaway_(guarded.requests) {
-  executor_ = std::thread(&LoopExecutor::keep, this);
+  // Before the loop, because no thread may start when the PC is short of something.
+  auto stopper = hal::start_thread("tact-stop", [this] {
+    hung_.acquire();
+    if (!ended_.load()) guarded_.device.stop();
+    stopped_.store(true);
+  });
+  auto executor =
+      stopper ? hal::start_thread("tact-executor", [this] { keep(); }) : stopper.error();
+  if (!executor) {
+    error_ = executor.error();
+    guarded_.device.stop();
+    ended_.store(true);
+  } else {
+    executor_ = std::move(*executor);
+  }
+  if (stopper) stopper_ = std::move(*stopper);
+}
+
+LoopExecutor::~LoopExecutor() {
+  guarded_.requests.stop.store(true);  // nobody serves the loop any more
+  join();
+  hung_.release();
 }
 
 // Not in the loop's thread, whose filter would refuse the system calls of Device::stop().
 void LoopExecutor::keep() {
   for (const LoopRun& turn : guarded_.turns) {
-    take(turn);
-    if (guarded_.requests.stop.load()) break;
+    error_ = take(turn);
+    if (error_ || guarded_.requests.stop.load()) break;
   }
   guarded_.device.stop();  // at once, because drives expect cyclic messages of their host
   ended_.store(true);
 }
 
-void LoopExecutor::take(const LoopRun& turn) {
+std::optional<model::Error> LoopExecutor::take(const LoopRun& turn) {
   // The watch starts before the loop's thread and stops after it, so it monitors every tick.
   watch::GuardianLink link;
   if (const auto* guardian = guarded_.guardian)
@@ -44,11 +66,14 @@ void LoopExecutor::take(const LoopRun& turn) {
             .its_count = &guardian->page().waiter_count};
   watch::LoopMonitor watch(watch::StallDetector(guarded_.period_ns, guarded_.hard_real_time),
                            turn.progress, guarded_.requests, guarded_.lines, link);
-  watch.start(guarded_.rt);
-  std::thread([&] {
+  if (auto error = watch.start(guarded_.rt)) return error;
+  auto loop = hal::start_thread("tact-loop", [&] {
     add_to(costs_, run_as_loop_thread(guarded_.rt, turn.run, guarded_.filter));
-  }).join();
+  });
+  if (!loop) return loop.error();
+  loop->join();
   watch.stop();
+  return std::nullopt;
 }
 
 bool LoopExecutor::hangs() {
@@ -59,8 +84,9 @@ bool LoopExecutor::hangs() {
   return now_ns - asked_ns_ > kTimeout_ns;
 }
 
-void LoopExecutor::join() {
-  if (executor_.joinable()) executor_.join();
+std::optional<model::Error> LoopExecutor::join() {
+  executor_.join();
+  return error_;
 }
 
 // The device's stop and the disk may hang, too: SIGALRM ends the process then. The guardian takes
@@ -70,12 +96,8 @@ void LoopExecutor::leave_behind(int status, const std::function<void()>& shutdow
   guarded_.lines.drop();
   std::signal(SIGALRM, [](int) { _exit(1); });
   alarm(kShutdownFrames_s);
-  std::atomic<bool> stopped{false};
-  std::thread([&] {
-    guarded_.device.stop();
-    stopped.store(true);
-  }).detach();
-  for (auto waited = 0ms; !stopped.load() && waited < kDeviceStop; waited += kLook)
+  hung_.release();
+  for (auto waited = 0ms; !stopped_.load() && waited < kDeviceStop; waited += kLook)
     std::this_thread::sleep_for(kLook);
   shutdown_frames();
   // No destructors, because one would wait for the loop's thread.

@@ -4,6 +4,7 @@
 //     tact-loop    the loop behind its call filter (watch/call_filter.h)
 //     tact-watch   monitors it (watch/loop_monitor.h)
 //     executor     starts the loop; stops the device as soon as the loop has ended
+//     tact-stop    stops the device of a loop that hangs
 //     main         signals, status line, hangs (serve_operator in session.cc)
 //
 // Several loops may run one after another on one device, each in its own thread behind the same
@@ -13,7 +14,8 @@
 
 #include <atomic>
 #include <functional>
-#include <thread>
+#include <optional>
+#include <semaphore>
 #include <vector>
 
 #include "firmware/guardian/guardian.h"
@@ -21,6 +23,7 @@
 #include "firmware/watch/call_filter.h"
 #include "firmware/watch/loop_monitor.h"
 #include "firmware/watch/runaway.h"
+#include "hal/thread.h"
 
 namespace tact::firmware::run {
 
@@ -45,15 +48,15 @@ struct GuardedLoop {
 class LoopExecutor {
  public:
   explicit LoopExecutor(const GuardedLoop& guarded);
-  ~LoopExecutor() { join(); }
+  ~LoopExecutor();
   LoopExecutor(const LoopExecutor&) = delete;
   LoopExecutor& operator=(const LoopExecutor&) = delete;
 
   bool ended() const { return ended_.load(); }
   /// True 3 s after a stop request if loop or device have not ended. Call a few times a second.
   bool hangs();
-  /// After ended().
-  void join();
+  /// After ended(). The error: a thread could not be started, and the loop has not run.
+  std::optional<model::Error> join();
   /// After hangs(): drops the lines, stops the device if it still answers, calls `shutdown_frames`,
   /// and exits within 6 s. The kernel then closes all files; drives with a watchdog remove the
   /// force.
@@ -63,14 +66,17 @@ class LoopExecutor {
 
  private:
   void keep();
-  void take(const LoopRun& turn);
+  std::optional<model::Error> take(const LoopRun& turn);
 
   GuardedLoop guarded_;
   watch::RunawayGuard runaway_;
   std::atomic<bool> ended_{false};
   std::int64_t asked_ns_ = 0;  // when the stop request was first seen; 0: not yet
   ThreadCosts costs_;
-  std::thread executor_;
+  std::optional<model::Error> error_;  // of the executor's thread until it has ended
+  std::binary_semaphore hung_{0};
+  std::atomic<bool> stopped_{false};
+  hal::Thread stopper_, executor_;
 };
 
 }  // namespace tact::firmware::run

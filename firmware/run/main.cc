@@ -131,9 +131,7 @@ model::Result<model::scene::Scene> load(firmware::run::Options& options) {
   return hal::registry::load_scene(options.scene_path, options.overrides);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   // Both before anything is printed and before any thread starts.
   model::io::watch_standard_output("tactd");
   firmware::console::outlive_stray_signals();
@@ -164,4 +162,15 @@ int main(int argc, char** argv) {
           firmware::admission::why_not_unattended(*scene, firmware::console::is_service()))
     return complain(options.scene_path + ": " + refused->message, 2);
   return firmware::run::run_session(*scene, options);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {  // the device was closed on the way here
+    std::fprintf(stderr, "tactd: %s\n", error.what());
+    return 2;
+  }
 }

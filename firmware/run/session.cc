@@ -45,7 +45,7 @@ class Session {
   std::optional<model::Error> open();
   std::optional<model::Error> open_telemetry();
   std::optional<model::Error> open_call_filter();
-  void run_real_time();
+  std::optional<model::Error> run_real_time();
   void run_free();
   // Includes a fault of the watch that no tick has reported.
   model::Fault last_fault() const {
@@ -82,7 +82,7 @@ class Session {
   std::optional<loop::RtLoop> loop_;
   loop::Requests requests_;
   std::unique_ptr<watch::CallFilter> filter_;
-  std::optional<Variants> variants_;
+  std::unique_ptr<Variants> variants_;
   ThreadCosts costs_;
 };
 
@@ -115,8 +115,8 @@ int Session::run() {
   requests_.arm_at_start.store(options_.arm || arms_itself);
   if (options_.free_run)
     run_free();
-  else
-    run_real_time();
+  else if (const auto error = run_real_time())
+    return fail(error->message, 2);
   return report();
 }
 
@@ -183,9 +183,12 @@ void Session::run_free() {
   loop_->release_device();
 }
 
-void Session::run_real_time() {
+std::optional<model::Error> Session::run_real_time() {
   say(stderr, "tactd: limits {} (the page shows them too)\n", parts_.limits_checksum);
-  telemetry_->start();
+  if (auto error = telemetry_->start()) return error;
+  auto variants = Variants::make(scene_, parts_, requests_, *telemetry_);
+  if (!variants) return variants.error();
+  variants_ = std::move(*variants);
   LoopExecutor executor({.turns = {{loop_->progress(), [this] { loop_->run(); }}},
                          .device = *parts_.device,
                          .lines = *parts_.lines,
@@ -195,7 +198,6 @@ void Session::run_real_time() {
                          .rt = rt_,
                          .period_ns = period_ns(),
                          .hard_real_time = !non_rt_});
-  variants_.emplace(scene_, parts_, requests_, *telemetry_);
   serve_operator({.scene = scene_,
                   .parts = parts_,
                   .signals = *operator_,
@@ -206,8 +208,9 @@ void Session::run_real_time() {
                   .loop_ticks = [this] { return loop_->progress().ticks(); },
                   .period_ns = period_ns()},
                  executor);
-  executor.join();
+  auto error = executor.join();
   costs_ = executor.costs();
+  return error;
 }
 
 // Collects the final state of device, lines and threads, prints the report, and returns the status.

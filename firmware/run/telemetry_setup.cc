@@ -84,7 +84,7 @@ std::optional<Error> open_sockets(const RunSetup& run, protocol::RunHeader heade
 Result<Sinks> open_sinks(const RunSetup& run) {
   Sinks out;
   const protocol::RunHeader header = header_of(run);
-  std::vector<std::byte> meshes = telemetry::mesh_bytes(run.scene);
+  const std::vector<std::byte> meshes = telemetry::mesh_bytes(run.scene);
   if (!run.options.no_telemetry)
     if (auto failed = open_sockets(run, header, meshes, out)) return std::move(*failed);
   if (!run.options.record_path.empty()) {
@@ -102,9 +102,10 @@ Result<Sinks> open_sinks(const RunSetup& run) {
     out.no_black_box = folder.error().message;
     return out;
   }
-  out.black_box = std::make_unique<black_box::BlackBox>(
-      black_box::BlackBoxRun{.folder = *folder, .header = header, .meshes = std::move(meshes)},
-      run.scene.rate_Hz, run.scene.frame_rate_Hz);
+  auto black_box = black_box::BlackBox::make({*folder, header, meshes}, run.scene.rate_Hz,
+                                             run.scene.frame_rate_Hz);
+  if (!black_box) return black_box.error();
+  out.black_box = std::move(*black_box);
   out.sinks.recorder = out.black_box.get();
   return out;
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/run/thread_costs.h"
 
-#include <pthread.h>
 #include <sys/resource.h>
 
 #include <vector>
@@ -23,7 +22,6 @@ void add_to(ThreadCosts& sum, const ThreadCosts& more) {
 
 ThreadCosts run_as_loop_thread(const pc::RtSettings& settings, const std::function<void()>& loop,
                                watch::CallFilter* filter) {
-  pthread_setname_np(pthread_self(), "tact-loop");
   std::vector<pc::Shortfall> known;  // probe_rt_threads has reported them
   pc::enter_rt_thread(settings, known);
   ThreadCosts costs;

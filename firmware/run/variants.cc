@@ -25,11 +25,16 @@ std::vector<std::string> words_of(const std::string& text) {
 
 }  // namespace
 
-Variants::Variants(const model::scene::Scene& scene, const LoopParts& parts,
-                   loop::Requests& requests, telemetry::Telemetry& telemetry)
-    : scene_(scene), parts_(parts), requests_(requests), telemetry_(telemetry), thread_([this] {
-        run();
-      }) {}
+model::Result<std::unique_ptr<Variants>> Variants::make(const model::scene::Scene& scene,
+                                                        const LoopParts& parts,
+                                                        loop::Requests& requests,
+                                                        telemetry::Telemetry& telemetry) {
+  std::unique_ptr<Variants> made(new Variants(scene, parts, requests, telemetry));
+  auto thread = hal::start_thread("law-numbers", [&variants = *made] { variants.run(); });
+  if (!thread) return thread.error();
+  made->thread_ = std::move(*thread);
+  return made;
+}
 
 Variants::~Variants() {
   {

@@ -12,7 +12,6 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "firmware/console/control_socket.h"
@@ -20,6 +19,7 @@
 #include "firmware/loop/requests.h"
 #include "firmware/run/loop_parts.h"
 #include "firmware/telemetry/telemetry.h"
+#include "hal/thread.h"
 #include "model/scene/variant.h"
 
 namespace tact::firmware::run {
@@ -27,8 +27,10 @@ namespace tact::firmware::run {
 class Variants {
  public:
   /// All of these outlive it. The destructor is called after the loop has ended.
-  Variants(const model::scene::Scene& scene, const LoopParts& parts, loop::Requests& requests,
-           telemetry::Telemetry& telemetry);
+  static model::Result<std::unique_ptr<Variants>> make(const model::scene::Scene& scene,
+                                                       const LoopParts& parts,
+                                                       loop::Requests& requests,
+                                                       telemetry::Telemetry& telemetry);
   ~Variants();
   Variants(const Variants&) = delete;
   Variants& operator=(const Variants&) = delete;
@@ -42,6 +44,9 @@ class Variants {
   std::uint32_t count() const { return count_; }
 
  private:
+  Variants(const model::scene::Scene& scene, const LoopParts& parts, loop::Requests& requests,
+           telemetry::Telemetry& telemetry)
+      : scene_(scene), parts_(parts), requests_(requests), telemetry_(telemetry) {}
   struct Made {
     explicit Made(model::scene::Variant made)
         : variant(std::move(made)),
@@ -77,7 +82,7 @@ class Variants {
   std::optional<std::vector<std::string>> job_;
   std::optional<Outcome> outcome_;
   bool ends_ = false;
-  std::thread thread_;
+  hal::Thread thread_;  // last: it uses the others
 };
 
 }  // namespace tact::firmware::run

@@ -24,12 +24,17 @@ Telemetry::Telemetry(loop::TickRing& ring, FrameBuilder builder, const FramePace
 // An error of the log is lost here: call stop() first to get it.
 Telemetry::~Telemetry() { static_cast<void>(stop()); }
 
-void Telemetry::start() { thread_ = std::thread(&Telemetry::run, this); }
+std::optional<model::Error> Telemetry::start() {
+  auto thread = hal::start_thread("tact-telemetry", [this] { run(); });
+  if (!thread) return thread.error();
+  thread_ = std::move(*thread);
+  return std::nullopt;
+}
 
 std::optional<model::Error> Telemetry::stop() {
   ending_.store(true, std::memory_order_relaxed);
   // The thread first: from here on this one is the only reader of the ring.
-  if (thread_.joinable()) thread_.join();
+  thread_.join();
   drain();
   publish();
   if (sinks_.recorder) {

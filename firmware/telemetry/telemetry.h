@@ -7,12 +7,12 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <thread>
 
 #include "firmware/loop/ring.h"
 #include "firmware/protocol/run_file.h"
 #include "firmware/telemetry/frame_builder.h"
 #include "firmware/telemetry/telemetry_socket.h"
+#include "hal/thread.h"
 
 namespace tact::firmware::telemetry {
 
@@ -55,7 +55,7 @@ class Telemetry {
   Telemetry(const Telemetry&) = delete;
   Telemetry& operator=(const Telemetry&) = delete;
 
-  void start();
+  [[nodiscard]] std::optional<model::Error> start();
   /// Drains the ring, writes the pending file of the black box, and ends the thread. Returns the
   /// log's error, if any.
   std::optional<model::Error> stop();
@@ -106,7 +106,7 @@ class Telemetry {
   bool reported_lost_ = false;
   loop::TickRecord record_;
   std::uint64_t force_hash_;
-  std::thread thread_;
+  hal::Thread thread_;
 };
 
 }  // namespace tact::firmware::telemetry

@@ -13,9 +13,9 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
-#include <thread>
 
 #include "firmware/loop/alloc_counter.h"
+#include "hal/thread.h"
 
 namespace tact::firmware::watch {
 namespace {
@@ -134,10 +134,12 @@ Result<std::unique_ptr<CallFilter>> CallFilter::make(std::span<const int> of_dev
   if (!good) return no_filter("libseccomp cannot make it");
   std::unique_ptr<CallFilter> filter(new Filter(std::move(context), requests));
   int refused_by_kernel = 0;  // tried in a short-lived thread, as a filter cannot be removed
-  std::thread([&] {
+  auto thread = hal::start_thread("tact-filter", [&] {
     refused_by_kernel = filter->enter_thread();
     filter->leave_loop();
-  }).join();
+  });
+  if (!thread) return thread.error();
+  thread->join();
   if (refused_by_kernel != 0) return no_filter(std::strerror(refused_by_kernel));
   return filter;
 }

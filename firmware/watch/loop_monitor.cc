@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/watch/loop_monitor.h"
 
-#include <pthread.h>
-
 #include "firmware/loop/release_schedule.h"
 #include "model/time_ns.h"
 
 namespace tact::firmware::watch {
 
-void LoopMonitor::start(const pc::RtSettings& loop) {
-  thread_ = std::thread([this, loop] {
-    pthread_setname_np(pthread_self(), "tact-watch");
+std::optional<model::Error> LoopMonitor::start(const pc::RtSettings& loop) {
+  auto thread = hal::start_thread("tact-watch", [this, loop] {
     std::vector<pc::Shortfall> known;
     // pc::probe_rt_threads has already reported what is refused here.
     enter_watch_thread(loop, known);
@@ -18,6 +15,9 @@ void LoopMonitor::start(const pc::RtSettings& loop) {
     leave_guardian();
     pc::leave_rt_thread();
   });
+  if (!thread) return thread.error();
+  thread_ = std::move(*thread);
+  return std::nullopt;
 }
 
 // At real-time priority, so that a regular end is not taken for a silence.
@@ -27,7 +27,7 @@ void LoopMonitor::leave_guardian() RT_SAFE {
 
 void LoopMonitor::stop() {
   ending_.store(true, std::memory_order_relaxed);
-  if (thread_.joinable()) thread_.join();
+  thread_.join();
   leave_guardian();
 }
 

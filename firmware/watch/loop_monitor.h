@@ -13,13 +13,14 @@
 // line the drives' own watchdogs must act. No lock, no heap: only Progress, Requests and the lines.
 #pragma once
 
-#include <thread>
+#include <optional>
 
 #include "firmware/loop/clock.h"
 #include "firmware/loop/rt_loop.h"
 #include "firmware/pc/rt_setup.h"
 #include "firmware/watch/stall_detector.h"
 #include "firmware/watch/suspend_detector.h"
+#include "hal/thread.h"
 
 namespace tact::firmware::watch {
 
@@ -44,7 +45,7 @@ class LoopMonitor {
   LoopMonitor(const LoopMonitor&) = delete;
   LoopMonitor& operator=(const LoopMonitor&) = delete;
 
-  void start(const pc::RtSettings& loop);
+  [[nodiscard]] std::optional<model::Error> start(const pc::RtSettings& loop);
   void stop();
   /// One check; may be called at any time.
   void check() RT_SAFE;
@@ -65,7 +66,7 @@ class LoopMonitor {
   SuspendDetector suspend_;
   loop::MonotonicClock clock_;
   std::atomic<bool> ending_{false};
-  std::thread thread_;
+  hal::Thread thread_;
 };
 
 }  // namespace tact::firmware::watch

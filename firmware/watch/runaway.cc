@@ -25,7 +25,7 @@ void on_runaway(int) {
 }  // namespace
 
 std::optional<pc::Shortfall> lift_rttime_limit() {
-  rlimit limit{};
+  rlimit limit{.rlim_cur = RLIM_INFINITY, .rlim_max = RLIM_INFINITY};
   getrlimit(RLIMIT_RTTIME, &limit);
   if (limit.rlim_cur == RLIM_INFINITY && limit.rlim_max == RLIM_INFINITY) return std::nullopt;
   const rlimit none{.rlim_cur = RLIM_INFINITY, .rlim_max = RLIM_INFINITY};
@@ -50,7 +50,7 @@ RunawayGuard::RunawayGuard(loop::Requests& requests, rlim_t longest_us) {
   action.sa_flags = SA_RESTART;
   sigaction(SIGXCPU, &action, nullptr);
   // The soft limit sends the signal. The hard limit, which kills, is left as it was.
-  getrlimit(RLIMIT_RTTIME, &before_);
+  if (getrlimit(RLIMIT_RTTIME, &before_) != 0) return;
   const rlimit ours{.rlim_cur = std::min(longest_us, before_.rlim_max),
                     .rlim_max = before_.rlim_max};
   setrlimit(RLIMIT_RTTIME, &ours);
@@ -58,7 +58,7 @@ RunawayGuard::RunawayGuard(loop::Requests& requests, rlim_t longest_us) {
 
 // The handler stays installed: a signal still pending must not end the process.
 RunawayGuard::~RunawayGuard() {
-  setrlimit(RLIMIT_RTTIME, &before_);
+  if (before_.rlim_max != 0) setrlimit(RLIMIT_RTTIME, &before_);
   runaway_requests.store(nullptr);
 }
 

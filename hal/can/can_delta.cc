@@ -22,8 +22,6 @@ using model::operator""_deg;
 
 constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 constexpr double kStopSlack_rad = 2_deg;  // stops give, encoders are not exact
-constexpr double kJump_m = 5e-3;          // between two samples: a new start of the velocity
-constexpr std::int64_t kLongGap_ns = 20'000'000;
 
 double in_deg(double angle_rad) { return angle_rad * 360.0 / kTurn_rad; }
 
@@ -36,7 +34,7 @@ CanDelta::CanDelta(const DeltaSettings& delta, const CanSettings& can, const Vec
       direction_(can.direction),
       zero_turns_(can.zero_turns),
       home_rad_(can.home_rad),
-      velocity_(delta.observer_bandwidth_Hz, kJump_m) {}
+      velocity_(delta.observer_bandwidth_Hz, kJump_mps) {}
 
 void CanDelta::home_on_jig(const delta::Joints& motor_turns) {
   for (std::size_t i = 0; i < 3; ++i) {
@@ -85,7 +83,6 @@ std::optional<FaultCause> CanDelta::measure(const delta::Joints& motor_turns, st
   const delta::DeltaForward forward = delta_.forward(theta);
   if (const auto cause = doubt(theta, forward)) return cause;
   pose_ = delta_.pose(forward.far_m, theta);
-  if (!has_pose_ || stamp_ns - stamp_ns_ > kLongGap_ns) velocity_.reset();
   const double elapsed_s = 1e-9 * static_cast<double>(stamp_ns - stamp_ns_);
   stamp_ns_ = stamp_ns;
   has_pose_ = true;

@@ -12,7 +12,6 @@
 namespace tact::hal::falcon {
 namespace {
 
-constexpr double kJump_m = 5e-3;              // between two samples: a new start
 constexpr double kDeadBandRamp_words = 20.0;  // a force near zero does not chatter
 // Silent means both: in a loop above 1 kHz an answer takes several ticks.
 constexpr int kSilentTicks = 3;
@@ -34,7 +33,7 @@ bool is_pressed(const FalconReport& report, std::uint8_t button) RT_SAFE {
 FalconDevice::FalconDevice(const FalconSettings& settings, std::unique_ptr<FalconPipe> pipe)
     : settings_(settings),
       pipe_(std::move(pipe)),
-      velocity_(settings.observer_bandwidth_Hz, kJump_m) {
+      velocity_(settings.observer_bandwidth_Hz, kJump_mps) {
   wait_for_homing(0);
 }
 

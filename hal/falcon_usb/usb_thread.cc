@@ -1,58 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hal/falcon_usb/usb_thread.h"
 
+#include <pthread.h>
 #include <sched.h>
 
-#include <csignal>
 #include <ctime>
+#include <utility>
 
 #include "model/time_ns.h"
 
 namespace tact::hal::falcon_usb {
-namespace {
 
-// Small on purpose: MCL_FUTURE locks the whole of it in memory.
-constexpr std::size_t kStack_bytes = 131'072;
-
-}  // namespace
-
-int UsbThread::start(void (*body)(void*), void* argument) {
-  body_ = body;
-  argument_ = argument;
-  pthread_attr_t attributes;
-  if (const int error = pthread_attr_init(&attributes); error != 0) return error;
-  pthread_attr_setstacksize(&attributes, kStack_bytes);
-  sigset_t all, before;
-  sigfillset(&all);
-  pthread_sigmask(SIG_SETMASK, &all, &before);  // the thread inherits it
-  const int error = pthread_create(&thread_, &attributes, enter, this);
-  pthread_sigmask(SIG_SETMASK, &before, nullptr);
-  pthread_attr_destroy(&attributes);
-  joinable_ = error == 0;
-  return error;
-}
-
-void* UsbThread::enter(void* self) {
-  auto& thread = *static_cast<UsbThread*>(self);
-  pthread_setname_np(pthread_self(), "tact-usb");
-  const sched_param fifo{.sched_priority = kUsbThreadPriority};
-  // Not checked: a refusal leaves normal priority, which still works, only later.
-  pthread_setschedparam(pthread_self(), SCHED_FIFO, &fifo);
-  thread.body_(thread.argument_);
-  const sched_param other{};
-  pthread_setschedparam(pthread_self(), SCHED_OTHER, &other);
-  int policy = -1;
-  sched_param now{};
-  pthread_getschedparam(pthread_self(), &policy, &now);
-  thread.last_policy_.store(policy, std::memory_order_release);
-  thread.ended_.store(true, std::memory_order_release);
-  return nullptr;
-}
-
-void UsbThread::join() {
-  if (!joinable_) return;
-  joinable_ = false;
-  pthread_join(thread_, nullptr);
+std::optional<model::Error> UsbThread::start(std::function<void()> body) {
+  auto thread = start_thread("tact-usb", [this, body = std::move(body)] {
+    const sched_param fifo{.sched_priority = kUsbThreadPriority};
+    // Not checked: a refusal leaves normal priority, which still works, only later.
+    pthread_setschedparam(pthread_self(), SCHED_FIFO, &fifo);
+    body();
+    const sched_param other{};
+    pthread_setschedparam(pthread_self(), SCHED_OTHER, &other);
+    int policy = -1;
+    sched_param now{};
+    pthread_getschedparam(pthread_self(), &policy, &now);
+    last_policy_.store(policy, std::memory_order_release);
+    ended_.store(true, std::memory_order_release);
+  });
+  if (!thread) return thread.error();
+  thread_ = std::move(*thread);
+  return std::nullopt;
 }
 
 void usb_pause_ns(std::int64_t pause_ns) {

@@ -30,13 +30,7 @@ model::Result<std::unique_ptr<falcon::FalconPipe>> UsbfsPipe::start(
           std::strerror(error))};
     pipe->busy_[i] = true;
   }
-  const int error =
-      pipe->thread_.start([](void* self) { static_cast<UsbfsPipe*>(self)->run(); }, pipe.get());
-  if (error != 0)
-    return model::Error{
-        fmt::format("the Falcon's USB thread cannot be started ({}): end other "
-                    "programs or raise ulimit -u",
-                    std::strerror(error))};
+  if (auto error = pipe->thread_.start([&pipe = *pipe] { pipe.run(); })) return std::move(*error);
   return std::unique_ptr<falcon::FalconPipe>(std::move(pipe));
 }
 

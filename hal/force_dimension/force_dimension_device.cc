@@ -46,9 +46,10 @@ model::Result<std::unique_ptr<Device>> open_force_dimension(const model::DeviceS
   const auto session = open_sdk_session(settings.of<ForceDimensionSettings>(),
                                         settings.trust_library, mounting_of(settings));
   if (!session) return session.error();
-  return std::unique_ptr<Device>(
-      new vendor_sdk::LibraryDevice(info_of(*session, settings.of<ForceDimensionSettings>()),
-                                    SdkWorker::start(*session, rate_Hz)));
+  const auto worker = SdkWorker::start(*session, rate_Hz);
+  if (!worker) return worker.error();
+  return std::unique_ptr<Device>(new vendor_sdk::LibraryDevice(
+      info_of(*session, settings.of<ForceDimensionSettings>()), *worker));
 }
 
 }  // namespace tact::hal::force_dimension

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "hal/monotonic.h"
+#include "hal/thread.h"
 #include "hal/vendor_sdk/rotation.h"
 #include "model/time_ns.h"
 
@@ -68,20 +69,30 @@ std::int64_t sdk_cycle_ns(double rate_Hz) {
   return std::min(kLongestCycle_ns, model::period_ns(rate_Hz));
 }
 
-std::shared_ptr<SdkWorker> SdkWorker::start(const SdkSession& session, double rate_Hz) {
+model::Result<std::shared_ptr<SdkWorker>> SdkWorker::start(const SdkSession& session,
+                                                           double rate_Hz) {
   std::shared_ptr<SdkWorker> worker(new SdkWorker(session, rate_Hz));
   worker->expect_threads(2);
-  // Each thread keeps the worker alive: one that hangs in the library outlives its device.
-  std::thread([worker] {
-    enter_fifo("tact-fd");
-    worker->run();
-    worker->thread_ends();
-  }).detach();
-  std::thread([worker] {
-    pthread_setname_np(pthread_self(), "tact-fd-status");
-    worker->watch();
-    worker->thread_ends();
-  }).detach();
+  struct Part {
+    const char* name;
+    void (SdkWorker::*body)();
+  };
+  int missing = 2;
+  for (const Part part :
+       {Part{"tact-fd", &SdkWorker::run}, Part{"tact-fd-status", &SdkWorker::watch}}) {
+    // Each thread keeps the worker alive: one that hangs in the library outlives its device.
+    auto thread = start_thread(part.name, [worker, part] {
+      (worker.get()->*part.body)();
+      worker->thread_ends();
+    });
+    if (!thread) {
+      for (; missing > 0; --missing) worker->thread_ends();
+      static_cast<void>(worker->stop());
+      return thread.error();
+    }
+    thread->detach();
+    --missing;
+  }
   return worker;
 }
 
@@ -89,6 +100,7 @@ std::shared_ptr<SdkWorker> SdkWorker::start(const SdkSession& session, double ra
 // and 75 us into a cycle (firmware/loop/release_schedule.h), 75 us and more from this timer, those
 // of a faster loop 0.3 of a cycle, while the library is fast enough for it.
 void SdkWorker::run() {
+  enter_fifo("tact-fd");
   std::int64_t due_ns = monotonic_ns() / cycle_ns() * cycle_ns() + cycle_ns() * 9 / 10;
   while (!quits() && cycle()) {
     due_ns = std::max(due_ns + cycle_ns(), monotonic_ns() + kMinPause_ns);

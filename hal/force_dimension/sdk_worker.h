@@ -39,7 +39,7 @@ std::int64_t sdk_cycle_ns(double rate_Hz);
 class SdkWorker final : public vendor_sdk::LibraryWorker {
  public:
   /// Starts both threads, for a loop of that rate.
-  static std::shared_ptr<SdkWorker> start(const SdkSession& session, double rate_Hz);
+  static model::Result<std::shared_ptr<SdkWorker>> start(const SdkSession& session, double rate_Hz);
 
  private:
   SdkWorker(const SdkSession& session, double rate_Hz)

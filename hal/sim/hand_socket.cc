@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hal/sim/hand_socket.h"
 
-#include <signal.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -32,19 +31,20 @@ Result<std::unique_ptr<HandSocket>> HandSocket::start(const std::string& path,
                                                       LatestSlot<HandTarget>& newest) {
   const auto descriptor = model::io::bind_socket(path, SOCK_DGRAM | SOCK_CLOEXEC);
   if (!descriptor) return descriptor.error();
-  return std::unique_ptr<HandSocket>(new HandSocket(*descriptor, path, newest));
+  std::unique_ptr<HandSocket> hand(new HandSocket(*descriptor, path, newest));
+  auto thread = start_thread("tact-hand", [&hand = *hand] { hand.listen(); });
+  if (!thread) return thread.error();
+  hand->thread_ = std::move(*thread);
+  return hand;
 }
 
 HandSocket::HandSocket(int descriptor, const std::string& path, LatestSlot<HandTarget>& newest)
-    : descriptor_(descriptor), path_(path), file_(path), newest_(newest), thread_([this] {
-        listen();
-      }) {}
+    : descriptor_(descriptor), path_(path), file_(path), newest_(newest) {}
 
 HandSocket::~HandSocket() { stop(); }
 
 void HandSocket::stop() {
-  if (!thread_.joinable()) return;
-  stopping_ = true;
+  if (stopping_.exchange(true)) return;
   shutdown(descriptor_, SHUT_RD);  // ends the wait
   thread_.join();
   close(descriptor_);
@@ -52,9 +52,6 @@ void HandSocket::stop() {
 }
 
 void HandSocket::listen() {
-  sigset_t all;
-  sigfillset(&all);
-  pthread_sigmask(SIG_BLOCK, &all, nullptr);  // signals are for the thread that waits for them
   while (!stopping_) {
     HandTarget target;
     // MSG_TRUNC gives the true size, so that a longer datagram is not mistaken for a target.

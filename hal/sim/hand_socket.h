@@ -10,10 +10,10 @@
 #include <atomic>
 #include <memory>
 #include <string>
-#include <thread>
 
 #include "hal/latest_slot.h"
 #include "hal/sim/hand_target.h"
+#include "hal/thread.h"
 #include "model/io/socket_file.h"
 #include "model/result.h"
 
@@ -44,7 +44,7 @@ class HandSocket {
   model::io::SocketFile file_;
   LatestSlot<HandTarget>& newest_;
   std::atomic<bool> stopping_{false};
-  std::thread thread_;  // last: it uses the others
+  Thread thread_;  // last: it uses the others
 };
 
 }  // namespace tact::hal::sim

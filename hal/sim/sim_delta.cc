@@ -25,7 +25,6 @@ constexpr double kMaxPhysics_s = 0.1;
 constexpr double kMaxDelay_s = 0.1;
 // 16 bits, chosen: fine beside the +-20 degrees of the wrist.
 constexpr double kWristCountsPerTurn = 65536.0;
-constexpr double kJump_m = 5e-3, kJump_rad = 0.1;  // between two samples: a new start
 constexpr double kGripHalfWidth_m = 0.05;          // the hand holds the handle here, at both sides
 constexpr double kGripperForce_N = 8.0, kGripperOpen_m = 0.025;  // as an omega.7's
 
@@ -57,8 +56,8 @@ SimDelta::SimDelta(const SimDeviceSettings& device, const model::HandSettings& h
              point_D(inside_workspace_m(mounting.point_in_base(hand_.position_W_m()))),
              gravity_D_mps2_),
       wrist_(wrist_angles_rad(hand_.rotation_rad())),
-      velocity_(device.observer_bandwidth_Hz, kJump_m),
-      angular_velocity_(device.observer_bandwidth_Hz, kJump_rad),
+      velocity_(device.observer_bandwidth_Hz, kJump_mps),
+      angular_velocity_(device.observer_bandwidth_Hz, kJump_radps),
       shown_s_(-device.sample_delay_s) {
   history_.fill(state_now());  // at rest here since before the start
   // An end that is older than any delay: state_at always finds two states around its time.

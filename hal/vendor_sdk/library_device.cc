@@ -15,7 +15,6 @@ namespace tact::hal::vendor_sdk {
 namespace {
 
 constexpr double kObserver_Hz = 40.0;
-constexpr double kJump_m = 0.02, kJump_rad = 0.5;  // between two samples: a new start
 
 }  // namespace
 
@@ -28,9 +27,9 @@ std::string assumed_damping_text(double damping_Ns_per_m, double default_Ns_per_
 LibraryDevice::LibraryDevice(DeviceInfo info, std::shared_ptr<LibraryWorker> worker)
     : info_(std::move(info)),
       worker_(std::move(worker)),
-      linear_(kObserver_Hz, kJump_m),
-      angular_(kObserver_Hz, kJump_rad),
-      gap_(kObserver_Hz, kJump_m) {}
+      linear_(kObserver_Hz, kJump_mps),
+      angular_(kObserver_Hz, kJump_radps),
+      gap_(kObserver_Hz, kJump_mps) {}
 
 LibraryDevice::~LibraryDevice() { stop(); }
 

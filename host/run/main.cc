@@ -5,14 +5,13 @@
 
 #include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/read_until.hpp>
-#include <boost/asio/signal_set.hpp>
-#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "host/net/stop_signals.h"
 #include "host/record/recording_csv.h"
 #include "host/run/command_line.h"
 #include "host/run/operator_inputs.h"
@@ -162,8 +161,9 @@ int serve(const Options& options, boost::asio::io_context& io, server::ViewerSer
           const Start& start) {
   if (const std::optional<model::Error> error = server.open(options.viewer))
     return fail(error->message);
-  boost::asio::signal_set signals(io, SIGINT, SIGTERM);
-  signals.async_wait([&io](boost::system::error_code, int) { io.stop(); });
+  net::StopSignals signals(io);
+  if (const auto wrong = signals.wait([&io] { io.stop(); }))
+    return fail("Ctrl-C cannot be waited for: " + wrong.message());
   server.start();
   start();
   say_ready(options, server);

@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/asio/signal_set.hpp>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "host/net/stop_signals.h"
 #include "host/run/telemetry_client.h"
 #include "host/tracking/operator_tracking.h"
 #include "host/tracking/registration.h"
@@ -169,8 +169,11 @@ int register_tracker(const Options& options) {
            [&](const std::string& reason) {
              say(reason.empty() ? "waiting for tactd at " + options.socket : reason);
            }});
-  boost::asio::signal_set signals(io, SIGINT, SIGTERM);
-  signals.async_wait([&io](boost::system::error_code, int) { io.stop(); });
+  net::StopSignals signals(io);
+  if (const auto wrong = signals.wait([&io] { io.stop(); })) {
+    say("Ctrl-C cannot be waited for: " + wrong.message());
+    return kBadInput;
+  }
   say(
       fmt::format("move the tool to {} places, 15 mm or more apart and not on a line, and hold it "
                   "still at each; Ctrl-C ends",

@@ -2,10 +2,16 @@
 #include "hal/shutdown_frames.h"
 
 #include <gtest/gtest.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <sys/prctl.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstddef>
+#include <iterator>
 #include <thread>
 #include <vector>
 
@@ -86,6 +92,28 @@ TEST(ShutdownFrames, AQueueThatIsFullForAMomentIsTriedAgain) {
   }
   reader.join();
   EXPECT_EQ(say_step(words, 0), 0);
+}
+
+// The kernel refuses the first step, of two words, and takes the second.
+TEST(ShutdownFrames, AStepThatFailsKeepsNoLaterOneBack) {
+  const auto say_without_the_first = [] {
+    const Ends ends;
+    const ShutdownFrames words = three_words(ends.fd[0]);
+    sock_filter rules[] = {
+        BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
+        BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_sendmmsg, 0, 2),
+        BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, args[2])),
+        BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, 2, 1, 0),
+        BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW),
+        BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | EIO),
+    };
+    const sock_fprog program{.len = std::size(rules), .filter = rules};
+    prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
+    if (prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) != 0) _exit(1);
+    if (say_all(words) != EIO) _exit(2);
+    _exit(ends.heard() == std::vector<Bytes>{{3}} ? 0 : 3);
+  };
+  EXPECT_EXIT(say_without_the_first(), testing::ExitedWithCode(0), "");
 }
 
 TEST(ShutdownFrames, ADeviceThatIsGoneIsAnErrorAndNoMore) {

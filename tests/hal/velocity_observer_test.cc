@@ -19,12 +19,12 @@ constexpr double kTick_s = 1e-3;
 constexpr double kQuantum_m = 0.0236e-3;
 
 TEST(VelocityObserver, RestGivesZero) {
-  VelocityObserver observer(kBandwidth_Hz, 5e-3);
+  VelocityObserver observer(kBandwidth_Hz, kJump_mps);
   for (int i = 0; i < 100; ++i) EXPECT_EQ(observer.step({0.1, -0.2, 0.3}, kTick_s), Vec3{});
 }
 
 TEST(VelocityObserver, TracksConstantVelocityWithoutBiasAtUnevenTimes) {
-  VelocityObserver observer(kBandwidth_Hz, 5e-3);
+  VelocityObserver observer(kBandwidth_Hz, kJump_mps);
   const Vec3 v{0.3, -0.1, 0.02};
   double t = 0.0;
   Vec3 seen;
@@ -38,7 +38,7 @@ TEST(VelocityObserver, TracksConstantVelocityWithoutBiasAtUnevenTimes) {
 
 TEST(VelocityObserver, ArrivesAfterTheDelayItStates) {
   // At constant acceleration a the delay 2/w shows as a velocity error of 2 a / w.
-  VelocityObserver observer(kBandwidth_Hz, 1.0);
+  VelocityObserver observer(kBandwidth_Hz, 100.0);
   const double a = 2.0, w = 2.0 * std::numbers::pi * kBandwidth_Hz;
   double t = 0.0, error = 0.0;
   for (int i = 0; i < 500; ++i, t += kTick_s)
@@ -51,7 +51,7 @@ TEST(VelocityObserver, OneQuantumDisturbsLessThanItsBound) {
   const double bound_mps = 2.0 * std::numbers::pi * kBandwidth_Hz * kQuantum_m / std::numbers::e;
   double worst_mps = 0.0, worst_difference_mps = 0.0;
   for (const double v : {0.0007, 0.0031, 0.0087, 0.0117, 0.0236, 0.0411}) {
-    VelocityObserver observer(kBandwidth_Hz, 5e-3);
+    VelocityObserver observer(kBandwidth_Hz, kJump_mps);
     double last_m = 0.0;
     for (int i = 0; i < 4000; ++i) {
       const double counted_m = kQuantum_m * std::floor(v * i * kTick_s / kQuantum_m + 0.5);
@@ -69,16 +69,33 @@ TEST(VelocityObserver, OneQuantumDisturbsLessThanItsBound) {
   EXPECT_GE(worst_difference_mps, 0.020);
 }
 
-TEST(VelocityObserver, AJumpIsANewStart) {
-  VelocityObserver observer(kBandwidth_Hz, 5e-3);
-  for (int i = 0; i < 100; ++i) observer.step({0.1 * i * kTick_s, 0.0, 0.0}, kTick_s);
-  EXPECT_EQ(observer.step({0.2, 0.0, 0.0}, kTick_s), Vec3{});
-  EXPECT_EQ(observer.step({0.2, 0.0, 0.0}, kTick_s), Vec3{});
+TEST(VelocityObserver, AJumpIsNeverToldAsSlow) {
+  for (const double tick_s : {1e-2, 4e-3, 1e-3, 2.5e-4}) {
+    VelocityObserver observer(kBandwidth_Hz, kJump_mps);
+    for (int i = 0; i < 100; ++i) observer.step({0.1 * i * tick_s, 0.0, 0.0}, tick_s);
+    const double from_m = 0.1 * 99 * tick_s;
+    EXPECT_GT(observer.step({from_m + 0.1, 0.0, 0.0}, tick_s).x, 0.09 / tick_s);
+    EXPECT_GT(observer.step({from_m + 0.2, 0.0, 0.0}, tick_s).x, 0.09 / tick_s);
+  }
+}
+
+// Gaps of samples, too: 0.8 m/s from one tick to the next, as of a hand that slips.
+TEST(VelocityObserver, AHardStartIsToldWithinKJumpAtAnyRateAndAfterAnyGap) {
+  for (const double tick_s : {1e-2, 4e-3, 1e-3, 2.5e-4})
+    for (const int missed : {0, 1, 5, 19}) {
+      VelocityObserver observer(kBandwidth_Hz, kJump_mps);
+      for (int i = 0; i < 100; ++i) observer.step({}, tick_s);
+      const double gap_s = (1 + missed) * tick_s;
+      EXPECT_NEAR(observer.step({0.8 * gap_s, 0.0, 0.0}, gap_s).x, 0.8, 1e-9);
+      VelocityObserver slower(kBandwidth_Hz, kJump_mps);
+      for (int i = 0; i < 100; ++i) slower.step({}, tick_s);
+      EXPECT_GE(slower.step({0.49 * gap_s, 0.0, 0.0}, gap_s).x, 0.0);
+    }
 }
 
 TEST(VelocityObserver, NanGivesZeroAndIsForgotten) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  VelocityObserver observer(kBandwidth_Hz, 5e-3);
+  VelocityObserver observer(kBandwidth_Hz, kJump_mps);
   for (int i = 0; i < 100; ++i) observer.step({0.1 * i * kTick_s, 0.0, 0.0}, kTick_s);
   EXPECT_EQ(observer.step({nan, 0.0, 0.0}, kTick_s), Vec3{});
   EXPECT_EQ(observer.step({0.01, 0.0, 0.0}, kTick_s), Vec3{});
@@ -92,7 +109,7 @@ TEST(VelocityObserver, FollowsACountedHandMotionBetterThanDifferences) {
   std::ifstream stream(TACT_SOURCE_DIR "/tests/data/vectors/kinematics_trajectory.json");
   ASSERT_TRUE(stream);
   const auto file = nlohmann::json::parse(stream);
-  VelocityObserver observer(40.0, 5e-3);
+  VelocityObserver observer(40.0, kJump_mps);
   const auto vec = [](const nlohmann::json& v) { return Vec3{v[0], v[1], v[2]}; };
   const double dt = file.at("dt");
   double observed = 0.0, differenced = 0.0;
@@ -116,7 +133,7 @@ TEST(VelocityObserver, FollowsACountedHandMotionBetterThanDifferences) {
 }
 
 TEST(VelocityObserver, LeavesTheHeapAlone) {
-  VelocityObserver observer(kBandwidth_Hz, 5e-3);
+  VelocityObserver observer(kBandwidth_Hz, kJump_mps);
   tests::NoAlloc guard;
   (void)observer.step({0.1, 0.0, 0.0}, kTick_s);
   (void)observer.step({0.1001, 0.0, 0.0}, kTick_s);

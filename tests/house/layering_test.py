@@ -43,6 +43,9 @@ VOUCHES = {
 BY_IO = re.compile(r"\b[io]?fstream\b|\bfopen\(|\bCLI::(Range|Bound|Number|PositiveNumber|NonNegativeNumber|ExistingFile)\b"
                    r"|\bjson::parse\(|\.dump\(|\btoml::parse(_file)?\(")
 IO = "model/io/"
+# Threads start in one place, which returns an Error where the system refuses one and lets no exception out.
+BY_THREAD = re.compile(r"\bstd::j?thread\b(?!::hardware_concurrency)|\bpthread_create\(|\bstd::async\b|\bthread_pool\b")
+THREAD = ("hal/thread.h", "hal/thread.cc")
 # What carries bytes is no business of what reads them.
 TRANSPORT = re.compile(r"\s*#include <((?:sys|linux|libusb[^/>]*)/[^>]+|(?:libusb|gpiod)[^>]*)>")
 MAX_LINES, MAX_COLUMNS = 300, 100
@@ -76,6 +79,14 @@ def io_breaches(path, text):
     code = COMMENT.sub(blank, text)
     for found in BY_IO.finditer(code):
         yield f"{path}:{code.count(chr(10), 0, found.start()) + 1}: {found.group()}: use {IO}"
+
+
+def thread_breaches(path, text):
+    if path.startswith("tests/") or path in THREAD:
+        return
+    code = COMMENT.sub(blank, text)
+    for found in BY_THREAD.finditer(code):
+        yield f"{path}:{code.count(chr(10), 0, found.start()) + 1}: {found.group()}: use {THREAD[0]}"
 
 
 def throw_breaches(path, text):
@@ -163,6 +174,8 @@ def blind_rules():
         "number": io_breaches("tools/x.cc", "option->check(CLI::Range(0, 1));\n"),
         "parser": io_breaches("host/x.cc", "const auto j = nlohmann::json::parse(text);\n"),
         "JSON that may throw": io_breaches("tools/x/x.cc", "print(report.dump(2));\n"),
+        "thread": thread_breaches("host/x.cc", "std::thread t(f);\n"),
+        "thread of POSIX": thread_breaches("hal/x.cc", "pthread_create(&t, nullptr, f, nullptr);\n"),
         "throw": throw_breaches("tools/x.cc", "void f() { throw 1; }\n"),
         "real time": real_time_breaches("x.cc", "void f() RT_SAFE { new int; }\n"),
         "compiler": vouch_breaches("x.cc", '#pragma clang diagnostic ignored "-Wfunction-effects"\n'),
@@ -208,6 +221,7 @@ def main():
                 breaches += long_comments(name, text)
                 breaches += misnamed(name, text)
                 breaches += throw_breaches(name, text)
+                breaches += thread_breaches(name, text)
             if top != "tests" and (path.suffix in (".h", ".cc") or path.name == "CMakeLists.txt"):
                 texts[name] = text
             if path.suffix in (".h", ".cc") and not name.startswith(CANARIES):

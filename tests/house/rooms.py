@@ -53,7 +53,7 @@ ROOMS = {
     "firmware/guardian": ["model", "hal", "firmware/loop"],
     "firmware/protocol": ["model", "model/io", "firmware/loop"],
     "firmware/telemetry": [*LOOP, "firmware/loop", "firmware/protocol", "model/io", "model/scene"],
-    "firmware/black_box": ["model", "firmware/loop", "firmware/protocol", "firmware/telemetry"],
+    "firmware/black_box": ["model", "hal", "firmware/loop", "firmware/protocol", "firmware/telemetry"],
     "firmware/console": ["model", "model/io", "hal", "firmware/loop", "firmware/watch",
                          "firmware/protocol", "firmware/telemetry"],
     "firmware/admission": ["model", "model/contact", "model/indent", "model/law", "model/mesh", "model/scene", "hal",
@@ -68,7 +68,7 @@ ROOMS = {
     "host/net": [],
     "host/server": ["model", "model/io", *OPERATOR, "host/record", "host/net", "firmware/protocol"],
     "host/igtl": ["model", "host/pose", "host/tracking", "host/record", "host/net"],
-    "host/run": ["model", "model/io", *OPERATOR, "host/record", "host/igtl", "host/server", "hal/sim",
+    "host/run": ["model", "model/io", *OPERATOR, "host/net", "host/record", "host/igtl", "host/server", "hal/sim",
                  "firmware/protocol"],
 }
 # A tool measures every room above; of the other tools it may include these.

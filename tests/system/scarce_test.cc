@@ -15,8 +15,7 @@ class Scarce : public Tactd {
     std::ofstream(script)
         << "cd " << folder << "\nexport XDG_RUNTIME_DIR=" << folder << "\n"
         << "start() { " << program_path("tactd") << " " << kLiver
-        << " --set rate_Hz=500 --no-black-box --json report.json " << options
-        << " >out 2>told & tactd=$!; }\n"
+        << " --set rate_Hz=500 --json report.json " << options << " >out 2>told & tactd=$!; }\n"
         << "begun() { for i in {1..200}; do " << program_path("tactctl") << " " << kLiver
         << " status 2>&1 | grep -q armed && break; sleep .05; done; }\n"
         << "told() { for i in {1..100}; do grep -qs \"$1\" told && break; sleep .05; done; }\n"
@@ -36,9 +35,10 @@ class Scarce : public Tactd {
 };
 
 TEST_F(Scarce, AFileSizeLimitEndsTheRecordAndNotTheLoop) {
-  const Outcome out = in_bash("ulimit -f 64", "--no-telemetry --record log --seconds 3",
-                              "begun; told 'goes on without its record'; kill -0 $tactd && echo "
-                              "lives\nwait $tactd; echo status $?; cat told");
+  const Outcome out =
+      in_bash("ulimit -f 64", "--no-black-box --no-telemetry --record log --seconds 3",
+              "begun; told 'goes on without its record'; kill -0 $tactd && echo "
+              "lives\nwait $tactd; echo status $?; cat told");
   EXPECT_TRUE(has(out, "lives\n")) << out.output;
   EXPECT_TRUE(has(out, "status 1\n")) << out.output;
   EXPECT_TRUE(has(out, "what was written before is kept")) << out.output;
@@ -64,9 +64,38 @@ TEST_F(Scarce, AFullDiskEndsTheRecordAndNotTheLoop) {
   EXPECT_GT(report().at("ticks"), 100) << out.output;
 }
 
+TEST_F(Scarce, WithoutAThreadItEndsBeforeTheLoopAndSaysSo) {
+  const std::string start = program_path("tactd") + " " + kLiver + " --seconds 1 --socket " +
+                            in_folder("t.sock") + " --black-box " + in_folder("kept");
+  // Root has no such limit.
+  const std::string user = geteuid() == 0 ? "setpriv --reuid 65534 --clear-groups " : "";
+  const Outcome out = run_command("chmod 777 " + folder + "; timeout -s KILL 60 " + user +
+                                  "bash -c 'ulimit -u 1; exec " + start + "'");
+  EXPECT_TRUE(out.status == 1 || out.status == 2) << out.status << ": " << out.output;
+  EXPECT_TRUE(has(out, "cannot be started")) << out.output;
+  EXPECT_FALSE(has(out, "terminate called")) << out.output;
+}
+
+TEST_F(Scarce, WithoutMemoryAFaultStillLeavesItsBlackBox) {
+  for (const std::string kind : {"VmSize --as", "VmData --data"}) {
+    const auto gap = kind.find(' ');
+    const Outcome out = in_bash(
+        "", "--black-box kept --record log --socket t.sock",
+        "begun; k=$(awk '/" + kind.substr(0, gap) + "/ {print $2}' /proc/$tactd/status)\n" +
+            "prlimit --pid $tactd " + kind.substr(gap + 1) + "=$((k * 1024)):$((k * 1024))\n" +
+            "kill -XCPU $tactd; wait $tactd; echo status $?; cat told; stat -c '%s B' kept/*\n"
+            "rm -r kept log");
+    EXPECT_TRUE(has(out, "status 1\n")) << kind << out.output;
+    EXPECT_TRUE(has(out, "black box of fault 122")) << kind << out.output;
+    EXPECT_FALSE(has(out, "terminate called")) << kind << out.output;
+    EXPECT_FALSE(has(out, "\n0 B")) << kind << out.output;
+    EXPECT_FALSE(report().is_discarded()) << kind << out.output;
+  }
+}
+
 TEST_F(Scarce, WithoutAFreeDescriptorTheLoopGoesOnAndItsPersonIsHeard) {
   const Outcome out =
-      in_bash("", "--socket t.sock",
+      in_bash("", "--no-black-box --socket t.sock",
               "begun; last=$(ls /proc/$tactd/fd | sort -n | tail -1); prlimit --pid $tactd "
               "--nofile=$((last + 1)):$((last + 1))\n"
               "sleep .3\n" +

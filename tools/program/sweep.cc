@@ -17,6 +17,7 @@
 #include <thread>
 #include <utility>
 
+#include "hal/thread.h"
 #include "tools/program/interrupt.h"
 #include "tools/program/run_program.h"
 
@@ -116,8 +117,11 @@ bool run_jobs(std::size_t jobs, const SweepOptions& options,
   };
   {
     const Progress progress(options.label, jobs);
-    std::vector<std::jthread> threads;
-    for (unsigned i = worker_count(jobs, options); i > 0; --i) threads.emplace_back(worker);
+    std::vector<hal::Thread> threads;
+    for (unsigned i = worker_count(jobs, options); i > 0; --i)
+      if (auto thread = hal::start_thread("tact-worker", worker))
+        threads.push_back(std::move(*thread));
+    if (threads.empty()) worker();
     for (; board.done.load() < jobs && !is_interrupted(); std::this_thread::sleep_for(50ms))
       progress.show(board.done.load());
   }  // joined

@@ -34,11 +34,10 @@ class BlackBoxTest : public testing::Test {
 
   std::unique_ptr<BlackBox> make() const {
     const auto tissue = std::move(*model::scene::make_tissue(scene));
-    BlackBoxRun run{.folder = folder + "/kept",
-                    .header = telemetry::header_of(scene, *tissue),
-                    .meshes = telemetry::mesh_bytes(scene)};
-    run.header.scene_name = "plate / 2";
-    return std::make_unique<BlackBox>(std::move(run), 1000.0, 50.0);
+    auto header = telemetry::header_of(scene, *tissue);
+    header.scene_name = "plate / 2";
+    return std::move(
+        *BlackBox::make({folder + "/kept", header, telemetry::mesh_bytes(scene)}, 1000.0, 50.0));
   }
   // Ticks as the telemetry thread gives them, a frame every 20.
   void ticks(BlackBox& box, int n, model::Fault fault = model::Fault::kNone) {

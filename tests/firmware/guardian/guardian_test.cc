@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <sched.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -222,6 +223,23 @@ TEST(Guardian, ItsCallsAreFilteredAndItsFilesAreFew) {
   EXPECT_EQ(tests::run_command("grep -c 'Seccomp:.2' " + proc + "/status").output, "1\n");
   EXPECT_EQ(tests::run_command("ls " + proc + "/fd | wc -l").output, "5\n")
       << "socket, /dev/null, standard error, liveness lock, device";
+}
+
+TEST(Guardian, IsRealTimeInLockedMemoryAndSparedByTheOomKiller) {
+  if (geteuid() != 0) GTEST_SKIP() << "an ordinary user may not ask for all of it";
+  const Wire wire;
+  const auto guardian = start(wire.words);
+  ASSERT_TRUE(guardian);
+  const std::string proc = "/proc/" + std::to_string(guardian->process());
+  EXPECT_EQ(sched_getscheduler(guardian->process()), SCHED_FIFO);
+  // A container may have kept this from root.
+  if (tests::run_command("echo -1000 >/proc/self/oom_score_adj").status == 0)
+    EXPECT_EQ(tests::run_command("cat " + proc + "/oom_score_adj").output, "-1000\n");
+  const auto field = [&proc](const std::string& name) {
+    return std::stol(
+        tests::run_command("awk '/^" + name + ":/ {print $2}' " + proc + "/status").output);
+  };
+  EXPECT_GE(2 * field("VmLck"), field("VmSize")) << "the kernel's own pages are no part of it";
 }
 
 TEST(Guardian, AMissingProgramIsRefusedWithTheRemedy) {

@@ -37,7 +37,7 @@ TEST(Telemetry, TheShapeOfAPatchReachesThePageWhole) {
   Telemetry telemetry(*ring, FrameBuilder(tissue->law().contact_law(), controller.shapes(), false),
                       {.frame_rate_Hz = 1000.0}, Sinks{});
   const RunHeader header = header_of(*scene, *tissue);
-  telemetry.start();
+  ASSERT_FALSE(telemetry.start());
   std::uint32_t displaced = 0;
   for (int i = 0; i < 8000; ++i) {
     loop.step();

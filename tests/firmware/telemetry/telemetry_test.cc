@@ -230,7 +230,7 @@ TEST(Telemetry, ThreadAndLoopShareOnlyTheRing) {  // for the thread sanitizer
   const auto shapes = std::make_unique<loop::ShapeSlot>();
   Telemetry telemetry(*ring, FrameBuilder(tissue->law().contact_law(), *shapes, false),
                       {.frame_rate_Hz = 200.0}, Sinks{});
-  telemetry.start();
+  ASSERT_FALSE(telemetry.start());
   loop::TickRecord record;
   for (int i = 0; i < 20000; ++i) {
     record.tick = static_cast<std::uint64_t>(i);

@@ -51,7 +51,7 @@ TEST_F(FilteredLoop, NeedsNoCallThatIsNotListed) {
 TEST_F(FilteredLoop, AForbiddenCallFailsAndStopsTheForceInTheSameTick) {
   make({});
   if (filter == nullptr) return;
-  watch.start({});
+  ASSERT_FALSE(watch.start({}));
   start_filtered();
   device.calls.store(true);
   ASSERT_TRUE(soon([this] { return lines.drops.load() > 0; })) << "the watch hears of it, too";

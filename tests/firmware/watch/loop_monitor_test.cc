@@ -69,7 +69,7 @@ TEST(StallDetector, ASlowLoopThatTicksIsNotStalled) {
 }
 
 TEST_F(MonitoredLoop, ADeviceThatHangsLosesTheEnableLineAndThenTheForce) {
-  watch.start({});
+  ASSERT_FALSE(watch.start({}));
   start();
   EXPECT_EQ(lines.drops.load(), 0) << "nothing to find yet";
   device.asleep.store(true);
@@ -99,7 +99,7 @@ TEST_F(MonitoredLoop, AGuardianThatIsLostTakesTheForceAndTheEnableLine) {
   std::atomic<bool> lost{false};
   LoopMonitor beside(StallDetector(kMs, false), loop->progress(), requests, lines,
                      {.is_lost = &lost});
-  beside.start({});
+  ASSERT_FALSE(beside.start({}));
   start();
   EXPECT_EQ(requests.fault.load(), model::Fault::kNone);
   lost.store(true);
@@ -164,7 +164,7 @@ TEST_F(MonitoredLoop, ALoopThatNeverSleepsEndsWithZeroForce) {
 TEST_F(MonitoredLoop, ABusyCallThatNeverReturnsLosesTheEnableLine) {
   std::atomic<bool> allowed{false};
   const RunawayGuard guard(requests);
-  watch.start({});
+  ASSERT_FALSE(watch.start({}));
   start([&allowed] { become_real_time(allowed); }, [] { pc::leave_rt_thread(); });
   if (!allowed) GTEST_SKIP() << "needs the right to real-time priority 1";
   device.busy.store(true);

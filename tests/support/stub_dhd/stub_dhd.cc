@@ -4,7 +4,8 @@
 //
 // Behind it a delta.3, led by a hand (led_handle.h). Forces are cut by the watchdog as the device
 // cuts them. Each process has a device of its own, as TACT_STUB_DHD_SERIAL or its pid numbers it.
-// With TACT_STUB_DHD_NO_WATCHDOG it bears a PC that stalls.
+// With TACT_STUB_DHD_NO_WATCHDOG it bears a PC that stalls; at its end it writes to the descriptor
+// TACT_STUB_DHD_END whether the force is off.
 #include "tests/support/stub_dhd/stub_dhd.h"
 
 #include <unistd.h>
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <mutex>
@@ -37,6 +39,19 @@ constexpr int kErrorCode = 1, kNotEnabled = 9, kBadId = 15;
 constexpr int kCausedByWatchdog = 3, kCausedBySoftware = 4;
 
 thread_local int last_error = 0;
+
+/// At a regular end: what the motors are left with. Twice, as a test may let one call fail.
+struct End {
+  End() = default;
+  End(const End&) = delete;
+  End& operator=(const End&) = delete;
+  ~End() {
+    const char* to = std::getenv("TACT_STUB_DHD_END");
+    for (int i = 0; to != nullptr && i < 2; ++i)
+      dprintf(std::atoi(to), state.status[kForce] != 0 ? "force on\n" : "force off\n");
+  }
+};
+const End at_the_end;
 
 /// Counts the call; the error that it must give, or 0.
 int enter(const char* function) {

@@ -233,9 +233,9 @@ TEST(LoopBack, ReadsUntilItIsStopped) {
     std::int64_t now_ns_ = 0;
   };
   std::atomic<int> reads{0};
-  LoopBack loop_back(std::make_unique<Pulses>(reads), kMs);
+  const auto loop_back = std::move(*LoopBack::start(std::make_unique<Pulses>(reads), kMs));
   while (reads < 2) std::this_thread::yield();
-  const PulseMeter meter = loop_back.stop();
+  const PulseMeter meter = loop_back->stop();
   EXPECT_GT(meter.pulses().histogram.count(), 0u);
   EXPECT_EQ(meter.pulses().histogram.max_ns(), 7'000u);
   EXPECT_EQ(meter.unpaired(), 0u);

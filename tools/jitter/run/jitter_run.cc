@@ -2,7 +2,6 @@
 #include "tools/jitter/run/jitter_run.h"
 
 #include <fmt/format.h>
-#include <pthread.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,8 +12,10 @@
 
 #include "firmware/loop/rt_loop.h"
 #include "firmware/run/loop_parts.h"
+#include "hal/thread.h"
 #include "model/time_ns.h"
 #include "tools/jitter/run/bare_loop.h"
+#include "tools/jitter/run/follower.h"
 #include "tools/jitter/run/live_line.h"
 #include "tools/jitter/run/load.h"
 #include "tools/jitter/run/peer.h"
@@ -33,34 +34,9 @@ constexpr double kBareRate_Hz = 1000.0;
 constexpr double kLongestSlice_s = 5.0;
 constexpr double kThresholdShare = 0.1;  // of the period: what integrators allow a wake-up
 constexpr auto kDrainPeriod = 5ms;       // 50 ticks at 10 kHz, of 4096 that the ring holds
-constexpr int kFollowPriority = 5;       // above all ordinary work, below anything of a loop
 constexpr auto kCostPeriod = 100ms;
 constexpr double kLoadLeft_s = 60.0;  // beyond the run: it ends by itself should we be killed
 constexpr auto kLoadNeeds = 1s;       // until all of its processes run
-
-// Above the load and off the loop's core while it lives: to look at the kernel's counters takes the
-// kernel some 100 us, in which no other thread of that core wakes. Where FIFO is refused the thread
-// stays an ordinary one; on a PC of one core it stays there.
-class Follower {
- public:
-  explicit Follower(int loop_core) {
-    pthread_getaffinity_np(pthread_self(), sizeof before_, &before_);
-    cpu_set_t others = before_;
-    CPU_CLR(static_cast<std::size_t>(loop_core), &others);
-    if (CPU_COUNT(&others) > 0) pthread_setaffinity_np(pthread_self(), sizeof others, &others);
-    const sched_param above_the_load{.sched_priority = kFollowPriority};
-    pthread_setschedparam(pthread_self(), SCHED_FIFO, &above_the_load);
-  }
-  ~Follower() {
-    firmware::pc::leave_rt_thread();  // what is started from here on is ordinary
-    pthread_setaffinity_np(pthread_self(), sizeof before_, &before_);
-  }
-  Follower(const Follower&) = delete;
-  Follower& operator=(const Follower&) = delete;
-
- private:
-  cpu_set_t before_{};
-};
 
 // Everything of one measurement, in the order in which it comes to life.
 class Run {
@@ -71,7 +47,7 @@ class Run {
  private:
   std::optional<Error> open();
   std::optional<Error> measure();
-  void run_slice(double duration_s, bool last);
+  std::optional<Error> run_slice(double duration_s, bool last);
   void follow(const std::atomic<bool>& ended);
   void drain();
   void explain();
@@ -95,7 +71,7 @@ class Run {
   firmware::loop::Requests requests_;
   std::optional<TraceMarker> marker_;
   std::optional<LiveLine> live_;
-  std::optional<LoopBack> loop_back_;
+  std::unique_ptr<LoopBack> loop_back_;
   firmware::pc::PcFiles files_;
   std::atomic<int> loop_thread_{0};
   Costs before_;
@@ -163,7 +139,9 @@ std::optional<Error> Run::open() {
   if (options_.loop_back >= 0) {
     auto edges = hal::gpio::open_edge_monitor(lines().chip, options_.loop_back, "tact-jitter");
     if (!edges) return edges.error();
-    loop_back_.emplace(std::move(*edges), loop_period_ns());
+    auto loop_back = LoopBack::start(std::move(*edges), loop_period_ns());
+    if (!loop_back) return loop_back.error();
+    loop_back_ = std::move(*loop_back);
   }
   result_.armed = options_.arm || !is_hardware();
   requests_.arm_at_start.store(result_.armed);
@@ -188,7 +166,7 @@ std::optional<Error> Run::measure() {
   const auto slices = slices_of(options_.duration_s, options_.peer && !in_one_piece());
   for (std::size_t i = 0; i < slices.size(); ++i) {
     const double slice_s = slices[i];
-    run_slice(slice_s, i + 1 == slices.size());
+    if (auto error = run_slice(slice_s, i + 1 == slices.size())) return error;
     if (program::is_interrupted()) break;
     if (!options_.peer) continue;
     Series turn;
@@ -215,7 +193,7 @@ std::optional<Error> Run::measure() {
 
 // Letting go takes the power of an armed device away, which is a fault in the next slice: between
 // slices, which only a simulated device has, the loop pauses with its last force.
-void Run::run_slice(double duration_s, bool last) {
+std::optional<Error> Run::run_slice(double duration_s, bool last) {
   const auto periods = static_cast<std::uint64_t>(std::ceil(duration_s * result_.rate_Hz));
   std::optional<firmware::loop::RtLoop> loop;
   std::optional<BareLoop> bare;
@@ -230,7 +208,7 @@ void Run::run_slice(double duration_s, bool last) {
   firmware::run::ThreadCosts costs;
   // follow() waits for the new thread's number: the counters of the old one are gone.
   loop_thread_.store(0);
-  std::thread thread([&] {
+  auto thread = hal::start_thread("tact-loop", [&] {
     costs = firmware::run::run_as_loop_thread(rt_, [&] {
       loop_thread_.store(gettid());
       if (bare) bare->run();
@@ -240,10 +218,12 @@ void Run::run_slice(double duration_s, bool last) {
     if (is_hardware()) parts_.device->stop();  // at once: drives watch for their host
     ended.store(true);
   });
+  if (!thread) return thread.error();
   follow(ended);
-  thread.join();
+  thread->join();
   drain();
   add_to(result_.thread, costs);
+  return std::nullopt;
 }
 
 // The thread beside the loop: empties the ring, reads the kernel's counters, shows a line. As an

@@ -16,18 +16,24 @@ void PulseMeter::add(const hal::gpio::Edge& edge) {
   rose_ns_.reset();
 }
 
-LoopBack::LoopBack(std::unique_ptr<hal::gpio::EdgeMonitor> edges, std::int64_t period_ns)
-    : edges_(std::move(edges)), meter_(period_ns), thread_([this] {
-        while (!ending_.load())
-          for (const hal::gpio::Edge& edge : edges_->read(std::chrono::milliseconds(20)))
-            meter_.add(edge);
-      }) {}
+model::Result<std::unique_ptr<LoopBack>> LoopBack::start(
+    std::unique_ptr<hal::gpio::EdgeMonitor> edges, std::int64_t period_ns) {
+  std::unique_ptr<LoopBack> back(new LoopBack(std::move(edges), period_ns));
+  auto thread = hal::start_thread("tact-edges", [&back = *back] {
+    while (!back.ending_.load())
+      for (const hal::gpio::Edge& edge : back.edges_->read(std::chrono::milliseconds(20)))
+        back.meter_.add(edge);
+  });
+  if (!thread) return thread.error();
+  back->thread_ = std::move(*thread);
+  return back;
+}
 
 LoopBack::~LoopBack() { stop(); }
 
 PulseMeter LoopBack::stop() {
   ending_.store(true);
-  if (thread_.joinable()) thread_.join();
+  thread_.join();
   return meter_;
 }
 

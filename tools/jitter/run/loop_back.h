@@ -7,9 +7,9 @@
 #include <atomic>
 #include <memory>
 #include <optional>
-#include <thread>
 
 #include "hal/gpio/edge_monitor.h"
+#include "hal/thread.h"
 #include "tools/jitter/statistics/tick_times.h"
 
 namespace tact::tools::jitter {
@@ -34,7 +34,8 @@ class PulseMeter {
 /// A thread of its own that reads edges until it is stopped.
 class LoopBack {
  public:
-  LoopBack(std::unique_ptr<hal::gpio::EdgeMonitor> edges, std::int64_t period_ns);
+  static model::Result<std::unique_ptr<LoopBack>> start(
+      std::unique_ptr<hal::gpio::EdgeMonitor> edges, std::int64_t period_ns);
   ~LoopBack();
   LoopBack(const LoopBack&) = delete;
   LoopBack& operator=(const LoopBack&) = delete;
@@ -43,10 +44,13 @@ class LoopBack {
   PulseMeter stop();
 
  private:
+  LoopBack(std::unique_ptr<hal::gpio::EdgeMonitor> edges, std::int64_t period_ns)
+      : edges_(std::move(edges)), meter_(period_ns) {}
+
   std::unique_ptr<hal::gpio::EdgeMonitor> edges_;
   PulseMeter meter_;
   std::atomic<bool> ending_{false};
-  std::thread thread_;
+  hal::Thread thread_;
 };
 
 }  // namespace tact::tools::jitter

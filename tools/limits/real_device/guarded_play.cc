@@ -62,7 +62,7 @@ firmware::run::ThreadCosts play_guarded(const Runs& runs, const LimitsBench& ben
       std::fflush(stderr);
     });
   }
-  executor.join();
+  if (const auto error = executor.join()) fmt::print(stderr, "tact-limits: {}\n", error->message);
   if (progress) progress(done.load(), runs.size());
   const Fault found = requests.fault.load();
   for (const auto& run : runs)
