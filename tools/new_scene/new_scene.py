@@ -188,16 +188,15 @@ def write_all(files, force):
                 os.fsync(handle)
             os.chmod(part, 0o644)
         for (path, _), part in zip(files, parts):
-            if force:
-                os.replace(part, os.path.realpath(path))
-            else:
-                os.link(part, path)
-                made.append(path)
+            if not force and os.path.lexists(path):
+                raise FileExistsError
+            os.replace(part, os.path.realpath(path))
+            made += [] if force else [path]
     except OSError as error:
         for one in made:
             os.unlink(one)
         if isinstance(error, FileExistsError):
-            raise run.Failure(f"{path}: exists already and is never overwritten; move it away or choose another name") from None
+            raise run.Failure(f"{path}: exists already and is never overwritten; choose another name") from None
         raise run.Failure(f"{path}: cannot be written: {error.strerror}; check the folder, who may write there and the free "
                           "space") from None
     finally:

@@ -8,12 +8,10 @@
 #include <atomic>
 #include <chrono>
 #include <cstdio>
-#include <mutex>
 #include <thread>
 #include <utility>
 
 #include "tools/program/interrupt.h"
-#include "tools/program/run_program.h"
 
 namespace tact::tools::program {
 namespace {
@@ -74,27 +72,6 @@ bool run_jobs(std::size_t jobs, const SweepOptions& options,
       progress.show(done.load());
   }  // joined
   return done.load() == jobs;
-}
-
-std::optional<model::Error> run_until_error(
-    std::size_t jobs, const SweepOptions& options,
-    const std::function<std::optional<model::Error>(std::size_t job)>& work) {
-  std::mutex mutex;
-  std::optional<model::Error> first_error;
-  const auto work_or_leave = [&](std::size_t job) {
-    {
-      const std::lock_guard lock(mutex);
-      if (first_error) return;
-    }
-    // Without the lock: a job may take minutes.
-    auto error = work(job);
-    const std::lock_guard lock(mutex);
-    if (!first_error) first_error = std::move(error);
-  };
-  const bool whole = run_jobs(jobs, options, work_or_leave);
-  if (first_error) return first_error;
-  if (!whole) return interruption();
-  return std::nullopt;
 }
 
 }  // namespace tact::tools::program

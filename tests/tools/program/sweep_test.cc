@@ -27,23 +27,6 @@ TEST(Sweep, RunsEveryJobOnce) {
   for (const auto& times : ran) EXPECT_EQ(times.load(), 1);
 }
 
-TEST(Sweep, TellsTheFirstErrorAndBeginsNoJobAfterIt) {
-  const auto run = [](std::size_t bad, std::size_t& begun) {
-    return run_until_error(6, {.label = "", .threads = 1},
-                           [&](std::size_t job) -> std::optional<model::Error> {
-                             ++begun;
-                             if (job < bad) return std::nullopt;
-                             return model::Error{"job " + std::to_string(job)};
-                           });
-  };
-  std::size_t begun = 0;
-  const auto error = run(2, begun);
-  ASSERT_TRUE(error);
-  EXPECT_EQ(error->message, "job 2");
-  EXPECT_EQ(begun, 3u);
-  EXPECT_FALSE(run(6, begun));
-}
-
 TEST(Sweep, CtrlCEndsItBetweenTwoJobs) {
   const InterruptFlag watch;
   std::atomic<int> ran{0};
