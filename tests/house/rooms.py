@@ -78,9 +78,9 @@ TOOLS = {
     "fit": ["program", "report", "ground_truth"],
     "chart": ["program", "report", "ground_truth"],
     "plan": ["program", "report", "chart"],
-    **dict.fromkeys(["figures", "stability"], ["program", "report", "printed"]),
+    "stability": ["program", "report", "printed"],
     "verify": ["program", "printed"],
-    "lab": ["program", "report", "chart", "figures", "fit", "ground_truth", "mesh", "plan",
+    "lab": ["program", "report", "chart", "fit", "ground_truth", "mesh", "plan",
             "stability", "sweep"],
 }
 # The parts of a room, and what each may include of the others. What stands in the room itself, as main.cc, includes
