@@ -136,23 +136,23 @@ class Factor(elastic.Elimination):
                 parts.add(part)
         return sorted(parts & self.factor.keys())
 
-    def solve(self, loads, loaded, wanted, columns):
-        """Replaces loads (rows, m) by displacements in the loaded rows, and by those of its first columns in the wanted ones too.
+    def solve(self, loads, loaded, wanted):
+        """B' K^-1 B, (3, 3, k), of the loads B (rows, 3, k), each k by itself; of the first of three also the displacements.
 
-        What it leaves elsewhere has no meaning.
+        These take the place of the load in the wanted rows; what is left elsewhere has no meaning.
         """
-        near = self.parts_of(loaded)
-        for part in reversed(near):
+        flat, first, c = loads.reshape(len(loads), -1), loads[:, 0], np.zeros((3, *loads.shape[1:]))
+        for part in reversed(self.parts_of(loaded)):
             own, around, lower, solved = self.factor[part]
-            loads[own] = scipy.linalg.solve_triangular(lower, loads[own], lower=True, check_finite=False)
-            loads[around] -= solved.T @ loads[own]
-        near = set(near)
-        for part in self.parts_of(np.concatenate([loaded, wanted])):
+            flat[own] = scipy.linalg.solve_triangular(lower, flat[own], lower=True, check_finite=False)
+            flat[around] -= solved.T @ flat[own]
+            c += np.einsum("npk,nqk->pqk", loads[own], loads[own])  # K = L L', so that L^-1 B is enough
+        for part in self.parts_of(wanted):
             own, around, lower, solved = self.factor[part]
-            to = loads.shape[1] if part in near else columns
-            rest = loads[own, :to] - solved @ loads[around, :to]
-            loads[own, :to] = scipy.linalg.solve_triangular(lower, rest, trans=1, lower=True, check_finite=False)
+            rest = first[own] - solved @ first[around]
+            first[own] = scipy.linalg.solve_triangular(lower, rest, trans=1, lower=True, check_finite=False)
         loads[-1] = 0.0
+        return c
 
     def order_of(self, nodes):
         """Nodes, near each other in the elimination."""
@@ -178,30 +178,27 @@ class Condensation:
                 raise run.Failure(f"condensation: a patch of {self.radius_m:g} m is too small for the elements at vertex "
                                   f"{vertex}; make the patch wider or the elements finer")
         axes = [np.array([n, *surface.across(n)]) for n in self.organ.vertex_normal[vertices]]
-        moved = np.zeros((len(self.factor.part) + 1, 3, len(vertices)))  # the normal loads before the others
+        moved = np.zeros((len(self.factor.part) + 1, 3, len(vertices)))
         wanted = np.zeros(len(skin.node), dtype=bool)
         for k, ((node, weight), axis) in enumerate(zip(patches, axes)):
             moved[row[node], :, k] = weight[:, None, None] * axis.T
             wanted |= skin.away_m(places[k]) < (self.rings + 1) * self.pitch_m
         moved[-1] = 0.0  # forces on held nodes do nothing
         loaded = np.unique(np.concatenate([row[node].ravel() for node, _ in patches]))
-        self.factor.solve(moved.reshape(len(moved), -1), loaded, row[wanted].ravel(), len(vertices))
-        return np.array([self.row_of(places[k], patches[k], axes[k], moved[row, :, k]) for k in range(len(vertices))])
+        c = self.factor.solve(moved, loaded, row[wanted].ravel())
+        return np.array([self.row_of(places[k], axes[k], c[:, :, k], moved[row, 0, k] @ axes[k][0]) for k in range(len(vertices))])
 
-    def row_of(self, place, patch, axis, moved):
-        """moved: (nodes of the skin, 3, load)."""
-        node, weight = patch
-        c = axis @ np.einsum("a,aiq->iq", weight, moved[node])
+    def row_of(self, place, axis, c, sunk):
+        """sunk: how far the nodes of the skin go along the normal under the normal load."""
         # Less the half-space under the same patch: the part that knows only the patch cancels.
         normal = c[0, 0] - half_space_normal_m_per_N(self.organ, self.radius_m)
         side = c[1:, 1:] - half_space_tangential_m_per_N(self.organ, self.radius_m) * np.eye(2)
         # Turn the tangential axes until c12 = 0: tan(2 angle) = 2 c12 / (c11 - c22).
         angle = 0.5 * np.arctan2(2.0 * c[1, 2], side[0, 0] - side[1, 1])
         turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
-        side[1, 0] = side[0, 1]
         turned = turn @ side @ turn.T
         return np.concatenate([[normal], turn @ c[0, 1:], turned.diagonal(), turn[0] @ axis[1:],
-                               self.rings_of(place, axis[0], moved[:, :, 0] @ axis[0])])
+                               self.rings_of(place, axis[0], sunk)])
 
     def rings_of(self, place, normal, sunk):
         rho_m = self.skin.away_m(place)
