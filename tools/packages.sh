@@ -67,7 +67,7 @@ BUILD_PACKAGES=(g++ cmake ninja-build ca-certificates libfmt-dev libcli11-dev
   libeigen3-dev libopencv-core-dev libopencv-calib3d-dev)
 # What the measuring tools call or link besides: those that judge a PC and a device, and all of them.
 LIGHT_TOOL_PACKAGES=(gnuplot-nox libkainjow-mustache-dev rt-tests=cyclictest stress-ng=stress-ng)
-TOOL_PACKAGES=("${LIGHT_TOOL_PACKAGES[@]}" gmsh optional:calculix-ccx libmumps-seq-dev libopenblas-dev libbenchmark-dev
+TOOL_PACKAGES=("${LIGHT_TOOL_PACKAGES[@]}" gmsh optional:calculix-ccx libopenblas0 libbenchmark-dev
   python3-vtk9 python3-numpy python3-scipy)
 # What the tests link or call besides.
 TEST_PACKAGES=(libgtest-dev libopenigtlink-dev python3-jsonschema python3-numpy python3-matplotlib strace systemd=systemd-analyze)

@@ -40,16 +40,6 @@ Error cannot_add(const std::string& path, int number) {
   return error_of(path, "exists already and is never overwritten; choose another name");
 }
 
-/// A rename that replaces nothing. 0, or what errno says.
-int rename_to_nothing(const char* from, const char* to) {
-  if (renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_NOREPLACE) == 0) return 0;
-  if (errno != EINVAL && errno != ENOSYS) return errno;
-  // NFS knows no such rename, and links.
-  if (link(from, to) != 0) return errno;
-  unlink(from);
-  return 0;
-}
-
 /// By what a file of ours is known: see the header.
 std::string_view first_word(std::string_view text) {
   if (text.starts_with('{')) return text.substr(0, 1);
@@ -148,14 +138,6 @@ Result<FileWriter> FileWriter::create(const std::string& path) {
   return cannot_add(path, errno);
 }
 
-Result<FileWriter> FileWriter::add(const std::string& path) {
-  struct stat status{};
-  if (lstat(path.c_str(), &status) == 0) return cannot_add(path, EEXIST);
-  auto file = replace(path, {});
-  if (file) file->only_new_ = true;
-  return file;
-}
-
 Result<FileWriter> FileWriter::replace(const std::string& path, std::string_view beginning) {
   auto target = target_of(path, beginning);
   if (!target) return target.error();
@@ -174,7 +156,6 @@ FileWriter& FileWriter::operator=(FileWriter&& other) noexcept {
   std::swap(target_, other.target_);
   std::swap(part_, other.part_);
   std::swap(waiting_, other.waiting_);
-  std::swap(only_new_, other.only_new_);
   std::swap(fd_, other.fd_);
   return *this;
 }
@@ -191,7 +172,7 @@ std::optional<Error> FileWriter::fail(int number) {
   waiting_.clear();
   if (fd_ >= 0) close(std::exchange(fd_, -1));
   if (!part_.empty()) unlink(std::exchange(part_, {}).c_str());
-  return only_new_ ? cannot_add(path_, number) : cannot_write(path_, number);
+  return cannot_write(path_, number);
 }
 
 std::optional<Error> FileWriter::put(std::string_view bytes) {
@@ -221,11 +202,7 @@ std::optional<Error> FileWriter::finish() {
   if (close(std::exchange(fd_, -1)) != 0) return fail(errno);
   if (!is_file) return std::nullopt;
   if (!part_.empty()) {
-    if (only_new_) {
-      if (const int wrong = rename_to_nothing(part_.c_str(), target_.c_str())) return fail(wrong);
-    } else if (rename(part_.c_str(), target_.c_str()) != 0) {
-      return fail(errno);
-    }
+    if (rename(part_.c_str(), target_.c_str()) != 0) return fail(errno);
     part_.clear();
   }
   const int folder = open(folder_of(target_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);

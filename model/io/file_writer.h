@@ -26,14 +26,11 @@ class FileWriter {
   static Result<FileWriter> create(const std::string& path);
   /// All or nothing, by the rule above. `beginning`: of what will be put, at least 16 bytes of it.
   static Result<FileWriter> replace(const std::string& path, std::string_view beginning);
-  /// All or nothing, and only where no file is, until finish().
-  static Result<FileWriter> add(const std::string& path);
   FileWriter(FileWriter&& other) noexcept
       : path_(std::move(other.path_)),
         target_(std::move(other.target_)),
         part_(std::exchange(other.part_, {})),
         waiting_(std::move(other.waiting_)),
-        only_new_(other.only_new_),
         fd_(std::exchange(other.fd_, -1)) {}
   FileWriter& operator=(FileWriter&& other) noexcept;
   FileWriter(const FileWriter&) = delete;
@@ -57,7 +54,6 @@ class FileWriter {
   std::string target_;  // with links followed
   std::string part_;    // the temporary; empty where there is none
   std::string waiting_;
-  bool only_new_ = false;
   int fd_ = -1;
 };
 

@@ -12,7 +12,6 @@
 
 #include "model/fnv1a.h"
 #include "model/indent/compliance_law.h"
-#include "model/io/file_writer.h"
 #include "model/io/input_file.h"
 #include "model/reader/scene_text.h"
 
@@ -43,17 +42,11 @@ std::size_t floats_in(const Header& h) {
 }
 
 template <typename T>
-void append(std::string& bytes, const T* first, std::size_t count) {
-  bytes.append(reinterpret_cast<const char*>(first), count * sizeof(T));
-}
-
-template <typename T>
 void take(std::string_view& bytes, T* first, std::size_t count) {
   std::memcpy(first, bytes.data(), count * sizeof(T));
   bytes.remove_prefix(count * sizeof(T));
 }
 
-/// Asked when it is read, and before it is written.
 std::optional<std::string> header_error(const Header& h) {
   if (h.vertices == 0 || h.vertices > kMaxVertices)
     return fmt::format("it says {} vertices", h.vertices);
@@ -125,40 +118,6 @@ Result<tissue::ComplianceMap> read_compliance_map(const std::string& path) {
   // A sound checksum of values that are no numbers: they came so from the solver.
   if (!all_finite(map)) return broken("holds a value that is no finite number");
   return map;
-}
-
-Result<std::size_t> write_compliance_map(const tissue::ComplianceMap& map,
-                                         const std::string& path) {
-  const Header head{.version = kVersion,
-                    .vertices = static_cast<std::uint32_t>(map.vertices()),
-                    .rings = static_cast<std::uint32_t>(map.rings),
-                    .spare = 0,
-                    .poisson_ratio = map.poisson_ratio,
-                    .patch_radius_m = map.patch_radius_m,
-                    .ring_pitch_m = map.ring_pitch_m,
-                    .fixed_min_m = map.fixed_min_m,
-                    .fixed_max_m = map.fixed_max_m};
-  const bool complete = map.sideways_times_E_per_m.size() == map.vertices() &&
-                        map.ring_times_E_per_m.size() == map.vertices() * map.rings &&
-                        map.mesh_hash.size() == kHashDigits;
-  if (const auto wrong = header_error(head); wrong || !complete)
-    return Error{fmt::format("{}: not written, the map is not complete{}", path,
-                             wrong ? ": " + *wrong : std::string())};
-  if (!all_finite(map))
-    return Error{path +
-                 ": not written, the map holds a value that is no finite number; solve it again "
-                 "with another mesh size or patch radius"};
-  // Whole in memory, and written by one call: a reader never sees half a map.
-  std::string bytes(kMagic);
-  append(bytes, &head, 1);
-  bytes += map.mesh_hash;
-  append(bytes, map.regular_times_E_per_m.data(), map.vertices());
-  append(bytes, map.sideways_times_E_per_m.data(), map.vertices());
-  append(bytes, map.ring_times_E_per_m.data(), map.ring_times_E_per_m.size());
-  const std::uint64_t sum = fnv1a(bytes);
-  append(bytes, &sum, 1);
-  if (auto error = io::write_file(path, bytes)) return *error;
-  return bytes.size();
 }
 
 std::string compliance_checksum(const std::string& path) {

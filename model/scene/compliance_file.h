@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// compliance_file.h - a ComplianceMap as a file: what tact-lab condense writes and a scene names.
+// compliance_file.h - a ComplianceMap as a file: what tools/condense writes and a scene names.
 //
 //     "TACTCOMP"  version u32  vertices u32  rings u32  spare u32
 //     poisson_ratio  patch_radius_m  ring_pitch_m  fixed_min_m  fixed_max_m     9 f64
@@ -22,8 +22,6 @@ namespace tact::model::scene {
 
 /// Any damage is an error that says what is wrong with which file.
 Result<tissue::ComplianceMap> read_compliance_map(const std::string& path);
-/// All or nothing: a reader never sees half a file. Returns the bytes written.
-Result<std::size_t> write_compliance_map(const tissue::ComplianceMap& map, const std::string& path);
 
 /// The checksum that the file ends with, 8 bytes as they stand there; empty where there is none.
 std::string compliance_checksum(const std::string& path);

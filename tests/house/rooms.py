@@ -30,7 +30,6 @@ ROOMS = {
     "model/mesh": ["model", "model/contact", "model/io"],
     "model/reader": ["model", "model/io"],
     "model/scene": [*SURFACE_LAWS, "model/io", "model/mesh", "model/reader"],
-    "model/fem": SCENE,
     "hal": ["model", "model/io"],
     "hal/delta": ["model", "hal"],
     "hal/gpio": ["model", "hal"],
@@ -76,14 +75,12 @@ TOOLS = {
     **dict.fromkeys(["examples", "ground_truth", "printed", "program"], []),
     **dict.fromkeys(["calibrate", "doctor", "mesh", "report"], ["program"]),
     **dict.fromkeys(["jitter", "limits", "sweep"], ["program", "report"]),
-    "condense": ["program", "mesh"],
     "fit": ["program", "report", "ground_truth"],
     "chart": ["program", "report", "ground_truth"],
     "plan": ["program", "report", "chart"],
-    "new_scene": ["program", "mesh", "condense"],
-    **dict.fromkeys(["figures", "stability"], ["program", "report", "printed"]),
+    "stability": ["program", "report", "printed"],
     "verify": ["program", "printed"],
-    "lab": ["program", "report", "chart", "condense", "figures", "fit", "ground_truth", "mesh", "new_scene", "plan",
+    "lab": ["program", "report", "chart", "fit", "ground_truth", "mesh", "plan",
             "stability", "sweep"],
 }
 # The parts of a room, and what each may include of the others. What stands in the room itself, as main.cc, includes
@@ -137,7 +134,7 @@ SINGLE_HEADERS = {
     ("host/run", "hal/sim"): {"hand_target.h"},
 }
 # Read and write files, allocate, take their time: no header that LOOP_ROOMS include reaches them.
-OFFLINE = ("model/io/", "model/mesh/", "model/fem/", "model/reader/", "model/scene/")
+OFFLINE = ("model/io/", "model/mesh/", "model/reader/", "model/scene/")
 LOOP_ROOMS = ("firmware/gate", "firmware/loop", "firmware/watch")
 OURS = re.compile(r'^\s*#include "([^"]+)"', re.M)
 IMPORTED = re.compile(r'(?:\bfrom|\bimport)\s*\(?\s*"(\.[^"]*)"')

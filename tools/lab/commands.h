@@ -8,7 +8,6 @@ namespace tact::tools::lab {
 
 void add_chart(program::Program& lab);
 void add_condense(program::Program& lab);
-void add_figures(program::Program& lab);
 void add_fit(program::Program& lab);
 void add_new_scene(program::Program& lab);
 void add_plan(program::Program& lab);

@@ -1,25 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// tact-lab condense: the compliance of the scene's organ at every vertex, once and for all.
-#include <fmt/format.h>
-
+// tact-lab condense: the compliance of the scene's organ at every vertex, once and for all. Its
+// options and its scene; tools/condense/condense.py does the work.
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <chrono>
-#include <cstdio>
-#include <nlohmann/json.hpp>
 
-#include "model/io/json.h"
 #include "model/io/program/within.h"
 #include "model/scene/compliance_file.h"
-#include "tools/condense/condense_organ.h"
 #include "tools/lab/commands.h"
+#include "tools/lab/script.h"
 
 namespace tact::tools::lab {
 namespace {
 
-using condense::CondenseFacts;
 using model::Result;
-using model::tissue::ComplianceMap;
 
 struct Options {
   program::SceneArguments scene;
@@ -50,66 +42,19 @@ void add_options(CLI::App& app, Options& o) {
   app.add_flag("--json", o.json, "print one JSON object, SI units");
 }
 
-struct Range {
-  double low = 0.0, middle = 0.0, high = 0.0;
-};
-
-Range range_of(std::vector<float> values) {
-  std::sort(values.begin(), values.end());
-  const auto at = [&values](std::size_t i) { return static_cast<double>(values[i]); };
-  return {at(0), at(values.size() / 2), at(values.size() - 1)};
-}
-
-void report(const Options& o, const ComplianceMap& map, const CondenseFacts& facts,
-            std::size_t bytes, double seconds) {
-  const Range r = range_of(map.regular_times_E_per_m);
-  if (o.json) {
-    const nlohmann::json out{
-        {"format", "tact-condense"},
-        {"version", 1},
-        {"file", o.out},
-        {"bytes", bytes},
-        {"vertices", map.vertices()},
-        {"rings", map.rings},
-        {"ring_pitch_m", map.ring_pitch_m},
-        {"poisson_ratio", map.poisson_ratio},
-        {"patch_radius_m", map.patch_radius_m},
-        {"mesh_size_m", facts.mesh_size_m},
-        {"mesh_hash", map.mesh_hash},
-        {"nodes", facts.nodes},
-        {"elements", facts.elements},
-        {"regular_times_E_per_m", {{"least", r.low}, {"median", r.middle}, {"most", r.high}}},
-        {"seconds_s", seconds}};
-    fmt::print("{}\n", model::io::text_of(out, 2));
-    return;
-  }
-  fmt::print("{}: {} bytes, {} vertices, {} rings of {:.3g} mm, nu = {:.3g}\n", o.out, bytes,
-             map.vertices(), map.rings, 1e3 * map.ring_pitch_m, map.poisson_ratio);
-  fmt::print("body   {} nodes, {} elements of {:.3g} mm; patch radius {:.3g} mm\n", facts.nodes,
-             facts.elements, 1e3 * facts.mesh_size_m, 1e3 * map.patch_radius_m);
-  fmt::print("r E    {:.4g} least, {:.4g} median, {:.4g} most, 1/m\n", r.low, r.middle, r.high);
-  fmt::print("took   {:.0f} s\n", seconds);
-}
-
 Result<int> run(const program::Program&, Options& o) {
   if (auto error = program::check_output(o.out, "TACTCOMP", {o.scene.path})) return *error;
-  const auto scene = o.scene.load();
+  const auto scene = elastic_scene(o.scene);
   if (!scene) return scene.error();
-  auto input = condense::condense_input(*scene);
-  if (!input) return input.error();
-  input->settings.mesh_size_m = o.mesh_size_m;
-  input->settings.patch_radius_m = o.patch_radius_m;
-  if (o.ring_pitch_m > 0.0) input->settings.organ.ring_pitch_m = o.ring_pitch_m;
-  if (o.rings > 0) input->settings.organ.rings = o.rings;
-  const auto start = std::chrono::steady_clock::now();
-  CondenseFacts facts;
-  const auto map = condense::condense_organ(*input, facts);
-  if (!map) return map.error();
-  const auto bytes = model::scene::write_compliance_map(*map, o.out);
-  if (!bytes) return bytes.error();
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-  report(o, *map, facts, *bytes, took.count());
-  return 0;
+  return become("condense/condense.py",
+                {{"organ", organ_of(*scene)},
+                 {"surface_hash", model::scene::surface_hash(scene->organ_mesh.view())},
+                 {"out", o.out},
+                 {"mesh_size_m", o.mesh_size_m},
+                 {"patch_radius_m", o.patch_radius_m},
+                 {"ring_pitch_m", o.ring_pitch_m},
+                 {"rings", o.rings},
+                 {"json", o.json}});
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ int main(int argc, char** argv) {
       "tact-lab", "tact-lab: makes, measures and compares the force laws of tact.",
       "Options, units and an example of each: tact-lab chart --help.");
   for (const auto add : {add_new_scene, add_condense, add_reference, add_fit, add_chart, add_plan,
-                         add_sweep, add_stability, add_figures})
+                         add_sweep, add_stability})
     add(lab);
   return lab.run(argc, argv);
 }

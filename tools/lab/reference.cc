@@ -1,23 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // tact-lab reference: what an elastic organ does under the scene's tool, by finite elements. Its
 // options and its scene; tools/reference/reference.py does the work.
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/mman.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
-#include <nlohmann/json.hpp>
 
-#include "model/io/json.h"
-#include "model/io/program/installed.h"
 #include "model/io/program/within.h"
 #include "model/reader/scene_text.h"
 #include "tools/lab/commands.h"
-#include "tools/program/run_program.h"
+#include "tools/lab/script.h"
 
 namespace tact::tools::lab {
 namespace {
@@ -81,14 +74,6 @@ void add_options(CLI::App& app, Options& o) {
                  "(tests/data/reference)");
 }
 
-json list_of(const Vec3& v) { return {v.x, v.y, v.z}; }
-
-json list_of(const std::vector<Vec3>& vectors, const Vec3& less = {}) {
-  json out = json::array();
-  for (const Vec3& v : vectors) out.push_back(list_of(v - less));
-  return out;
-}
-
 /// Of vertices (to the nanometre) and triangles, 16 hex digits.
 std::string hash_of(const model::mesh::SurfaceMesh& mesh, const Vec3& less) {
   model::reader::TextHash hash;
@@ -105,15 +90,8 @@ std::string hash_of(const model::mesh::SurfaceMesh& mesh, const Vec3& less) {
 /// wherever a scene places the organ.
 void add_scene(json& job, const model::scene::Scene& scene) {
   const Vec3& origin = scene.organ.position_m;
-  job["organ"] = {{"mesh", std::filesystem::path(scene.organ.mesh_path).filename().string()},
-                  {"mesh_hash", hash_of(scene.organ_mesh, origin)},
-                  {"vertex_m", list_of(scene.organ_mesh.vertex_m, origin)},
-                  {"vertex_normal", list_of(scene.organ_mesh.vertex_normal)},
-                  {"triangle", scene.organ_mesh.triangle},
-                  {"youngs_modulus_Pa", scene.elastic->youngs_modulus_Pa},
-                  {"poisson_ratio", scene.elastic->poisson_ratio},
-                  {"fixed_min_m", list_of(scene.elastic->fixed_min_m)},
-                  {"fixed_max_m", list_of(scene.elastic->fixed_max_m)}};
+  job["organ"] = organ_of(scene);
+  job["organ"]["mesh_hash"] = hash_of(scene.organ_mesh, origin);
   job["hand"] = {{"site_m", list_of(scene.hand_site_m - origin)},
                  {"inward", list_of(scene.hand_inward)},
                  {"path", json::array()}};
@@ -136,37 +114,15 @@ Result<json> job_of(const Options& o) {
   // Before hours of work.
   if (auto error = program::check_output(o.out, "{", {o.scene.path})) return *error;
   if (o.scene.path.empty()) return Error{"no scene given; see tact-lab reference --help"};
-  const auto scene = o.scene.load();
+  const auto scene = elastic_scene(o.scene);
   if (!scene) return scene.error();
-  if (!scene->elastic)
-    return Error{fmt::format(
-        "{}: has no [elastic]; add it with youngs_modulus_Pa, poisson_ratio, fixed_min_m and "
-        "fixed_max_m, or give them with --set",
-        scene->path)};
   add_scene(job, *scene);
   return job;
 }
 
-/// reference.py takes our place, and so Ctrl-C, our output and our exit status. It comes back only
-/// if that fails.
 Result<int> run(const program::Program&, Options& o) {
   const auto job = job_of(o);
-  if (!job) return job.error();
-  const std::string script = model::io::data_file("reference/reference.py").string();
-  if (script.empty()) return Error{"reference.py is missing; apt install --reinstall tact-lab"};
-  const std::string text = model::io::text_of(*job);
-  // In memory, open in the program that takes our place: gone however that ends.
-  const int fd = memfd_create("tact-reference", 0);
-  for (std::string_view rest = text; !rest.empty();) {
-    const ssize_t n = write(fd, rest.data(), rest.size());
-    if (n <= 0) return Error{"no file in memory; free some memory, or close programs"};
-    rest.remove_prefix(static_cast<std::size_t>(n));
-  }
-  if (program::is_interrupted()) return program::interruption();
-  const std::string path = fmt::format("/proc/self/fd/{}", fd);
-  // Debian's own, which finds Debian's numpy and scipy; -I: whatever PYTHONPATH says.
-  execl("/usr/bin/python3", "python3", "-I", script.c_str(), path.c_str(), nullptr);
-  return Error{"python3 is not installed; apt install python3 python3-numpy python3-scipy"};
+  return job ? become("reference/reference.py", *job) : job.error();
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -64,6 +65,8 @@ json to_json(const std::string& file, const Unit& unit, const ObjMesh& obj,
              const std::vector<RepairStep>& steps, const std::string& out) {
   const MeshSummary sum = model::mesh::summarize(obj.mesh);
   const bool closed = sum.boundary_edges == 0;
+  const auto& p_m = obj.mesh.vertex_m;
+  const auto top = std::ranges::max_element(p_m, {}, &Vec3::z);
   json reported{{"format", "tact-mesh"},
                 {"version", 1},
                 {"file", file},
@@ -78,6 +81,8 @@ json to_json(const std::string& file, const Unit& unit, const ObjMesh& obj,
                 {"volume_m3", closed ? json(sum.volume_m3) : json(nullptr)},
                 {"low_m", to_json(sum.low_m)},
                 {"high_m", to_json(sum.high_m)},
+                {"top", {{"vertex", top - p_m.begin()}, {"point_m", to_json(*top)}}},
+                {"colors", !obj.vertex_color.empty()},
                 {"file_vertices", obj.file_vertices},
                 {"welded_vertices", obj.welded_vertices},
                 {"unused_vertices", obj.unused_vertices},

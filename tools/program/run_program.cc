@@ -189,7 +189,7 @@ Result<std::string> run_program(const ProgramCall& call) {
         "how {} ended cannot be known, since SIGCHLD is ignored; start from a plain shell",
         call.program)};
   auto text = model::io::read_file(call.log_path);
-  if (WIFEXITED(*status) && (call.any_status || WEXITSTATUS(*status) == 0)) return text;
+  if (WIFEXITED(*status) && WEXITSTATUS(*status) == 0) return text;
   const std::string how = WIFEXITED(*status) ? fmt::format("status {}", WEXITSTATUS(*status))
                                              : fmt::format("signal {}", WTERMSIG(*status));
   return Error{fmt::format("{} ended with {}; all it printed is in {}, at the end:{}", call.program,

@@ -27,7 +27,6 @@ struct ProgramCall {
   std::string log_path;       // absolute, of everything it prints
   std::string package;        // the Debian package that has it, for the message when it is missing
   double time_limit_s = 0.0;  // 0: none
-  bool any_status = false;    // some programs end well with a status above 0
   std::vector<std::pair<std::string, std::string>> environment;  // on top of ours
   std::function<void(std::string_view)> on_line{};  // each line that it prints, as it comes
 };

@@ -8,11 +8,8 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
-
-#include "model/result.h"
 
 namespace tact::tools::program {
 
@@ -25,19 +22,6 @@ struct SweepOptions {
 /// False if Ctrl-C ended it early (interrupt.h).
 bool run_jobs(std::size_t jobs, const SweepOptions& options,
               const std::function<void(std::size_t job)>& work);
-
-/// As run_jobs, until a job returns an error: then no other begins, and the first error is
-/// returned; after Ctrl-C it is interruption() of run_program.h.
-std::optional<model::Error> run_until_error(
-    std::size_t jobs, const SweepOptions& options,
-    const std::function<std::optional<model::Error>(std::size_t job)>& work);
-
-/// Each worker is a process of its own that begins with a copy of this one: work(job, its equal
-/// part of `results`). For libraries that no two threads may call at a time. An error, and no
-/// result, if one of them ends early; interruption() after Ctrl-C.
-std::optional<model::Error> run_in_processes(
-    std::size_t jobs, std::span<float> results, const SweepOptions& options,
-    const std::function<void(std::size_t job, std::span<float> result)>& work);
 
 /// As run_jobs, and keeps what each job returns; empty if Ctrl-C ended it early.
 template <typename T>

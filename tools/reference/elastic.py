@@ -112,7 +112,11 @@ class Elimination:
             return around, front
         lower = scipy.linalg.cholesky(front[:n, :n], lower=True, check_finite=False)
         solved = scipy.linalg.solve_triangular(lower, front[n:, :n].T, lower=True, check_finite=False)
+        self.keep(part, own, around, lower, solved)
         return around, front[n:, n:] - solved.T @ solved
+
+    def keep(self, part, own, around, lower, solved):
+        """For who substitutes: L of a part's own unknowns (n, n) and L^-1 K to those around it (n, b)."""
 
 
 def compliance(organ, body, loads):

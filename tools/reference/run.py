@@ -3,10 +3,12 @@
 import contextlib
 import ctypes
 import enum
+import json
 import multiprocessing
 import multiprocessing.connection
 import os
 import pathlib
+import resource
 import shutil
 import signal
 import subprocess
@@ -18,6 +20,7 @@ PR_SET_PDEATHSIG = 1
 LIBC = ctypes.CDLL(None)
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
 LAST_LINES = 12
+LONG_S = 10.0  # chosen: work whose cost is told
 
 run_folder: pathlib.Path | None = None  # of everything that is written on the way, gone at the end
 
@@ -121,17 +124,17 @@ def run_program(words: list[str], scratch: Scratch, package: str, time_limit_s: 
                   Code.PROGRAM_ENDED)
 
 
-def write(path: pathlib.Path, text: str):
+def write(path: pathlib.Path, content: str | bytes):
     """Whole or not at all; a pipe or a device is written straight."""
-    path = path.resolve()
+    path, data = path.resolve(), content.encode() if isinstance(content, str) else content
     try:
         if path.exists() and not path.is_file():
-            path.write_text(text)
+            path.write_bytes(data)
             return
         handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
         try:
-            with open(handle, "w") as file:
-                file.write(text)
+            with open(handle, "wb") as file:
+                file.write(data)
             os.chmod(name, 0o644)
             os.replace(name, path)
         except BaseException:
@@ -216,3 +219,34 @@ def run_jobs(work, jobs: list, at_once: int, label: str) -> list:
     if first_failure:
         raise first_failure
     return results
+
+
+def print_cost(label: str):
+    """What long work cost, with the programs that it ran."""
+    own, others = resource.getrusage(resource.RUSAGE_SELF), resource.getrusage(resource.RUSAGE_CHILDREN)
+    cpu_s = own.ru_utime + own.ru_stime + others.ru_utime + others.ru_stime
+    if cpu_s >= LONG_S:
+        print(f"{label}: {cpu_s:.0f} CPU s on up to {os.cpu_count()} cores, "
+              f"{1.024e-6 * max(own.ru_maxrss, others.ru_maxrss):.2g} GB at most", file=sys.stderr, flush=True)
+
+
+def main(label: str, act, kept: str) -> int:
+    """The exit status of act(job), where sys.argv names the job's file; an error is one line. `kept`: what Ctrl-C leaves."""
+    watch_signals()  # the first Ctrl-C may come while numpy is read
+    os.environ["OPENBLAS_NUM_THREADS"] = "1"  # one core a job
+    try:
+        status = act(json.loads(pathlib.Path(sys.argv[1]).read_text())) or 0
+        print_cost(label)
+        return status
+    except Failure as failure:
+        message, status = failure.message, 2
+    except ImportError as missing:
+        message, status = f"{missing.name} is missing in Debian's python3; apt install python3-numpy python3-scipy", 2
+    except MemoryError:
+        message, status = "no memory is left; take larger elements, or close programs", 2
+    except OSError as error:  # every other file is looked after where it is used
+        message, status = f"standard output cannot be written: {error.strerror}; check where it goes", 2
+    except KeyboardInterrupt:
+        message, status = f"interrupted; {kept}", 1
+    print(f"{label}: {message}", file=sys.stderr, flush=True)
+    os._exit(status)  # what cannot be written is not tried again

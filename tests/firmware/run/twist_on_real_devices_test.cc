@@ -25,8 +25,8 @@
 #include "model/units.h"
 #include "tests/support/message.h"
 #include "tests/support/mountings.h"
-#include "tests/support/paced_clock.h"
 #include "tests/support/scene_loop.h"
+#include "tests/support/stepped_time.h"
 #include "tests/support/stub_dhd/stub_client.h"
 #include "tests/support/stub_hd/hd_client.h"
 
@@ -222,7 +222,7 @@ class TwistOnRealDevices : public testing::TestWithParam<RealDevice> {
   std::unique_ptr<model::scene::Tissue> tissue_;
   hal::registry::OpenDevice device_;
   hal::NoSafetyLines lines_;
-  tests::PacedClock clock_;
+  tests::SteppedTime clock_;
   loop::Requests requests_;
   std::unique_ptr<loop::TickRing> ring_ = std::make_unique<loop::TickRing>();
   std::unique_ptr<loop::Controller> controller_;

@@ -124,28 +124,6 @@ TEST_F(FileWriterTest, WhatIsNotFinishedIsNotThere) {
   EXPECT_EQ(files(), 0u);
 }
 
-TEST_F(FileWriterTest, WhatIsAddedReplacesNothingThatAppearsMeanwhile) {
-  auto writer = FileWriter::add(path("a.json"));
-  ASSERT_TRUE(writer);
-  EXPECT_EQ(message_of(writer->put("{\"ours\": 1}")), "");
-  EXPECT_EQ(message_of(writer->flush()), "");
-  EXPECT_FALSE(fs::exists(path("a.json")));
-  put("a.json", "{\"theirs\": 1}");
-  const std::string reported =
-      path("a.json") + ": exists already and is never overwritten; choose another name";
-  EXPECT_EQ(message_of(writer->finish()), reported);
-  EXPECT_EQ(text("a.json"), "{\"theirs\": 1}");
-  EXPECT_EQ(files(), 1u) << "no part stays";
-  const auto there = FileWriter::add(path("a.json"));
-  ASSERT_FALSE(there);
-  EXPECT_EQ(there.error().message, reported);
-  auto alone = FileWriter::add(path("b.json"));
-  ASSERT_TRUE(alone);
-  EXPECT_EQ(message_of(alone->put("{}")), "");
-  EXPECT_EQ(message_of(alone->finish()), "");
-  EXPECT_EQ(text("b.json"), "{}");
-}
-
 TEST_F(FileWriterTest, WhatGrowsIsNewAndThereAtOnce) {
   auto writer = FileWriter::create(path("log"));
   ASSERT_TRUE(writer);

@@ -112,7 +112,7 @@ TEST_F(Installed, TheLightToolsNeedNoSolver) {
   const std::string steps = run_command("cat " + prefix_ + "/build/build.ninja").output;
   for (const char* tool : {"doctor", "jitter", "limits", "mesh", "verify", "calibrate"})
     EXPECT_NE(steps.find("build tact-" + std::string(tool) + ":"), std::string::npos) << tool;
-  for (const char* absent : {"mumps", "build tact-lab:"})
+  for (const char* absent : {"benchmark", "build tact-lab:"})
     EXPECT_EQ(steps.find(absent), std::string::npos) << absent;
 }
 
@@ -121,7 +121,7 @@ TEST_F(Installed, TheLightToolsAskForNoSolverAndNoOtherCompiler) {
       run_command("bash -c '. " TACT_SOURCE_DIR
                   "/tools/packages.sh; echo ${BUILD_PACKAGES[@]} ${LIGHT_TOOL_PACKAGES[@]}'");
   EXPECT_NE(asked.output.find("libfmt-dev"), std::string::npos) << asked.output;
-  for (const char* absent : {"gmsh", "calculix", "mumps", "clang", "qemu", "nodejs", "vtk"})
+  for (const char* absent : {"gmsh", "calculix", "scipy", "clang", "qemu", "nodejs", "vtk"})
     EXPECT_EQ(asked.output.find(absent), std::string::npos) << absent;
   EXPECT_NE(run_command(TACT_SOURCE_DIR "/tools/run --help").output.find("--tools"),
             std::string::npos);

@@ -13,8 +13,6 @@
 #include "tests/support/extent.h"
 #include "tests/support/mesh_files.h"
 #include "tests/support/shapes.h"
-#include "tools/new_scene/outputs.h"
-#include "tools/new_scene/scene_text.h"
 
 namespace tact::tools::new_scene::new_scene_test {
 
@@ -246,41 +244,6 @@ TEST_F(NewScene, WithoutCalculiXThePlanIsNoneAndTheSceneIsFeltAllTheSame) {
   EXPECT_EQ(ran.output.find("--plan --force"), ran.output.npos) << "it was asked for";
   EXPECT_EQ(made(), (std::vector<std::string>{"mine.compliance", "mine.toml", "mine_tool.obj"}));
   EXPECT_EQ(model::scene::load_scene(out_, {})->law, "compliance");
-}
-
-TEST_F(NewScene, NoFileAppearsWhereOneCannot) {
-  EXPECT_TRUE(write_all({{path("mine.a"), "first"}, {path("none/mine.b"), "second"}}, false));
-  EXPECT_EQ(made(), std::vector<std::string>{});
-  EXPECT_FALSE(write_all({{path("mine.a"), "first"}, {path("mine.b"), "second"}}, false));
-  EXPECT_EQ(made(), (std::vector<std::string>{"mine.a", "mine.b"}));
-}
-
-TEST_F(NewScene, AFileThatAppearsDuringTheWorkIsKept) {
-  // Two files of one name: when the second comes to its place, the first is there.
-  const auto error = write_all(
-      {{path("mine.a"), "a"}, {path("mine.b"), "same kind"}, {path("mine.b"), "same kind"}}, false);
-  ASSERT_TRUE(error);
-  EXPECT_NE(error->message.find("mine.b: exists already and is never overwritten"),
-            std::string::npos)
-      << error->message;
-  EXPECT_FALSE(fs::exists(path("mine.a"))) << "none of ours stays";
-  const std::string theirs = temp_.write("mine.c", "same kind, theirs");
-  EXPECT_TRUE(write_all({{path("mine.a"), "a"}, {theirs, "same kind, ours"}}, false));
-  EXPECT_EQ(tests::read_text(theirs), "same kind, theirs");
-  EXPECT_FALSE(write_all({{path("mine.a"), "a"}, {theirs, "same kind, ours"}}, true));
-  EXPECT_EQ(tests::read_text(theirs), "same kind, ours");
-}
-
-TEST(ScenePlacement, HoldsTheLowestTenthAndPressesNoDeeperThanAFifth) {
-  SurfaceMesh organ = tests::make_ball(1.0, 2);
-  for (Vec3& p : organ.vertex_m) p = {0.05 * p.x, 0.04 * p.y, 0.02 * p.z + 1.0};
-  const ScenePlacement place = place_of(organ);
-  // 0.98 to 1.02 m high: a tenth is 4 mm, a fifth 8 mm.
-  EXPECT_NEAR(place.held.max_m.z, 0.984, 1e-12);
-  EXPECT_LT(place.held.min_m.z, 0.98);
-  EXPECT_NEAR(place.working_depth_m, 0.008, 1e-12);
-  EXPECT_NEAR(organ.vertex_m[place.top].z, 1.02, 1e-12);
-  EXPECT_NEAR(norm(organ.vertex_m[place.top] + place.position_m), 0.0, 1e-12);
 }
 
 }  // namespace tact::tools::new_scene::new_scene_test

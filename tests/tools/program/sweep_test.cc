@@ -5,7 +5,6 @@
 
 #include <atomic>
 #include <csignal>
-#include <span>
 #include <vector>
 
 #include "tools/program/interrupt.h"
@@ -26,51 +25,6 @@ TEST(Sweep, RunsEveryJobOnce) {
   std::vector<std::atomic<int>> ran(50);
   EXPECT_TRUE(run_jobs(50, {.label = "test", .threads = 4}, [&](std::size_t job) { ++ran[job]; }));
   for (const auto& times : ran) EXPECT_EQ(times.load(), 1);
-}
-
-TEST(Sweep, ProcessesWriteTheirOwnPartsOfTheResult) {
-  for (const unsigned processes : {1u, 3u}) {
-    std::vector<float> results(20);
-    const auto error = run_in_processes(10, results, {.label = "test", .threads = processes},
-                                        [](std::size_t job, std::span<float> result) {
-                                          result[0] = static_cast<float>(job);
-                                          result[1] = -result[0];
-                                        });
-    ASSERT_FALSE(error) << error->message;
-    for (std::size_t job = 0; job < 10; ++job) {
-      EXPECT_EQ(results[2 * job], static_cast<float>(job));
-      EXPECT_EQ(results[2 * job + 1], -static_cast<float>(job));
-    }
-  }
-}
-
-TEST(Sweep, AProcessThatDiesIsAnErrorAndChangesNoResult) {
-  std::vector<float> results(10, 7.0F);
-  const auto error = run_in_processes(10, results, {.label = "test", .threads = 2},
-                                      [](std::size_t job, std::span<float> result) {
-                                        if (job == 3) std::raise(SIGKILL);
-                                        result[0] = 1.0F;
-                                      });
-  ASSERT_TRUE(error);
-  EXPECT_NE(error->message.find("a worker ended early"), std::string::npos);
-  EXPECT_EQ(results, std::vector<float>(10, 7.0F));
-}
-
-TEST(Sweep, TellsTheFirstErrorAndBeginsNoJobAfterIt) {
-  const auto run = [](std::size_t bad, std::size_t& begun) {
-    return run_until_error(6, {.label = "", .threads = 1},
-                           [&](std::size_t job) -> std::optional<model::Error> {
-                             ++begun;
-                             if (job < bad) return std::nullopt;
-                             return model::Error{"job " + std::to_string(job)};
-                           });
-  };
-  std::size_t begun = 0;
-  const auto error = run(2, begun);
-  ASSERT_TRUE(error);
-  EXPECT_EQ(error->message, "job 2");
-  EXPECT_EQ(begun, 3u);
-  EXPECT_FALSE(run(6, begun));
 }
 
 TEST(Sweep, CtrlCEndsItBetweenTwoJobs) {

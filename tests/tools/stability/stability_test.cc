@@ -21,8 +21,8 @@ std::string folder() { return testing::TempDir() + "tact-stability-" + std::to_s
 TEST(Stability, HelpNamesEveryMap) {
   const Outcome out = run("--help");
   EXPECT_EQ(out.status, 0);
-  for (const char* word : {"integrators", "printed_rhombus", "law_limits", "law_lines", "loop",
-                           "loop_laws", "loop_delta", "ticks", "loss", "Exit status"})
+  for (const char* word : {"integrators", "law_limits", "law_lines", "loop", "loop_laws",
+                           "loop_delta", "ticks", "loss", "Exit status"})
     EXPECT_NE(out.output.find(word), std::string::npos) << word;
 }
 

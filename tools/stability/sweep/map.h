@@ -50,7 +50,6 @@ struct Map {
 std::vector<Map> all_maps();
 
 Map integrator_map();
-Map printed_rhombus_map();
 Map law_limit_map();
 Map law_line_map();
 Map loop_map();

@@ -52,8 +52,8 @@ bool is_chosen(const Map& map, const StabilityOptions& options) {
 }  // namespace
 
 std::vector<Map> all_maps() {
-  return {integrator_map(), printed_rhombus_map(), law_limit_map(), law_line_map(), loop_map(),
-          law_loop_map(),   delta_loop_map(),      tick_map(),      loss_map()};
+  return {integrator_map(), law_limit_map(),  law_line_map(), loop_map(),
+          law_loop_map(),   delta_loop_map(), tick_map(),     loss_map()};
 }
 
 MapsRun run_maps(const StabilityOptions& options) {
