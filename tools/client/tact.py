@@ -36,6 +36,18 @@ TYPES = {"bool": "?", "u8": "u1", "u16": "<u2", "u32": "<u4", "u64": "<u8", "i16
          "f32": "<f4", "f64": "<f8"}
 
 
+def __getattr__(name):
+    """Sim: a scene as a function from poses to forces, of the module tact_sim (tools/python)."""
+    if name != "Sim":
+        raise AttributeError(f"module tact has no attribute {name}")
+    try:
+        import tact_sim
+    except ImportError as missing:
+        raise ImportError(f"tact.Sim needs the module tact_sim ({missing}): cmake -S tools/python -B build/python -G Ninja && "
+                          "ninja -C build/python, then PYTHONPATH=build/python") from None
+    return tact_sim.Sim
+
+
 class Error(Exception):
     """A sentence: what, where, the remedy."""
 

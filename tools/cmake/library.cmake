@@ -4,14 +4,14 @@
 
 # Its public headers. What these include is installed with them, but may change with every version.
 set(public_headers
-  firmware/gate/limits_for.h firmware/loop/controller.h hal/device.h model/contact/contact.h
+  firmware/embed/haptics.h firmware/loop/controller.h hal/device.h model/contact/contact.h
   model/indent/hunt_crossley.h model/law/law.h model/mesh/mesh.h model/scene/scene.h model/scene/tissue.h
   model/tissue/elastic_field.h)
 
 add_library(tact_controller STATIC)
 add_library(tact::controller ALIAS tact_controller)
 foreach(room model model_law model_indent model_contact model_tissue model_springs model_io model_mesh model_reader
-    model_scene hal firmware_gate firmware_loop)
+    model_scene hal firmware_gate firmware_loop firmware_embed)
   target_sources(tact_controller PRIVATE $<TARGET_OBJECTS:tact_${room}>)
 endforeach()
 set_target_properties(tact_controller PROPERTIES LINKER_LANGUAGE CXX EXPORT_NAME controller OUTPUT_NAME tact)

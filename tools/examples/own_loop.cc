@@ -7,16 +7,20 @@
 #include <cstdio>
 #include <thread>
 
-#include "firmware/gate/limits_for.h"
-#include "firmware/loop/controller.h"
-#include "hal/device.h"
-#include "model/scene/scene.h"
-#include "model/scene/tissue.h"
+#include "firmware/embed/haptics.h"
 
 using namespace tact;
 using Clock = std::chrono::steady_clock;
 
 namespace {
+
+hal::DeviceInfo handle_info() {
+  return {.name = "handle",
+          .max_force_N = 8.0,
+          .workspace_radius_m = 0.1,
+          .workspace_half_length_m = 0.1,
+          .grip = hal::GripKind::kNone};
+}
 
 /// In place of your device. It follows a path: from 4 mm above the organ 8 mm in and out, in 1 s.
 class Handle final : public hal::Device {
@@ -26,13 +30,7 @@ class Handle final : public hal::Device {
     for (const auto& sphere : scene.tool.spheres)
       reach_m_ = std::max(reach_m_, dot(sphere.offset_m, inward_) + sphere.radius_m);
   }
-  hal::DeviceInfo info() const override {
-    return {.name = "handle",
-            .max_force_N = 8.0,
-            .workspace_radius_m = 0.1,
-            .workspace_half_length_m = 0.1,
-            .grip = hal::GripKind::kNone};
-  }
+  hal::DeviceInfo info() const override { return handle_info(); }
   hal::Fault read(hal::Sample& sample, std::int64_t now_ns) RT_SAFE override {
     if (start_ns_ == 0) start_ns_ = now_ns;
     const double depth_m =
@@ -61,22 +59,17 @@ class Handle final : public hal::Device {
 
 int main(int count, char** arguments) {
   if (count != 2) return std::fputs("usage: own_loop SCENE.toml\n", stderr), 2;
-  const auto scene = model::scene::load_scene(arguments[1], {});
-  if (!scene) return std::fprintf(stderr, "%s\n", scene.error().message.c_str()), 2;
-  const auto tissue = model::scene::make_tissue(*scene);
-  if (!tissue) return std::fprintf(stderr, "%s\n", tissue.error().message.c_str()), 2;
+  // The limits are the smaller ones of the scene and of the device.
+  const auto made = Haptics::make(arguments[1], {.device = handle_info()});
+  if (!made) return std::fprintf(stderr, "%s\n", made.error().message.c_str()), 2;
+  Haptics& haptics = **made;
+  const model::scene::Scene& scene = haptics.scene();
+  Handle device(scene);
 
-  Handle device(*scene);
-  const double period_s = 1.0 / scene->rate_Hz;
-  const model::Limits limits = firmware::gate::limits_for(scene->limits, device.info());
-  firmware::loop::Controller controller(
-      (*tissue)->contact_scene(),
-      firmware::gate::Gate(limits, period_s, firmware::gate::kNonRtForceShare), false);
-
-  const auto period =
-      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(period_s));
-  firmware::loop::TickInput input;
+  const auto period = std::chrono::duration_cast<Clock::duration>(
+      std::chrono::duration<double>(1.0 / scene.rate_Hz));
   firmware::loop::TickOutput out;
+  hal::Sample sample;
   hal::Fault wrote = hal::Fault::kNone;
   const auto start = Clock::now();
   for (auto due = start; due < start + std::chrono::seconds(1) && out.fault == model::Fault::kNone;
@@ -84,17 +77,17 @@ int main(int count, char** arguments) {
     std::this_thread::sleep_until(due);
     const auto now = Clock::now();
     // Tells the controller how many periods a late loop has skipped.
-    input.skipped_periods = static_cast<std::uint32_t>((now - due) / period);
-    due += input.skipped_periods * period;
-    const hal::Fault read = device.read(input.sample, now.time_since_epoch().count());
-    input.device_fault = model::latches(read) ? read : wrote;
+    const auto skipped = static_cast<std::uint32_t>((now - due) / period);
+    due += skipped * period;
+    sample.fresh = false;
+    const hal::Fault read = device.read(sample, now.time_since_epoch().count());
     // Example only: in your program, arm only on a person's request.
-    input.commands.arm = out.state == firmware::loop::State::kReady;
-    out = controller.tick(input);
+    if (out.state == firmware::loop::State::kReady) haptics.arm();
+    out = haptics.tick(sample, skipped, model::latches(read) ? read : wrote);
     wrote = device.write(out.written);
   }
   device.stop();
   std::printf("largest force %.3f N, limit %.3f N, %s\n", device.largest_N,
-              controller.gate().force_limit_N(), model::describe(out.fault).name);
+              haptics.force_limit_N(), model::describe(out.fault).name);
   return out.fault == model::Fault::kNone ? 0 : 1;
 }
