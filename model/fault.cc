@@ -140,6 +140,10 @@ constexpr std::array kTable{
     FaultEntry{Fault::kGripFlaps, "grip flaps",
                "the line of the grip switch changed faster than a foot or a hand can",
                "repair the switch or its wire (device.lines.grip), then reset and arm"},
+    FaultEntry{Fault::kForeignCommand, "foreign command",
+               "another program or computer commands the drives on this bus",
+               "end it or take it off the bus (candump shows what it sends), then start tactd "
+               "again"},
     FaultEntry{Fault::kEnergyOverdrawn, "energy overdrawn",
                "the device gave more energy to the hand than limits.energy_J: the tool jumped, or "
                "the loop paused, under force",

@@ -57,6 +57,7 @@ enum class Fault : std::uint16_t {
   kForbiddenCall = 123,
   kGuardianLost = 124,
   kGripFlaps = 125,
+  kForeignCommand = 126,
   kEnergyOverdrawn = 130,
   kPowerExceeded = 131,
 };

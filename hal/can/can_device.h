@@ -125,6 +125,8 @@ class BasicCanDrives {
   /// A frame of this axis: its position, its heartbeat, its faults. False: nobody asked for it.
   virtual bool take(Loop& loop, std::size_t axis, const Frame& frame,
                     std::int64_t arrival_ns) RT_SAFE = 0;
+  /// Commands drives, or all nodes. Our own do not come back (can_open.cc): somebody else sent it.
+  virtual bool is_command(const Frame& frame) const RT_SAFE = 0;
   /// Once all frames are taken: starting becomes ready; a drive that does not start, or lets go, is
   /// a fault.
   virtual void update_power(Loop& loop) RT_SAFE = 0;

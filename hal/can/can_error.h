@@ -27,6 +27,7 @@ enum class CanCause : std::uint8_t {
   kSilent = 12,  // of a drive; code: for how long, ms
   kNoPosition,   // code: for how long, ms
   kJumped,       // position without motion
+  kForeign,      // code: the identifier of a command that this program did not send
   kFirstOwn = 16,
 };
 

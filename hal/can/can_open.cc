@@ -137,13 +137,16 @@ Result<std::unique_ptr<CanSocket>> open_checked_can(const std::string& name, int
 
 Result<std::unique_ptr<CanFdSocket>> open_checked_can(const std::string& name,
                                                       const CanFdBits& cycle, double rate_Hz,
-                                                      std::span<const std::uint32_t> ids) {
+                                                      std::span<const std::uint32_t> ids,
+                                                      std::span<const int> nodes) {
   std::vector<can_filter> filters;
   for (const std::uint32_t id : ids) {  // exact
     constexpr canid_t kAll = CAN_EFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG;
     filters.push_back({.can_id = id | CAN_EFF_FLAG, .can_mask = kAll});
     if (id <= CAN_SFF_MASK) filters.push_back({.can_id = id, .can_mask = kAll});
   }
+  for (const int node : nodes)
+    filters.push_back({.can_id = static_cast<canid_t>(node), .can_mask = 0x7F | CAN_RTR_FLAG});
   return open_checked<CanFdFrameBytes>(name, cycle, rate_Hz, filters);
 }
 

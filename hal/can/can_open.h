@@ -22,13 +22,14 @@ model::Result<CanLink> read_can_link(const std::string& name);
 
 /// Asks for the link, checks it, and opens a raw socket that knows its rate: for data frames of
 /// exactly these identifiers, and for error frames. Of CAN FD: a small identifier may come as an
-/// extended one.
+/// extended one, and all frames come whose lowest seven bits are one of `nodes`.
 model::Result<std::unique_ptr<CanSocket>> open_checked_can(const std::string& name, int cycle_bits,
                                                            double rate_Hz,
                                                            std::span<const std::uint32_t> ids);
 model::Result<std::unique_ptr<CanFdSocket>> open_checked_can(const std::string& name,
                                                              const CanFdBits& cycle, double rate_Hz,
-                                                             std::span<const std::uint32_t> ids);
+                                                             std::span<const std::uint32_t> ids,
+                                                             std::span<const int> nodes);
 
 /// The drives of a scene, for one program alone (hal/device_lock.h): takes each node of the bus.
 /// `gives_sync`: the one who sends SYNC to all nodes, one on a bus. An interface that is not there

@@ -74,6 +74,11 @@ struct SdoReply {
 };
 std::optional<SdoReply> decode_canopen_sdo(const can::CanFrame& frame, int node) RT_SAFE;
 
+/// SYNC and NMT, which are for all nodes.
+constexpr std::array<std::uint32_t, 2> kCanopenForAll{0x000, kCanopenSyncId};
+/// Bases of RPDO 1 to 4 and of an SDO request: what a node gets from one host alone.
+constexpr std::array<std::uint32_t, 5> kCanopenToNode{0x200, 0x300, 0x400, 0x500, 0x600};
+
 /// Whether `node` can be one of a device.
 constexpr bool is_canopen_node(int node) RT_SAFE {
   return node >= 1 && node <= kCanopenLargestNode;

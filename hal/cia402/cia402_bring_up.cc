@@ -194,6 +194,12 @@ std::vector<std::uint32_t> cia402_ids(const can::CanSettings& can) {
   for (const int node : can.node)
     for (const std::uint32_t base : {0x080u, 0x180u, 0x580u, 0x700u})  // EMCY TPDO SDO heartbeat
       ids.push_back(base + static_cast<std::uint32_t>(node));
+  // Another sender of these is a fault.
+  ids.push_back(host_heartbeat_id({}));
+  ids.insert(ids.end(), kCanopenForAll.begin(), kCanopenForAll.end());
+  for (const int node : can.node)
+    for (const std::uint32_t base : kCanopenToNode)
+      ids.push_back(base + static_cast<std::uint32_t>(node));
   return ids;
 }
 

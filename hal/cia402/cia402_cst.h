@@ -48,6 +48,10 @@ struct CstConfiguration {
 };
 inline constexpr std::size_t kCstWrites = 21;
 using CstWrites = std::array<SdoWrite, kCstWrites>;
+/// Identifier of the host's heartbeat.
+constexpr std::uint32_t host_heartbeat_id(const CstConfiguration& can) RT_SAFE {
+  return 0x700u + static_cast<std::uint32_t>(can.host_node);
+}
 /// Object 1016:01: who is watched and for how long. A time of zero switches the watch over this
 /// node off; a zero as a whole would not name the node, and leave a drive's watch running.
 std::uint32_t host_watch(const CstConfiguration& can, std::uint16_t timeout_ms) RT_SAFE;

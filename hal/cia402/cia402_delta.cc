@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hal/cia402/cia402_delta.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -61,6 +62,18 @@ class Cia402s final : public can::CanDrives {
       return false;
     }
     return true;
+  }
+
+  bool is_command(const can::CanFrame& frame) const RT_SAFE override {
+    const auto is = [&frame](std::uint32_t id) RT_SAFE { return frame.id == id; };
+    if (frame.rtr) return false;
+    if (is(host_heartbeat_id(configuration_)) || std::ranges::any_of(kCanopenForAll, is))
+      return true;
+    return std::ranges::any_of(axes_, [&](const Axis& axis) RT_SAFE {
+      return std::ranges::any_of(kCanopenToNode, [&](std::uint32_t base) RT_SAFE {
+        return is(base + static_cast<std::uint32_t>(axis.node));
+      });
+    });
   }
 
   void update_power(CanLoop& loop) RT_SAFE override {

@@ -82,6 +82,11 @@ class Moteuses final : public can::CanFdDrives {
     return true;
   }
 
+  bool is_command(const can::CanFdFrame& frame) const RT_SAFE override {
+    const int to = moteus_address(frame).destination;
+    return to == kMoteusAllNodes || std::ranges::find(nodes_, to) != nodes_.end();
+  }
+
   void update_power(Loop& loop) RT_SAFE override {
     if (loop.power == CanPower::kOff) return;  // every tick sends a stop, which clears a fault
     bool settled = true;
@@ -255,7 +260,8 @@ Result<std::unique_ptr<Device>> open_can_moteus(const model::DeviceSettings& set
   const can::CanSettings& can = settings.of<can::CanSettings>();
   if (auto error = can::lock_drives(can, /*gives_sync=*/false)) return *error;
   auto socket =
-      can::open_checked_can(can.interface, moteus_cycle_bits(can), rate_Hz, moteus_ids(can));
+      can::open_checked_can(can.interface, moteus_cycle_bits(can), rate_Hz, moteus_ids(can),
+                            std::array{can.node[0], can.node[1], can.node[2], kMoteusAllNodes});
   if (!socket) return socket.error();
   return start_moteus_delta(std::make_unique<can::CanFdBus>(std::move(*socket)), settings, rate_Hz);
 }

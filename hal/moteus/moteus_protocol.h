@@ -49,8 +49,9 @@ enum class MoteusRegister : std::uint16_t {
 /// What a position counts from.
 enum class MoteusHome : std::uint8_t { kRelative = 0, kRotor = 1, kOutput = 2 };
 
-inline constexpr int kMoteusSmallestNode = 1, kMoteusLargestNode = 126;  // 127: all of them
-inline constexpr int kMoteusRegisterMap = 5;                             // that is spoken here
+inline constexpr int kMoteusSmallestNode = 1, kMoteusLargestNode = 126;
+inline constexpr int kMoteusAllNodes = 127;
+inline constexpr int kMoteusRegisterMap = 5;  // that is spoken here
 
 struct MoteusAddress {
   int source, destination;

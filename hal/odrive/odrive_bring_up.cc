@@ -243,6 +243,8 @@ std::vector<std::uint32_t> odrive_ids(const can::CanSettings& can) {
           OdriveCommand::kGetEncoderEstimates, OdriveCommand::kGetEncoderCount05}) {
       ids.push_back(static_cast<std::uint32_t>(node) << 5 | static_cast<std::uint32_t>(one));
     }
+    for (const std::uint8_t act : kOdriveActs)  // another sender of them is a fault
+      ids.push_back(static_cast<std::uint32_t>(node) << 5 | act);
   }
   return ids;
 }

@@ -81,6 +81,12 @@ class Odrives final : public can::CanDrives {
     return true;
   }
 
+  bool is_command(const can::CanFrame& frame) const RT_SAFE override {
+    const auto [node, command] = odrive_address(frame);
+    return !frame.rtr && std::ranges::find(nodes_, node) != nodes_.end() &&
+           std::ranges::find(kOdriveActs, static_cast<std::uint8_t>(command)) != kOdriveActs.end();
+  }
+
   void update_power(CanLoop& loop) RT_SAFE override {
     if (loop.power == CanPower::kStarting && loop.asked_ns != 0 && all_in_closed_loop(loop))
       loop.become_ready();

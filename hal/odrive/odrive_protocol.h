@@ -10,6 +10,7 @@
 // meanings; only 0.6 answers a request for its version.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -29,6 +30,12 @@ enum class OdriveCommand : std::uint8_t {
   kSetLimits = 0x0F,
   kClearErrors = 0x18,
 };
+
+/// All that make a drive of 0.5 or 0.6 act or change, those above included: nobody but one host may
+/// send them. Among them position, velocity, gains, reboot, parameters (0x04, 0.6).
+inline constexpr std::array<std::uint8_t, 17> kOdriveActs{0x02, 0x04, 0x06, 0x07, 0x0B, 0x0C,
+                                                          0x0D, 0x0E, 0x0F, 0x10, 0x11, 0x12,
+                                                          0x16, 0x18, 0x19, 0x1A, 0x1B};
 
 enum class OdriveAxisState : std::uint32_t {
   kIdle = 1,

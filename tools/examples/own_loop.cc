@@ -87,7 +87,7 @@ int main(int count, char** arguments) {
     wrote = device.write(out.written);
   }
   device.stop();
-  std::printf("largest force %.3f N, limit %.3f N, %s\n", device.largest_N,
-              haptics.force_limit_N(), model::describe(out.fault).name);
+  std::printf("largest force %.3f N, limit %.3f N, %s\n", device.largest_N, haptics.force_limit_N(),
+              model::describe(out.fault).name);
   return out.fault == model::Fault::kNone ? 0 : 1;
 }

@@ -47,7 +47,8 @@ class Sim {
     if (n < 0 || position_m.shape(1) != 3)
       throw std::invalid_argument("position_m: give an array of shape (n, 3), m");
     const bool turns = orientation.size() > 0, grips = grip_ratio.size() > 0;
-    if (turns && (orientation.ndim() != 2 || orientation.shape(0) != n || orientation.shape(1) != 4))
+    if (turns &&
+        (orientation.ndim() != 2 || orientation.shape(0) != n || orientation.shape(1) != 4))
       throw std::invalid_argument("orientation: give an array of shape (n, 4): w, x, y, z");
     if (grips && (grip_ratio.ndim() != 1 || grip_ratio.shape(0) != n))
       throw std::invalid_argument("grip_ratio: give an array of shape (n,), 0 open, 1 closed");
@@ -138,8 +139,12 @@ PYBIND11_MODULE(tact_sim, m) {
       .def_property_readonly("rate_Hz", &Sim::rate_Hz)
       .def_property_readonly("state", &Sim::state, "Off, Ready, Armed or Stopped")
       .def_property_readonly("fault", &Sim::fault, "latched; \"none\" without")
-      .def_property_readonly("site", [](const Sim& sim) {
+      .def_property_readonly(
+          "site",
+          [](const Sim& sim) {
             const auto [site_m, inward] = sim.site();
-            return std::make_tuple(py::array_t<double>(3, &site_m.x), py::array_t<double>(3, &inward.x));
-          }, "hand.site_m and the unit direction into the tissue there");
+            return std::make_tuple(py::array_t<double>(3, &site_m.x),
+                                   py::array_t<double>(3, &inward.x));
+          },
+          "hand.site_m and the unit direction into the tissue there");
 }

@@ -48,7 +48,8 @@ TEST(Haptics, GivesTheForcesOfTheControllerBitForBitAndAllocatesNothing) {
   const auto tissue = std::move(*make_tissue(scene));
   firmware::loop::Controller controller(
       tissue->contact_scene(),
-      firmware::gate::Gate(scene.limits, 1.0 / scene.rate_Hz, firmware::gate::kNonRtForceShare), false);
+      firmware::gate::Gate(scene.limits, 1.0 / scene.rate_Hz, firmware::gate::kNonRtForceShare),
+      false);
   Samples samples(scene);
   firmware::loop::TickInput input;
   double largest_N = 0.0;

@@ -176,4 +176,26 @@ TEST(Cia402Faults, TheBusIsJudgedAsWithEveryDrive) {
   EXPECT_TRUE(full.sample.fresh);
 }
 
+TEST(Cia402Faults, ACommandOfAnotherSenderLatchesInTheTickThatHearsIt) {
+  std::vector<can::CanFrame> frames{
+      canopen_sync(), *canopen_nmt(NmtCommand::kResetNode, kCanopenAllNodes),
+      *canopen_nmt(NmtCommand::kStop, 2),
+      *canopen_heartbeat(CstConfiguration{}.host_node, NmtState::kOperational),
+      *canopen_sdo_upload(3, 0x6064, 0)};
+  for (const std::uint32_t base : kCanopenToNode)
+    frames.push_back(can::make_can_frame(base + 1, 4));
+  for (const can::CanFrame& frame : frames) {
+    Bench bench;
+    bench.run();
+    for (int i = 0; i < 20; ++i) ASSERT_EQ(bench.tick({0.0, 0.0, 5.0}), Fault::kNone);
+    ASSERT_EQ(bench.count("foreign_commands"), 0u) << "no false alarm";
+    bench.drives.bus.say(frame);
+    EXPECT_EQ(bench.tick({0.0, 0.0, 5.0}), Fault::kForeignCommand) << frame.id;
+    EXPECT_EQ(bench.count("foreign_commands"), 1u);
+    EXPECT_TRUE(bench.says("a command that tactd did not send")) << bench.device->trouble();
+    bench.expect_stopped();
+    bench.expect_latched(Fault::kForeignCommand);
+  }
+}
+
 }  // namespace tact::hal::cia402::cia402_faults_test

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every fault of a moteus delta: seen, named, latched, and no torque after it.
 #include <gtest/gtest.h>
+#include <sys/socket.h>
 
 #include <memory>
 
@@ -215,6 +216,25 @@ TEST(MoteusFaults, OldRepliesAreNotFresh) {
   bench.tick();
   EXPECT_FALSE(bench.sample.fresh);
   EXPECT_GE(bench.count("old"), 3u);
+}
+
+TEST(MoteusFaults, ACommandOfAnotherSenderLatchesInTheTickThatHearsIt) {
+  for (const int node : {1, 3, kMoteusAllNodes}) {
+    for (const std::uint32_t source :
+         {0u, 0x80u << 8, 5u << 8}) {  // as we are; with a reply; other
+      Bench bench;
+      bench.run();
+      for (int i = 0; i < 20; ++i) ASSERT_EQ(bench.tick({0.0, 0.0, 5.0}), Fault::kNone);
+      ASSERT_EQ(bench.count("foreign_commands"), 0u) << "no false alarm";
+      can::CanFdFrame frame = *moteus_torque(1, 0.7, 0.1);
+      frame.id = source | static_cast<std::uint32_t>(node);
+      const can::CanFdFrameBytes bytes = *can::pack_can_frame(frame);
+      ASSERT_EQ(send(bench.drives.cable.descriptor(), bytes.data(), bytes.size(), 0), 72);
+      EXPECT_EQ(bench.tick({0.0, 0.0, 5.0}), Fault::kForeignCommand) << frame.id;
+      EXPECT_TRUE(bench.says("a command that tactd did not send")) << bench.device->trouble();
+      bench.expect_latched(Fault::kForeignCommand);
+    }
+  }
 }
 
 }  // namespace tact::hal::moteus::moteus_faults_test

@@ -79,6 +79,9 @@ CASES = [
             Latches("bus down", detect_ms=25, motors_later_ms=ALONE_ms["cia402"])),
     *(error_frame(back_end, "bus-off", "20000040#0000000000000000") for back_end in (ODRIVE06, CIA402)),
     *(error_frame(back_end, "error-passive", "20000004#0030000000000000") for back_end in (ODRIVE06, CIA402)),
+    *(done_to(back_end, "foreign", "a command of another sender stops the force for good", f"inject cansend can1 {frame}",
+              Latches("foreign command", detect_ms=12, motors_later_ms=TOLD_ms))
+      for back_end, frame in ((ODRIVE06, "04E#CDCC4C3E00000000"), (CIA402, "202#0F003200"), (MOTEUS, "002##1015000"))),
     *(done_to(back_end, "no-buffers", "a bus that takes no frames is a missed cycle; the drives stop",
               # The time counts from the command; its files and the module are read before.
               "modprobe sch_netem; tc qdisc show dev can0 >/dev/null\n"
