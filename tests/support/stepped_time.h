@@ -16,7 +16,7 @@ namespace tact::tests {
 
 class SteppedTime final : public firmware::loop::Clock {
  public:
-  SteppedTime() = default;
+  SteppedTime();  // on the thread of the loop
   SteppedTime(const SteppedTime&) = delete;
   SteppedTime& operator=(const SteppedTime&) = delete;
   ~SteppedTime() override;

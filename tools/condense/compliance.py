@@ -151,7 +151,7 @@ class Factor(elastic.Elimination):
             own, around, lower, solved = self.factor[part]
             rest = first[own] - solved @ first[around]
             first[own] = scipy.linalg.solve_triangular(lower, rest, trans=1, lower=True, check_finite=False)
-        loads[-1] = 0.0
+        loads[-1] = 0.0  # held nodes: forces on them do nothing
         return c
 
     def order_of(self, nodes):
@@ -183,10 +183,10 @@ class Condensation:
         for k, ((node, weight), axis) in enumerate(zip(patches, axes)):
             moved[row[node], :, k] = weight[:, None, None] * axis.T
             wanted |= skin.away_m(places[k]) < (self.rings + 1) * self.pitch_m
-        moved[-1] = 0.0  # forces on held nodes do nothing
         loaded = np.unique(np.concatenate([row[node].ravel() for node, _ in patches]))
         c = self.factor.solve(moved, loaded, row[wanted].ravel())
-        return np.array([self.row_of(places[k], axes[k], c[:, :, k], moved[row, 0, k] @ axes[k][0]) for k in range(len(vertices))])
+        return np.array([self.row_of(place, axis, c[:, :, k], moved[row, 0, k] @ axis[0])
+                         for k, (place, axis) in enumerate(zip(places, axes))])
 
     def row_of(self, place, axis, c, sunk):
         """sunk: how far the nodes of the skin go along the normal under the normal load."""

@@ -138,7 +138,6 @@ class Factor(Solves):
         wanted = np.flatnonzero(np.linalg.norm(made.node_m - made.node_m[patches[0][0]], axis=1) < 0.02)
         moved = np.zeros((len(factor.part) + 1, 3, len(patches)))
         moved[factor.row] = loads
-        moved[-1] = 0.0
         c = factor.solve(moved, factor.row[np.concatenate(patches)].ravel(), factor.row[wanted].ravel())
         known = solved_directly(organ, made, loads.reshape(len(made.node_m), 3, -1)).reshape(loads.shape)
         np.testing.assert_allclose(c, np.einsum("nipk,niqk->pqk", loads, known), atol=1e-9 * np.abs(c).max())
