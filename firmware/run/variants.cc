@@ -66,6 +66,7 @@ std::optional<std::string> Variants::ask(console::ControlRequest request, const 
   const std::vector<std::string> words = words_of(set);
   if (const auto why = why_not(words)) return refuse(request, *why);
   asked_ = set_;
+  asked_what_ = fmt::format("{}", fmt::join(words, " "));
   for (const std::string& word : words) {
     std::erase_if(asked_, [&](const std::string& old) { return key_of(old) == key_of(word); });
     asked_.push_back(word);
@@ -121,9 +122,8 @@ std::optional<std::string> Variants::work() {
   const bool is_waited_for = waiting_ && !is_in_work_;
   if (!is_used && !(is_waited_for && --turns_left_ == 0)) return std::nullopt;
   is_offered_ = !is_used;
-  const std::string report =
-      fmt::format("{}{}", fmt::join(set_, " "),
-                  is_used ? ": set" : ": prepared, used as soon as the tool touches nothing");
+  const std::string report = fmt::format(
+      "{}{}", what_, is_used ? ": set" : ": prepared, used as soon as the tool touches nothing");
   if (is_waited_for) take_waiting().answer({.done = true, .message = report});
   return report;
 }
@@ -136,6 +136,7 @@ console::ControlRequest Variants::take_waiting() {
 
 void Variants::offer(std::unique_ptr<Made> made) {
   set_ = asked_;
+  what_ = asked_what_;
   is_offered_ = true;
   made->contact.variant = ++count_;
   telemetry_.expect_variant(count_, set_, made->variant.tissue->law().contact_law());

@@ -70,6 +70,7 @@ class Variants {
   telemetry::Telemetry& telemetry_;
   std::vector<std::string> set_;    // of the newest tissue, each KEY=VALUE
   std::vector<std::string> asked_;  // in work
+  std::string what_, asked_what_;   // of these only what was named, for people
   std::optional<console::ControlRequest> waiting_;
   std::uint32_t count_ = 0;                // tissues offered so far
   bool is_in_work_ = false;                // the numbers that waiting_ asked for

@@ -102,8 +102,9 @@ std::string ScenePicker::line_of(const Choice& choice) const {
   if (is_live) {
     for (const json& row : offers_.at(choice.scene)["parameters"]) {
       const std::string key = row["key"];
-      if (row.value("live", false))
-        line += fmt::format(" {}={}", key, text_of(choice.set.value(key, row["value"])));
+      const json value = choice.set.value(key, row["value"]);
+      if (value != shown_.set.value(key, row["value"]))
+        line += fmt::format(" {}={}", key, text_of(value));
     }
   } else {
     for (const auto& [key, value] : choice.set.items())

@@ -10,7 +10,7 @@
 // One request at a time.
 //
 //     request SCENE KEY=VALUE ...   another start; keys that are not named are as shipped
-//     set SCENE KEY=VALUE ...       all numbers that may change while the scene runs
+//     set SCENE KEY=VALUE ...       while the scene runs; keys that are not named keep what they are
 #pragma once
 
 #include <functional>

@@ -72,7 +72,7 @@ TEST_F(Control, SetsNumbersOfTheLawWhileItRunsAndTheRecordReplays) {
       "until grep -q 'elastic.youngs_modulus_Pa=4800 rhombus.growth=6.5: set' a.told; do sleep .1; "
       "done\n"
       "ctl liver.toml set elastic.youngs_modulus_Pa=4500\n"
-      "until grep -q 'rhombus.growth=6.5 elastic.youngs_modulus_Pa=4500: set' a.told; do sleep .1; "
+      "until grep -q 'tactd: elastic.youngs_modulus_Pa=4500: set' a.told; do sleep .1; "
       "done\n"
       "ctl liver.toml set elastic.youngs_modulus_Pa=9e8; ctl liver.toml set limits.force_N=4\n"
       "ctl liver.toml stop; wait $a; " +

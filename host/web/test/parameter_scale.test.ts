@@ -9,6 +9,7 @@ import type { Parameter } from "../src/link/protocol";
 
 const number = (value: number, low: number, high: number, whole = false): Parameter => ({
   key: "law.it_N_per_m",
+  live: true,
   unit: "N/m",
   value,
   low,
