@@ -13,6 +13,7 @@
 #include "firmware/console/control_socket.h"
 #include "firmware/console/operator_signals.h"
 #include "firmware/console/operator_view.h"
+#include "firmware/loop/progress.h"
 #include "firmware/loop/requests.h"
 
 namespace tact::firmware::console {
@@ -22,15 +23,19 @@ void pause_a_moment();
 
 class RequestHandler {
  public:
-  /// `control`: null without tactctl. `pause`: sleeps while the loop works on a request.
+  /// `control`: null without tactctl. `progress`: the loop's own counters, whose state, fault and
+  /// force replace those of `newest`: telemetry may wait for a disk. `pause`: sleeps while the loop
+  /// works on a request.
   RequestHandler(const OperatorSignals& signals, loop::Requests& requests, OperatorView& view,
                  std::function<protocol::Frame()> newest, ControlSocket* control = nullptr,
+                 const loop::Progress* progress = nullptr,
                  std::function<void()> pause = pause_a_moment)
       : signals_(signals),
         requests_(requests),
         view_(view),
         newest_(std::move(newest)),
         control_(control),
+        progress_(progress),
         pause_(std::move(pause)) {}
 
   /// Waits at most `longest_ns` for a request, shows the newest frame, then handles the request.
@@ -39,6 +44,8 @@ class RequestHandler {
  private:
   std::optional<ControlRequest> next_request() const;
   bool show();
+  protocol::Frame newest() const;
+  Answer status() const;
   Answer do_word(const std::string& word, bool too_early);
   Answer arm(bool too_early);
   Answer reset(bool too_early);
@@ -54,6 +61,7 @@ class RequestHandler {
   OperatorView& view_;
   std::function<protocol::Frame()> newest_;
   ControlSocket* control_;
+  const loop::Progress* progress_;
   std::function<void()> pause_;
 };
 
