@@ -210,11 +210,11 @@ void Session::serve_operator(LoopExecutor& executor) {
                              scene_.path);
   const auto control = console::open_control(scene_.path, view);
   console::RequestHandler request_handler(
-      *operator_, requests_, view, [this] { return telemetry_->newest_frame(); }, control.get());
+      *operator_, requests_, view, [this] { return telemetry_->newest_frame(); }, control.get(),
+      &loop_->progress());
   console::ServiceManager service;
   const auto report_news = [&] {
-    if (const auto lost = telemetry_->lost_record())
-      view.report(lost->message + "; the loop goes on without its record");
+    if (const auto news = telemetry_->record_news()) view.report(*news);
     if (black_box_ == nullptr) return;
     for (const std::string& message : black_box_->news()) view.report(message);
   };
