@@ -29,6 +29,7 @@ tact::model::Result<std::string> folder_of(const std::string& scene_path) {
 
 int main(int argc, char** argv) {
   using namespace tact::firmware;
+  tact::model::io::watch_standard_output("tactctl");
   tact::model::io::report_uncaught("tactctl");
   CLI::App app{
       "tactctl: asks the tactd that runs SCENE, on this computer and of the same user (or as "
