@@ -48,7 +48,7 @@ class Address {
 int make_socket() { return socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0); }
 
 /// 0: it does not listen yet, or its queue is full, or it is of another PID namespace.
-pid_t ask_who_listens(const Address& address) {
+ucred ask_who_listens(const Address& address) {
   ucred peer{};
   socklen_t bytes = sizeof peer;
   for (int look = 0; look < kLooks && peer.pid == 0; ++look) {
@@ -58,14 +58,16 @@ pid_t ask_who_listens(const Address& address) {
     if (probe >= 0) close(probe);
     if (!heard) usleep(kLook_us);
   }
-  return peer.pid;
+  return peer;
 }
 
-std::string text_of(pid_t process) {
-  if (process == 0) return "another program";
-  const auto comm = model::io::read_file(fmt::format("/proc/{}/comm", process));
+std::string text_of(const ucred& peer) {
+  if (peer.pid == 0) return "another program";
+  const auto comm = model::io::read_file(fmt::format("/proc/{}/comm", peer.pid));
   const std::string name = comm ? comm->substr(0, comm->find('\n')) : "";
-  return fmt::format("process {}{}", process, name.empty() ? "" : " (" + name + ")");
+  // Any user may hold the name; root can end what only holds it.
+  return fmt::format("process {}{}{}", peer.pid, name.empty() ? "" : " (" + name + ")",
+                     peer.uid == geteuid() ? "" : fmt::format(" of user {}", peer.uid));
 }
 
 Error cannot_lock(const std::string& name, int error) {
@@ -78,7 +80,7 @@ Error cannot_lock(const std::string& name, int error) {
 Error taken(const std::string& name, const Address& address) {
   return Error{
       fmt::format("{} is driven by {} already, and two would push against each other: end "
-                  "that one first",
+                  "that one first, as root if it is another user's",
                   name, text_of(ask_who_listens(address)))};
 }
 

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <new>
+#include <exception>
 #include <utility>
 
 namespace tact::firmware::black_box {
@@ -94,13 +94,17 @@ void BlackBox::write() {
     std::string news = path ? fmt::format("black box of fault {}: {}; tact-view --open shows it",
                                           static_cast<int>(kept_.fault), *path)
                             : "black box: " + path.error().message;
+    if (const std::size_t old = remove_oldest(run_.folder))
+      news += fmt::format("; the folder keeps {} MB: {} older ones were removed",
+                          kMaxFolder_bytes >> 20, old);
     const std::lock_guard lock(reported_mutex_);
     if (path) files_.push_back(*path);
     report(std::move(news));
+    lost.clear();
     spare_.assign(kSpare_bytes, 1);
-  } catch (const std::bad_alloc&) {
+  } catch (const std::exception&) {  // the only kind left is std::bad_alloc
     const std::lock_guard lock(reported_mutex_);
-    report(std::move(lost));
+    if (!lost.empty()) report(std::move(lost));
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <fnmatch.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include <cstring>
 #include <ctime>
 #include <filesystem>
+#include <utility>
 
 #include "firmware/telemetry/frame_builder.h"
 
@@ -40,7 +42,8 @@ std::string free_path(const BlackBoxRun& run, model::Fault fault) {
                   fmt::gmtime(now), static_cast<int>(fault), plain(model::describe(fault).name));
   std::string path = stem + ".tactlog";
   // Two faults in one second. If the file appears meanwhile, RunWriter::create refuses it.
-  for (int n = 2; fs::exists(path); ++n) path = fmt::format("{}-{}.tactlog", stem, n);
+  std::error_code unknown;
+  for (int n = 2; fs::exists(path, unknown); ++n) path = fmt::format("{}-{}.tactlog", stem, n);
   return path;
 }
 
@@ -74,6 +77,30 @@ Result<std::string> black_box_folder(const std::string& asked) {
                     "with --black-box, or run with --no-black-box",
                     folder.string(), std::strerror(wrong))};
   return folder.string();
+}
+
+std::size_t remove_oldest(const std::string& folder, std::uintmax_t most_bytes) {
+  // Files of free_path() alone: the folder may hold others.
+  constexpr const char* kOurs = "*-????????T??????Z-[0-9][0-9]*-*.tactlog";
+  std::vector<std::pair<fs::file_time_type, fs::path>> found;
+  std::uintmax_t all_bytes = 0;
+  std::error_code failed;
+  for (fs::directory_iterator at(folder, failed), end; at != end; at.increment(failed)) {
+    if (fnmatch(kOurs, at->path().filename().c_str(), 0) != 0 || !at->is_regular_file(failed))
+      continue;
+    all_bytes += at->file_size(failed);
+    found.emplace_back(at->last_write_time(failed), at->path());
+  }
+  std::ranges::sort(found);
+  std::size_t removed = 0;
+  for (const auto& [written, path] : found) {
+    if (all_bytes <= most_bytes) break;
+    const std::uintmax_t bytes = fs::file_size(path, failed);
+    if (!fs::remove(path, failed)) continue;
+    all_bytes -= bytes;
+    ++removed;
+  }
+  return removed;
 }
 
 void each_frame(const Kept& kept, const std::function<void(const protocol::Frame&)>& add) {

@@ -40,6 +40,11 @@ struct BlackBoxRun {
 /// exist yet. An error if it could not be created or written to.
 model::Result<std::string> black_box_folder(const std::string& asked);
 
+/// Chosen: about a hundred black boxes of a run at 1 kHz.
+inline constexpr std::uintmax_t kMaxFolder_bytes = std::uintmax_t{1} << 30;
+/// Removes the oldest black boxes of the folder while all together are larger; how many.
+std::size_t remove_oldest(const std::string& folder, std::uintmax_t most_bytes = kMaxFolder_bytes);
+
 /// The new file's path; an error names what was not written to the disk.
 model::Result<std::string> write_black_box(const BlackBoxRun& run, const Kept& kept);
 

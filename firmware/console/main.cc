@@ -44,6 +44,7 @@ std::optional<tact::model::Error> add_numbers(std::string& word,
 
 int main(int argc, char** argv) {
   using namespace tact::firmware;
+  tact::model::io::watch_standard_output("tactctl");
   tact::model::io::report_uncaught("tactctl");
   CLI::App app{
       "tactctl: asks the tactd that runs SCENE, on this computer and of the same user (or as "

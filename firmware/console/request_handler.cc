@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <ctime>
+#include <iterator>
 
 #include "firmware/console/control_name.h"
+#include "firmware/loop/clock.h"
 #include "model/io/socket_file.h"
 #include "model/time_ns.h"
 
@@ -14,6 +17,8 @@ namespace tact::firmware::console {
 namespace {
 
 constexpr const char* kTooEarly = "the request came before it was ready";
+// Chosen: five periods of the lowest rate, and more than a stock kernel delays a tick.
+constexpr std::int64_t kSilence_ns = 50 * model::kMillisecond_ns;
 constexpr int kMaxPauses = 200;  // of 1 ms; at the lowest rate a tick is 10 ms
 
 }  // namespace
@@ -39,7 +44,7 @@ std::optional<ControlRequest> RequestHandler::next_request() const {
 
 // Requests that arrived before the ready message, even just before it, are refused as too early.
 bool RequestHandler::show() {
-  if (!view_.show(newest_())) return false;
+  if (!view_.show(newest())) return false;
   while (auto early = next_request()) handle(std::move(*early), true);
   return true;
 }
@@ -52,12 +57,35 @@ void RequestHandler::handle(ControlRequest request, bool too_early) {
   request.answer(do_word(word, too_early));
 }
 
+protocol::Frame RequestHandler::newest() const {
+  protocol::Frame frame = newest_();
+  const loop::Shown now = progress_ != nullptr ? progress_->shown() : loop::Shown{};
+  if (now.time_ns == 0) return frame;
+  // A loop that no longer ticks cannot report the fault of its watch.
+  const model::Fault found = requests_.fault.load();
+  const bool is_new = now.fault == model::Fault::kNone && found != model::Fault::kNone;
+  frame.state = is_new ? loop::State::kStopped : now.state;
+  frame.fault = static_cast<std::uint16_t>(is_new ? found : now.fault);
+  std::ranges::copy(now.force_N, std::begin(frame.force_N));
+  return frame;
+}
+
+Answer RequestHandler::status() const {
+  const loop::Shown now = progress_ != nullptr ? progress_->shown() : loop::Shown{};
+  if (now.time_ns == 0) return {.done = true, .message = view_.status()};
+  const std::int64_t age_ns = loop::MonotonicClock().now_ns() - now.time_ns;
+  const std::string at =
+      fmt::format("{}, {:.1f} ms ago", view_.status(), 1e-6 * static_cast<double>(age_ns));
+  if (age_ns < kSilence_ns) return {.done = true, .message = at};
+  return {.done = false, .message = "not answered: the loop stands still; " + at};
+}
+
 Answer RequestHandler::do_word(const std::string& word, bool too_early) {
   if (word == "arm") return arm(too_early);
   if (word == "reset") return reset(too_early);
   if (word == "disarm") return disarm();
   if (word == "stop") return stop();
-  if (word == "status") return {.done = true, .message = view_.status()};
+  if (word == "status") return status();
   return {.done = false,
           .message = "arm, disarm, reset, stop, status and set are known, nothing else"};
 }
@@ -88,7 +116,7 @@ Answer RequestHandler::disarm() {
                     "the loop gives no answer; its next tick takes the force away");
   if (!*off) return not_done("disarmed", off, "it is armed again");
   view_.wait_for_person();
-  const bool stopped = newest_().state == loop::State::kStopped;
+  const bool stopped = newest().state == loop::State::kStopped;
   return {
       .done = true,
       .message = view_.device() + (stopped ? ": no force; it has stopped: reset it, then arm it"

@@ -13,6 +13,7 @@
 #include "firmware/console/control_socket.h"
 #include "firmware/console/operator_signals.h"
 #include "firmware/console/operator_view.h"
+#include "firmware/loop/progress.h"
 #include "firmware/loop/requests.h"
 
 namespace tact::firmware::console {
@@ -24,15 +25,19 @@ class RequestHandler {
  public:
   /// Answers "set KEY=VALUE ..."; the request and what follows the word.
   using Set = std::function<void(ControlRequest request, const std::string& set)>;
-  /// `control`: null without tactctl. `pause`: sleeps while the loop works on a request.
+  /// `control`: null without tactctl. `progress`: the loop's own counters, whose state, fault and
+  /// force replace those of `newest`: telemetry may wait for a disk. `pause`: sleeps while the loop
+  /// works on a request.
   RequestHandler(const OperatorSignals& signals, loop::Requests& requests, OperatorView& view,
                  std::function<protocol::Frame()> newest, ControlSocket* control = nullptr,
+                 const loop::Progress* progress = nullptr,
                  std::function<void()> pause = pause_a_moment, Set set = {})
       : signals_(signals),
         requests_(requests),
         view_(view),
         newest_(std::move(newest)),
         control_(control),
+        progress_(progress),
         pause_(std::move(pause)),
         set_(std::move(set)) {}
 
@@ -43,6 +48,8 @@ class RequestHandler {
   std::optional<ControlRequest> next_request() const;
   bool show();
   void handle(ControlRequest request, bool too_early);
+  protocol::Frame newest() const;
+  Answer status() const;
   Answer do_word(const std::string& word, bool too_early);
   Answer arm(bool too_early);
   Answer reset(bool too_early);
@@ -58,6 +65,7 @@ class RequestHandler {
   OperatorView& view_;
   std::function<protocol::Frame()> newest_;
   ControlSocket* control_;
+  const loop::Progress* progress_;
   std::function<void()> pause_;
   Set set_;
 };

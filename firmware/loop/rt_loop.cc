@@ -216,6 +216,12 @@ void RtLoop::cycle(std::int64_t due_ns) RT_SAFE {
   const bool stopped = record_.output.state == State::kStopped;  // stop times come from the clock
   stop_timer_.step(input, record_.output, wake_ns, stopped ? clock_.now_ns() : written_ns);
   statistics_.stop = stop_timer_.times();
+  const model::Vec3& force_N = record_.output.written.force_N;
+  progress_.show({.time_ns = written_ns,
+                  .state = record_.output.state,
+                  .fault = record_.output.fault,
+                  .force_N = {static_cast<float>(force_N.x), static_cast<float>(force_N.y),
+                              static_cast<float>(force_N.z)}});
 
   publish();
   const std::int64_t end_ns = end_phase(Phase::kPublish, written_ns);

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
@@ -42,15 +44,35 @@ std::string start_of_run(const RunHeader& header, std::span<const std::byte> mes
   return out;
 }
 
-Result<RunWriter> RunWriter::create(const std::string& path, const std::string& start) {
+Result<RunWriter> RunWriter::create(const std::string& path, const std::string& start,
+                                    std::uint64_t most_bytes) {
   auto file = model::io::SealedWriter::create(path);
   if (!file) return file.error();
   if (auto error = file->put(start)) return *error;
-  return RunWriter(std::move(*file));
+  // At once: what cannot be written at all is refused before the run.
+  if (auto error = file->flush()) return *error;
+  return RunWriter(std::move(*file), path, start, most_bytes);
 }
 
 void RunWriter::add(const std::string& bytes) {
+  if (!trouble_ && bytes_ + bytes.size() > most_bytes_) begin_again();
+  bytes_ += bytes.size();
   if (!trouble_) keep(file_->put(bytes));
+}
+
+void RunWriter::begin_again() {
+  const std::string old = path_ + ".old";
+  if (const auto error = file_->finish()) return keep(error);
+  if (rename(path_.c_str(), old.c_str()) != 0)
+    return keep(Error{fmt::format("{}: cannot be renamed: {}", path_, std::strerror(errno))});
+  auto next = create(path_, start_, most_bytes_);
+  if (!next) return keep(next.error());
+  file_ = std::move(next->file_);
+  bytes_ = 0;
+  news_ = fmt::format(
+      "{}: {} MB are written, and it begins again; {} keeps them, what came before "
+      "is dropped",
+      path_, most_bytes_ >> 20, old);
 }
 
 void RunWriter::flush() {
@@ -58,7 +80,9 @@ void RunWriter::flush() {
 }
 
 void RunWriter::keep(const std::optional<Error>& error) {
-  if (error) trouble_ = Error{error->message + "; what was written before is kept"};
+  if (!error) return;
+  trouble_ = Error{error->message + "; what was written before is kept"};
+  news_ = trouble_->message + "; the run goes on without its record";
 }
 
 std::optional<Error> RunWriter::close() {

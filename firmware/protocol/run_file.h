@@ -56,22 +56,38 @@ std::string chunk_of(const Record& record, FieldTable fields = Record::fields())
   return chunk_of(Record::kKind, content);
 }
 
+/// Chosen: some two hours at 1 kHz.
+inline constexpr std::uint64_t kMaxRecord_bytes = std::uint64_t{4} << 30;
+
 /// A tick log as it grows. Writes in an ordinary thread. After a loss nothing more is written: a
-/// log with a gap cannot be replayed.
+/// log with a gap cannot be replayed. At `most_bytes` the file is sealed and becomes PATH.old, in
+/// place of an older one, and a new one begins: the newest is kept.
 class RunWriter {
  public:
-  static model::Result<RunWriter> create(const std::string& path, const std::string& start);
+  static model::Result<RunWriter> create(const std::string& path, const std::string& start,
+                                         std::uint64_t most_bytes = UINT64_MAX);
   void add(const std::string& bytes);
   void flush();
   /// The error after which nothing more is written, if any.
   const std::optional<model::Error>& trouble() const { return trouble_; }
+  /// What has been lost or dropped, once each, in words for a person.
+  std::optional<std::string> news() { return std::exchange(news_, std::nullopt); }
   /// Closes the file. After a loss it is not sealed, so readers report it as unfinished.
   std::optional<model::Error> close();
 
  private:
+  RunWriter(model::io::SealedWriter file, std::string path, std::string start,
+            std::uint64_t most_bytes)
+      : path_(std::move(path)),
+        start_(std::move(start)),
+        most_bytes_(most_bytes),
+        file_(std::move(file)) {}
+  void begin_again();
   void keep(const std::optional<model::Error>& error);
-  explicit RunWriter(model::io::SealedWriter file) : file_(std::move(file)) {}
 
+  std::string path_, start_;
+  std::uint64_t most_bytes_, bytes_ = 0;  // of this file, without its start
+  std::optional<std::string> news_;
   std::optional<model::io::SealedWriter> file_;
   std::optional<model::Error> trouble_;
 };

@@ -22,13 +22,12 @@ void serve_operator(const ServiceParts& s, LoopExecutor& executor) {
   };
   console::RequestHandler request_handler(
       s.signals, s.requests, view, [&s] { return s.telemetry.newest_frame(); }, control.get(),
-      console::pause_a_moment, set);
+      &s.progress, console::pause_a_moment, set);
   console::ServiceManager service;
   loop::MonotonicClock clock;
   const auto report_news = [&] {
     if (const auto told = s.variants.work()) view.report(*told);
-    if (const auto lost = s.telemetry.lost_record())
-      view.report(lost->message + "; the loop goes on without its record");
+    if (const auto news = s.telemetry.record_news()) view.report(*news);
     if (s.black_box == nullptr) return;
     for (const std::string& message : s.black_box->news()) view.report(message);
   };
@@ -36,7 +35,7 @@ void serve_operator(const ServiceParts& s, LoopExecutor& executor) {
     const std::int64_t now_ns = clock.now_ns();
     const std::int64_t until_ns = loop::next_half_way_ns(now_ns + kStatusPeriod_ns, s.period_ns);
     request_handler.obey(until_ns - now_ns);
-    service.report({now_ns, view.why_not_arm().empty(), s.loop_ticks(), view.status()});
+    service.report({now_ns, view.why_not_arm().empty(), s.progress.ticks(), view.status()});
     report_news();
     if (!executor.hangs()) continue;
     executor.leave_behind(1, [&] {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 
 #include "firmware/black_box/black_box.h"
 #include "firmware/console/operator_signals.h"
@@ -20,7 +19,7 @@ struct ServiceParts {
   telemetry::Telemetry& telemetry;
   black_box::BlackBox* black_box;  // or null
   Variants& variants;
-  std::function<std::uint64_t()> loop_ticks;  // so far
+  const loop::Progress& progress;
   std::int64_t period_ns;
 };
 

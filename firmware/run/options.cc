@@ -47,7 +47,9 @@ void add_real_time(CLI::App& app, Options& o) {
 
 // Recordings of a run, and their replay.
 void add_records(CLI::App& app, Options& o) {
-  auto* record = app.add_option("--record", o.record_path, "log every tick to this new file");
+  auto* record = app.add_option("--record", o.record_path,
+                                "log every tick to this new file; at 4 GB it becomes FILE.old and "
+                                "begins again");
   auto* replay =
       app.add_option(
              "--replay", o.replay_path,

@@ -205,7 +205,7 @@ std::optional<model::Error> Session::run_real_time() {
                   .telemetry = *telemetry_,
                   .black_box = black_box_.get(),
                   .variants = *variants_,
-                  .loop_ticks = [this] { return loop_->progress().ticks(); },
+                  .progress = loop_->progress(),
                   .period_ns = period_ns()},
                  executor);
   auto error = executor.join();

@@ -67,7 +67,7 @@ std::string check_lines(const model::scene::Scene& scene, const LoopParts& parts
 
 void RealTime::enter(const pc::RtSettings& settings) {
   process_.emplace(shortfalls_);
-  if (auto limited = watch::lift_rttime_limit()) shortfalls_.push_back(std::move(*limited));
+  for (pc::Shortfall& s : watch::lift_time_limits()) shortfalls_.push_back(std::move(s));
   for (pc::Shortfall& s : probe_rt_threads(settings)) shortfalls_.push_back(std::move(s));
 }
 

@@ -90,7 +90,8 @@ Result<Sinks> open_sinks(const RunSetup& run) {
   if (!run.options.record_path.empty()) {
     auto log = protocol::RunWriter::create(
         run.options.record_path,
-        start_of_run(header, {}, {protocol::schema_of<protocol::LoggedTick>()}));
+        start_of_run(header, {}, {protocol::schema_of<protocol::LoggedTick>()}),
+        protocol::kMaxRecord_bytes);
     if (!log) return log.error();
     out.sinks.log.emplace(std::move(*log));
   }

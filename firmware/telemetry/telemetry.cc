@@ -68,16 +68,15 @@ void Telemetry::drain() {
     if (sinks_.log) sinks_.log->add(chunk_of(LoggedTick::of(record_, builder_.non_rt())));
     if (sinks_.recorder) sinks_.recorder->add(record_);
   }
-  // Reported once: after a full disk every later tick is lost.
-  if (reported_lost_ || !sinks_.log || !sinks_.log->trouble()) return;
-  reported_lost_ = true;
+  auto news = sinks_.log ? sinks_.log->news() : std::nullopt;
+  if (!news) return;
   const std::lock_guard lock(newest_mutex_);
-  lost_ = sinks_.log->trouble();
+  record_news_ = std::move(news);
 }
 
-std::optional<model::Error> Telemetry::lost_record() {
+std::optional<std::string> Telemetry::record_news() {
   const std::lock_guard lock(newest_mutex_);
-  return std::exchange(lost_, std::nullopt);
+  return std::exchange(record_news_, std::nullopt);
 }
 
 void Telemetry::expect_variant(std::uint32_t variant, const std::vector<std::string>& set,

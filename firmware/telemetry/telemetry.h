@@ -72,8 +72,8 @@ class Telemetry {
   std::uint32_t variant() const { return variant_.load(std::memory_order_acquire); }
 
   Frame newest_frame() const;
-  /// The tick log's error, returned once, as soon as it has lost data. Any thread.
-  std::optional<model::Error> lost_record();
+  /// What the tick log has lost or dropped, once each. Any thread.
+  std::optional<std::string> record_news();
   std::uint64_t dropped_frames() const { return dropped_frames_.load(std::memory_order_relaxed); }
   /// Over all forces of the run, after stop(); 0 if the ring dropped any.
   std::uint64_t force_hash() const { return ring_.dropped() == 0 ? force_hash_ : 0; }
@@ -95,7 +95,7 @@ class Telemetry {
   std::atomic<std::uint64_t> dropped_frames_{0};
   mutable std::mutex newest_mutex_;  // the loop never takes it
   Frame newest_;
-  std::optional<model::Error> lost_;  // guarded by newest_mutex_
+  std::optional<std::string> record_news_;  // guarded by newest_mutex_
   struct Expected {
     std::uint32_t variant;
     std::string chunk;
@@ -103,7 +103,6 @@ class Telemetry {
   };
   std::vector<Expected> expected_;  // guarded by newest_mutex_
   std::atomic<std::uint32_t> variant_{0};
-  bool reported_lost_ = false;
   loop::TickRecord record_;
   std::uint64_t force_hash_;
   hal::Thread thread_;

@@ -24,22 +24,36 @@ void on_runaway(int) {
 
 }  // namespace
 
-std::optional<pc::Shortfall> lift_rttime_limit() {
+namespace {
+
+/// The hard limit that stays, in units of the kernel; RLIM_INFINITY: none.
+rlim_t lift(__rlimit_resource which) {
   rlimit limit{.rlim_cur = RLIM_INFINITY, .rlim_max = RLIM_INFINITY};
-  getrlimit(RLIMIT_RTTIME, &limit);
-  if (limit.rlim_cur == RLIM_INFINITY && limit.rlim_max == RLIM_INFINITY) return std::nullopt;
+  getrlimit(which, &limit);
   const rlimit none{.rlim_cur = RLIM_INFINITY, .rlim_max = RLIM_INFINITY};
   // Raising a hard limit takes a privilege; without it the soft limit is raised to the hard one.
-  if (setrlimit(RLIMIT_RTTIME, &none) == 0) return std::nullopt;
+  if (setrlimit(which, &none) == 0) return RLIM_INFINITY;
   const rlimit most{.rlim_cur = limit.rlim_max, .rlim_max = limit.rlim_max};
-  setrlimit(RLIMIT_RTTIME, &most);
-  if (limit.rlim_max == RLIM_INFINITY) return std::nullopt;
-  return pc::Shortfall{
-      fmt::format("the kernel kills a real-time thread of this session after {} us without a sleep "
-                  "(RLIMIT_RTTIME), without a word; start tactd after ulimit -R unlimited, or take "
-                  "rttime out of "
-                  "/etc/security/limits.d/",
-                  limit.rlim_max)};
+  setrlimit(which, &most);
+  return limit.rlim_max;
+}
+
+}  // namespace
+
+std::vector<pc::Shortfall> lift_time_limits() {
+  std::vector<pc::Shortfall> kept;
+  if (const rlim_t most_us = lift(RLIMIT_RTTIME); most_us != RLIM_INFINITY)
+    kept.push_back({fmt::format(
+        "the kernel kills a real-time thread of this session after {} us without a sleep "
+        "(RLIMIT_RTTIME), without a word; start tactd after ulimit -R unlimited, or take rttime "
+        "out of /etc/security/limits.d/",
+        most_us)});
+  if (const rlim_t most_s = lift(RLIMIT_CPU); most_s != RLIM_INFINITY)
+    kept.push_back({fmt::format(
+        "the kernel kills this process after {} s of CPU time (RLIMIT_CPU), without a word; start "
+        "tactd after ulimit -t unlimited, or take cpu out of /etc/security/limits.d/",
+        most_s)});
+  return kept;
 }
 
 RunawayGuard::RunawayGuard(loop::Requests& requests, rlim_t longest_us) {

@@ -11,16 +11,16 @@
 
 #include <sys/resource.h>
 
-#include <optional>
+#include <vector>
 
 #include "firmware/loop/rt_loop.h"
 #include "firmware/pc/rt_setup.h"
 
 namespace tact::firmware::watch {
 
-/// Removes an inherited limit, at which the kernel kills a real-time process without a message;
-/// returns a shortfall if that is not allowed. Call before any real-time thread starts.
-std::optional<pc::Shortfall> lift_rttime_limit();
+/// Removes the inherited limits of CPU time, at which the kernel kills the process without a
+/// message; a shortfall for each that has to stay. Call before any real-time thread starts.
+std::vector<pc::Shortfall> lift_time_limits();
 
 /// During its lifetime, 50 ms of CPU time without a sleep stop the loop. One instance at a time.
 class RunawayGuard {

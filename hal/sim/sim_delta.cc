@@ -25,7 +25,7 @@ constexpr double kMaxPhysics_s = 0.1;
 constexpr double kMaxDelay_s = 0.1;
 // 16 bits, chosen: fine beside the +-20 degrees of the wrist.
 constexpr double kWristCountsPerTurn = 65536.0;
-constexpr double kGripHalfWidth_m = 0.05;          // the hand holds the handle here, at both sides
+constexpr double kGripHalfWidth_m = 0.05;  // the hand holds the handle here, at both sides
 constexpr double kGripperForce_N = 8.0, kGripperOpen_m = 0.025;  // as an omega.7's
 
 double counted_rad(double angle_rad, double counts_per_turn) RT_SAFE {

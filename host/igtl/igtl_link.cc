@@ -6,6 +6,7 @@
 #include <netinet/tcp.h>
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <charconv>
 #include <utility>
 
@@ -112,17 +113,24 @@ void IgtlLink::stop() {
 }
 
 void IgtlLink::welcome(tcp::socket socket) {
-  if (clients_.size() >= kMaxClients)
-    return refuse("more than 8 programs have come; one is sent away");
+  if (clients_.size() >= kMaxClients) {
+    refuse("more than 8 programs have come; one is sent away");
+    // The one that has been silent longest makes room, so that silence locks nobody out.
+    const auto silent =
+        std::ranges::find_if(clients_, [](const Session& one) { return !one->has_spoken(); });
+    if (silent == clients_.end()) return;
+    (*silent)->stop();
+    clients_.erase(silent);
+  }
   // A strong pointer here would be a cycle: the session owns its events.
   auto place = std::make_shared<std::weak_ptr<IgtlSession>>();
   const auto session = std::make_shared<IgtlSession>(
       std::move(socket), events_of([this, place](const std::string& reason) {
         if (!reason.empty()) refuse(reason + "; it is let go");
-        if (const Session gone = place->lock()) clients_.erase(gone);
+        if (const Session gone = place->lock()) std::erase(clients_, gone);
       }));
   *place = session;
-  clients_.insert(session);
+  clients_.push_back(session);
   session->start();
   // At once, so that the client need not wait a second for the status.
   session->send(igtl::status("Tact", utc_s(), last_));

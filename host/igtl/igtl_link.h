@@ -17,6 +17,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "host/igtl/igtl_bodies.h"
 #include "host/igtl/igtl_frame.h"
@@ -84,7 +85,7 @@ class IgtlLink {
   std::string server_name_;
   std::unique_ptr<boost::asio::ip::tcp::socket> calling_;
   Session tracker_;
-  std::set<Session> clients_;
+  std::vector<Session> clients_;  // oldest first
   IgtlBodies bodies_;
   Status last_ = lost_status();
   std::uint64_t refused_ = 0;

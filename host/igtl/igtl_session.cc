@@ -106,6 +106,7 @@ void IgtlSession::take_body(std::string_view body) {
   };
   // First: after a wrong checksum any other error would be misleading.
   if (crc64(body) != head_.crc) return refuse("its checksum is not that of its bytes");
+  has_spoken_ = true;
   const auto content = content_of(head_, body);
   if (!content) return refuse(content.error().message);
   if (!content->is_tracked) return;  // the sender does not see the body

@@ -44,6 +44,8 @@ class IgtlSession : public std::enable_shared_from_this<IgtlSession> {
   void start();
   void send(const std::string& batch);
   void stop();
+  /// It has sent a message whose checksum is good.
+  bool has_spoken() const { return has_spoken_; }
 
  private:
   using Code = boost::system::error_code;
@@ -62,7 +64,7 @@ class IgtlSession : public std::enable_shared_from_this<IgtlSession> {
   MessageHead head_;
   std::array<char, kMaxUsedBody> bytes_{};
   std::string on_its_way_, waiting_;
-  bool ended_ = false;
+  bool ended_ = false, has_spoken_ = false;
 };
 
 }  // namespace tact::host::igtl

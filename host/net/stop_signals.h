@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// stop_signals.h - Ctrl-C and SIGTERM for a program that waits in Asio. Not by Asio's signal_set,
-// whose handler may fail and then says nothing.
+// stop_signals.h - Ctrl-C and SIGTERM for a program that waits in Asio. Not by its signal_set,
+// which loses a signal whose one write fails.
 #pragma once
 
 #include <boost/asio/io_context.hpp>

@@ -64,8 +64,8 @@ std::string bytes_of(const record::MeshBytes& mesh) {
 
 }  // namespace
 
-HttpSession::HttpSession(beast::tcp_stream stream, ConnectionSlot slot, Site& site)
-    : stream_(std::move(stream)), slot_(std::move(slot)), site_(site) {}
+HttpSession::HttpSession(beast::tcp_stream stream, Site& site)
+    : stream_(std::move(stream)), site_(site) {}
 
 void HttpSession::read_next() {
   // A parser reads one message, so a new one with its limits is needed.
@@ -123,6 +123,11 @@ void HttpSession::handle(const Request& request) {
     response.set(http::field::www_authenticate, "Bearer");
     return write(std::move(response), request);
   }
+  if (!is_public && !has_slot()) slot_ = site_.take_slot();
+  if (!is_public && !has_slot())
+    return write(sorry(http::status::service_unavailable,
+                       "503: too many pages and downloads are open; close some now"),
+                 request);
   if (beast::websocket::is_upgrade(request) && path == "/live") return upgrade(request);
   if (request.method() == http::verb::get && site_.view.has_scene() &&
       (path == "/recording.csv" || path == "/recording.tact")) {

@@ -27,6 +27,7 @@ struct Site {
   LiveView& view;
   PageFiles page;
   Access access;
+  std::function<ConnectionSlot()> take_slot;  // null: all are taken
   MoveHand move_hand;
   Steer steer;                                // only of a replay
   AskScene ask_scene;                         // only of a simulation that offers scenes
@@ -39,8 +40,12 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   using Request = LiveSession::Request;
   using Response = boost::beast::http::response<boost::beast::http::string_body>;
 
-  HttpSession(boost::beast::tcp_stream stream, ConnectionSlot slot, Site& site);
+  HttpSession(boost::beast::tcp_stream stream, Site& site);
   void start() { read_next(); }
+  /// It has shown the token.
+  bool has_slot() const { return slot_ != nullptr; }
+  /// Closes the connection.
+  void stop() { stream_.close(); }
 
  private:
   void read_next();

@@ -34,6 +34,7 @@ ViewerServer::ViewerServer(boost::asio::io_context& io, LiveView& view, MoveHand
       site_{.view = view,
             .page = {},
             .access = {},
+            .take_slot = [this] { return take_slot(); },
             .move_hand = std::move(move_hand),
             .steer = {},
             .ask_scene = {},
@@ -84,31 +85,33 @@ std::optional<Error> ViewerServer::listen(const tcp::endpoint& endpoint) {
 
 void ViewerServer::start() {
   acceptor_.start([this](tcp::socket socket) {
-    // One use is the server's own.
-    if (slot_.use_count() > kMaxConnections) return turn_away(std::move(socket));
-    std::make_shared<HttpSession>(boost::beast::tcp_stream(std::move(socket)), slot_, site_)
-        ->start();
+    std::erase_if(strangers_, [](const auto& one) {
+      const auto session = one.lock();
+      return !session || session->has_slot();
+    });
+    if (strangers_.size() == kMaxStrangers) {
+      strangers_.front().lock()->stop();
+      strangers_.pop_front();
+    }
+    const auto session =
+        std::make_shared<HttpSession>(boost::beast::tcp_stream(std::move(socket)), site_);
+    strangers_.push_back(session);
+    session->start();
   });
 }
 
-/// Answers without reading the request, so that a refused client holds no resources.
-void ViewerServer::turn_away(tcp::socket socket) {
-  static constexpr std::string_view kAnswer =
-      "HTTP/1.1 503 Service Unavailable\r\nContent-Type: text/plain\r\nContent-Length: 59\r\n"
-      "Connection: close\r\n\r\n503: too many pages and downloads are open; close some now\n";
-  error_code ignored;
-  // Non-blocking, so that it does not delay other connections.
-  socket.non_blocking(true, ignored);
-  socket.write_some(boost::asio::buffer(kAnswer), ignored);  // a new connection has room for it
-  socket.shutdown(tcp::socket::shutdown_send, ignored);
+ConnectionSlot ViewerServer::take_slot() {
+  // One use is the server's own.
+  if (slot_.use_count() <= kMaxConnections) return slot_;
   ++turned_away_;
   const auto now = std::chrono::steady_clock::now();
-  if (!warn_ || (turned_away_ > 1 && now - reported_ < kReportAgain)) return;
+  if (!warn_ || (turned_away_ > 1 && now - reported_ < kReportAgain)) return nullptr;
   reported_ = now;
   warn_(
       fmt::format("{} pages and downloads are open, no more are let in ({} turned away so far); "
                   "close some",
                   kMaxConnections, turned_away_));
+  return nullptr;
 }
 
 void ViewerServer::stop() { acceptor_.stop(); }

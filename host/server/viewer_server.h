@@ -8,6 +8,7 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <chrono>
+#include <deque>
 #include <functional>
 #include <optional>
 #include <string>
@@ -51,12 +52,13 @@ class ViewerServer {
 
  private:
   std::optional<model::Error> listen(const boost::asio::ip::tcp::endpoint& endpoint);
-  void turn_away(boost::asio::ip::tcp::socket socket);
+  ConnectionSlot take_slot();
 
   net::Acceptor acceptor_;
   Site site_;
   Warn warn_;
-  ConnectionSlot slot_;  // its copies are the connections
+  ConnectionSlot slot_;  // its copies are the connections that have shown the token
+  std::deque<std::weak_ptr<HttpSession>> strangers_;  // the others, oldest first
   std::uint64_t turned_away_ = 0;
   std::chrono::steady_clock::time_point reported_;
 };

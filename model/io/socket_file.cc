@@ -75,7 +75,7 @@ Result<std::string> runtime_directory() {
       (info.st_mode & 027) != 0)
     return Error{path +
                  ": is not a folder that only you can write to and no stranger can open; remove it "
-                 "and start again"};
+                 "and start again, or set XDG_RUNTIME_DIR to a folder of yours"};
   return path;
 }
 

@@ -43,6 +43,11 @@ VOUCHES = {
 BY_IO = re.compile(r"\b[io]?fstream\b|\bfopen\(|\bCLI::(Range|Bound|Number|PositiveNumber|NonNegativeNumber|ExistingFile)\b"
                    r"|\bjson::parse\(|\.dump\(|\btoml::parse(_file)?\(")
 IO = "model/io/"
+# What judges the gate shares no formula with it: a wrong one would agree with itself.
+JUDGES = ("model/limit_witness.h", "model/limit_witness.cc", "tests/support/gate_rules.h", "tests/soak/energy_ledger.h",
+          "tests/soak/invariants.h", "tests/soak/invariants.cc")
+OF_THE_GATE = re.compile(r"\b(limits_in_use|brake_energy_J|slew_beside_ramp_N\w*|thermal_steepness|limit_surplus"
+                         r"|limit_magnitude|approach|given_energy_J)\(|\bEnergyTank\b|\bThermalLimit\b")
 # Threads start in one place, which returns an Error where the system refuses one and lets no exception out.
 BY_THREAD = re.compile(r"\bstd::j?thread\b(?!::hardware_concurrency)|\bpthread_create\(|\bstd::async\b|\bthread_pool\b")
 THREAD = ("hal/thread.h", "hal/thread.cc")
@@ -79,6 +84,14 @@ def io_breaches(path, text):
     code = COMMENT.sub(blank, text)
     for found in BY_IO.finditer(code):
         yield f"{path}:{code.count(chr(10), 0, found.start()) + 1}: {found.group()}: use {IO}"
+
+
+def oracle_breaches(path, text):
+    if path not in JUDGES:
+        return
+    code = COMMENT.sub(blank, text)
+    for found in OF_THE_GATE.finditer(code):
+        yield f"{path}:{code.count(chr(10), 0, found.start()) + 1}: {found.group()}: an oracle uses no formula of the gate"
 
 
 def thread_breaches(path, text):
@@ -174,6 +187,7 @@ def blind_rules():
         "number": io_breaches("tools/x.cc", "option->check(CLI::Range(0, 1));\n"),
         "parser": io_breaches("host/x.cc", "const auto j = nlohmann::json::parse(text);\n"),
         "JSON that may throw": io_breaches("tools/x/x.cc", "print(report.dump(2));\n"),
+        "oracle": oracle_breaches("tests/support/gate_rules.h", "limits_in_use(limits, 1.0)"),
         "thread": thread_breaches("host/x.cc", "std::thread t(f);\n"),
         "thread of POSIX": thread_breaches("hal/x.cc", "pthread_create(&t, nullptr, f, nullptr);\n"),
         "throw": throw_breaches("tools/x.cc", "void f() { throw 1; }\n"),
@@ -222,6 +236,7 @@ def main():
                 breaches += misnamed(name, text)
                 breaches += throw_breaches(name, text)
                 breaches += thread_breaches(name, text)
+                breaches += oracle_breaches(name, text)
             if top != "tests" and (path.suffix in (".h", ".cc") or path.name == "CMakeLists.txt"):
                 texts[name] = text
             if path.suffix in (".h", ".cc") and not name.startswith(CANARIES):

@@ -76,14 +76,14 @@ class Pc:
         self.qemu.stdin.write((line + "\n").encode())
         self.qemu.stdin.flush()
 
-    def log_in(self, first_time):
-        """The first login sets the password."""
+    def log_in(self, first_password=""):
+        """The first login asks for the image's own password, twice, and for a new one, twice."""
         self.wait_for(r"haptics-pc login: ", BOOT_LIMIT_S)
         login_s = self.on_s()
         self.type(USER)
-        for _ in range(2 if first_time else 1):
+        for password in [first_password] * 2 + [PASSWORD] * 2 if first_password else [PASSWORD]:
             self.wait_for(r"(?i)password: ", COMMAND_LIMIT_S)
-            self.type(PASSWORD)
+            self.type(password)
         self.wait_for(r"\$ ", COMMAND_LIMIT_S)
         self.type("stty -echo cols 400; PS1=; PS2=; bind 'set enable-bracketed-paste off'; echo quiet $((1 + 1))")
         self.wait_for(r"quiet 2\n", COMMAND_LIMIT_S)

@@ -30,7 +30,7 @@ class GateRules {
  public:
   explicit GateRules(const GateSetting& setting = {})
       : gate_(setting.limits, setting.period_s(), setting.force_share),
-        witness_(model::limits_in_use(setting.limits, setting.force_share), setting.period_s()) {}
+        witness_(as_they_act(setting), setting.period_s()) {}
 
   /// One tick. The rule that it broke, or null.
   const char* check(RuleTick tick) {
@@ -56,6 +56,15 @@ class GateRules {
   double most_torque_thermal_ratio() const { return witness_.rms_torque_ratio(); }
 
  private:
+  /// Written out: limits_in_use() is the gate's, too.
+  static model::Limits as_they_act(const GateSetting& setting) {
+    model::Limits limits = setting.limits;
+    limits.force_N = setting.limits.force_N * setting.force_share;
+    limits.torque_Nm = setting.limits.torque_Nm * setting.force_share;
+    limits.continuous_force_N = setting.limits.continuous_force_N * setting.force_share;
+    limits.grip_force_N = setting.limits.grip_force_N * setting.force_share;
+    return limits;
+  }
   const char* broken_latch_rule(const GateInput& input) const {
     const model::Fault fault = verdict_.fault;
     if (!is_finite(input.wanted) && fault == model::Fault::kNone) return "NaN and infinity latch";

@@ -27,6 +27,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests/tools/client"))
 from run_bytes import FRAME, chunk_of  # noqa: E402
+from strangers import owner_beside_strangers  # noqa: E402
 BUILD = Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build").resolve()
 LIMIT_S, MIB, STRANGER = 58, 1 << 20, 65534
 FIVE_MINUTES = 18_000  # frames at 60 Hz
@@ -161,15 +162,13 @@ def connections(view):
     grown = (resident_bytes(view.program) - before) / MIB
     check("of 100 downloads that nobody reads 64 are let in", 63 <= let_in <= 64, let_in)
     check("... and share their frames", grown < 64, f"{grown:.0f} MiB")
-    for wire in wires:
-        wire.close()
+    _ = [wire.close() for wire in wires]
     time.sleep(0.3)
     slow = [view.connect() for _ in range(40)]
     for wire in slow:
         wire.sendall(b"GET / HT")
     check("40 requests that never end hold up nobody", view.status("scene.json", view.bearer) == 200)
-    for wire in slow:
-        wire.close()
+    _ = [wire.close() for wire in slow]
 
 
 def web_sockets(view):
@@ -273,6 +272,7 @@ def run(folder):
     for attack in (without_token, requests_that_are_none, web_sockets):
         attack(view)
         check(f"... and tact-view lives ({attack.__name__})", view.program.poll() is None)
+    check("300 connections without the token lock its owner out of nothing", owner_beside_strangers(view, STRANGER) == {200})
     sockets(tactd, path)
     check("tact-view ends cleanly", end(view.program) == 0)
     check("tactd ends cleanly", end(tactd) in (0, 1))

@@ -5,7 +5,8 @@
     python3 tests/system/failing_calls.py BUILD_DIR     (tactd, tactctl, tact-view, libtact-stub-dhd.so)
 
 The n-th call of a start fails, and then that of 200 armed ticks with a fault and its black box. Of a call that is made
-more often than MOST times, so many are tried, spread; TACT_EXTENT=long tries all. About 60 s. Prints each breach, then "N passed, M failed"; exit status 0 or 1.
+more often than MOST times, so many are tried, spread; TACT_EXTENT=long tries all. About 60 s. Prints each breach, then
+"N passed, M failed"; exit status 0 or 1.
 """
 import collections
 import concurrent.futures
@@ -72,7 +73,7 @@ class Program:
                 pass_fds=[write], preexec_fn=supervisor.enter if supervisor else None,
                 env=dict(os.environ, XDG_RUNTIME_DIR=str(folder), XDG_STATE_HOME=str(folder), TACT_STUB_DHD_END=str(write),
                          TACT_STUB_DHD_NO_WATCHDOG="1",
-                         OPENBLAS_NUM_THREADS="1"))  # its threads end the program before main() where one is refused
+                         OPENBLAS_NUM_THREADS="1"))  # its threads would end the program before main() where one is refused
         os.close(write)
 
     def text(self):

@@ -48,6 +48,18 @@ TEST_F(Scarce, AFileSizeLimitEndsTheRecordAndNotTheLoop) {
   EXPECT_GT(report().at("ticks"), 100) << out.output;
 }
 
+TEST_F(Scarce, WhatIsToldToBeKeptIsInTheFile) {
+  for (const char* limit : {"0", "4", "100", "300"}) {
+    const Outcome out = run_command(
+        "cd " + folder + "; rm -f log; (ulimit -f " + limit + "; exec " + program_path("tactd") +
+        " " + kLiver + " --free-run --seconds 3 --no-telemetry --no-black-box --record log)");
+    const Outcome kept = run_program("tactd", kLiver + " --replay " + in_folder("log"));
+    const bool is_promised = has(out, "what was written before is kept");
+    EXPECT_EQ(out.status, is_promised ? 1 : 2) << limit << " " << out.output;
+    EXPECT_EQ(is_promised, has(kept, "good ticks were read")) << limit << out.output << kept.output;
+  }
+}
+
 TEST_F(Scarce, AFullDiskEndsTheRecordAndNotTheLoop) {
   const Outcome can = run_command("unshare -rm sh -c 'mount -t tmpfs -o size=64k none /mnt'");
   if (can.status != 0) GTEST_SKIP() << "no file system of one's own here: " << can.output;

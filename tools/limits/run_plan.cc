@@ -118,8 +118,8 @@ Result<LimitsReport> run_real(const model::scene::Scene& scene, hal::Device& dev
   std::vector<firmware::pc::Shortfall> shortfalls;
   firmware::pc::use_small_thread_stacks();
   const firmware::pc::ProcessSetup setup(shortfalls);
-  if (auto limited = firmware::watch::lift_rttime_limit())
-    shortfalls.push_back(std::move(*limited));
+  for (auto& limited : firmware::watch::lift_time_limits())
+    shortfalls.push_back(std::move(limited));
   // As tactd decides: a PC that lacks anything gets the quarter of the force.
   const bool hard = shortfalls.empty() && firmware::pc::probe_rt_threads({}).empty();
   const hal::DeviceInfo info = device.info();

@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -13,7 +14,11 @@ namespace tact::model::io {
 namespace {
 
 constexpr int kBadOutput = 2;
-const char* program_name = "";
+std::array<char, 32> program_name{};  // read after main(), by value: no destructor touches it
+
+void keep_name(const char* program) {
+  std::snprintf(program_name.data(), program_name.size(), "%s", program);
+}
 
 /// A full disk shows when the last bytes leave, after main().
 void check_standard_output() {
@@ -21,7 +26,7 @@ void check_standard_output() {
   const bool failed_before = std::ferror(stdout) != 0;
   if (std::fflush(stdout) == 0 && !failed_before) return;
   std::fprintf(stderr, "%s: standard output cannot be written: %s; check where it goes\n",
-               program_name, failed_before && errno == 0 ? "error" : std::strerror(errno));
+               program_name.data(), failed_before && errno == 0 ? "error" : std::strerror(errno));
   std::fflush(nullptr);
   // exit() is running already, and may not be called again.
   _exit(kBadOutput);
@@ -32,10 +37,10 @@ void check_standard_output() {
   try {
     if (const auto thrown = std::current_exception()) std::rethrow_exception(thrown);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s: %s\n", program_name, error.what());
+    std::fprintf(stderr, "%s: %s\n", program_name.data(), error.what());
     _exit(kBadOutput);
   } catch (...) {
-    std::fprintf(stderr, "%s: an unknown exception\n", program_name);
+    std::fprintf(stderr, "%s: an unknown exception\n", program_name.data());
     _exit(kBadOutput);
   }
   _exit(kBadOutput);  // std::terminate without an exception
@@ -44,12 +49,12 @@ void check_standard_output() {
 }  // namespace
 
 void watch_standard_output(const char* program) {
-  program_name = program;
+  keep_name(program);
   std::atexit(check_standard_output);
 }
 
 void report_uncaught(const char* program) {
-  program_name = program;
+  keep_name(program);
   std::set_terminate(report_and_end);
 }
 

@@ -5,7 +5,7 @@
 namespace tact::model::io {
 
 /// First in main(): what standard output did not take (a full disk, /dev/full) is told when the
-/// program ends, and the exit status is 2. `program` must outlive main().
+/// program ends, and the exit status is 2.
 void watch_standard_output(const char* program);
 
 /// For programs that move nothing: an exception of a library that nobody catches (no memory, no

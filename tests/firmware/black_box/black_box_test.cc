@@ -6,6 +6,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -208,6 +209,47 @@ TEST_F(BlackBoxTest, AFullDiskIsToldAndCostsNothingElse) {
   ticks(*box, 300, model::Fault::kEmergencyStop);
   box->finish();
   EXPECT_EQ(box->files().size(), 1u) << "the next fault is tried again";
+}
+
+TEST_F(BlackBoxTest, AFullFolderKeepsItsNewestAndNoFileOfOthersIsRemoved) {
+  const auto now = fs::file_time_type::clock::now();
+  const auto put = [&](const std::string& name, int hours_ago) {
+    std::ofstream(folder + "/" + name) << std::string(1000, '.');
+    fs::last_write_time(folder + "/" + name, now - std::chrono::hours(hours_ago));
+  };
+  for (int i = 1; i <= 9; ++i)
+    put("liver-2026010" + std::to_string(i) + "T000000Z-105-loop-late.tactlog", 10 - i);
+  for (const char* other : {"notes.txt", "run.tactlog", "run-1.tactlog"}) put(other, 100);
+  EXPECT_EQ(remove_oldest(folder, 9000), 0u);
+  EXPECT_EQ(remove_oldest(folder, 4500), 5u);
+  EXPECT_FALSE(fs::exists(folder + "/liver-20260105T000000Z-105-loop-late.tactlog"));
+  EXPECT_TRUE(fs::exists(folder + "/liver-20260106T000000Z-105-loop-late.tactlog"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 7) << "others stay";
+  EXPECT_EQ(remove_oldest(folder + "/none", 0), 0u);
+}
+
+TEST_F(BlackBoxTest, ALongRecordKeepsItsNewestAndSaysWhatItDropped) {
+  const std::string path = folder + "/run.tactlog";
+  const std::string start =
+      protocol::start_of_run({}, {}, {protocol::schema_of<protocol::LoggedTick>()});
+  protocol::LoggedTick one;
+  const std::size_t size = chunk_of(one).size();
+  auto log = std::move(*protocol::RunWriter::create(path, start, 10 * size));
+  int times = 0;
+  for (one.tick = 0; one.tick < 35; ++one.tick) {
+    log.add(chunk_of(one));
+    if (const auto news = log.news()) {
+      ++times;
+      EXPECT_NE(news->find("run.tactlog.old keeps them, what came before is dropped"),
+                std::string::npos);
+    }
+  }
+  ASSERT_EQ(tests::message_of(log.close()), "");
+  EXPECT_EQ(times, 3);
+  EXPECT_EQ(logged(path + ".old").front().tick, 20u);
+  EXPECT_EQ(logged(path).front().tick, 30u);
+  EXPECT_EQ(logged(path).back().tick, 34u);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 2);
 }
 
 TEST_F(BlackBoxTest, AFolderThatCannotBeWrittenIsRefusedWithItsRemedy) {

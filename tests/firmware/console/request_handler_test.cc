@@ -17,6 +17,7 @@
 
 #include "firmware/console/control_name.h"
 #include "model/io/socket_file.h"
+#include "model/time_ns.h"
 #include "tests/support/puppet_loop.h"
 
 namespace tact::firmware::console::request_handler_test {
@@ -39,7 +40,8 @@ class Requests : public testing::Test {
   }
   std::unique_ptr<RequestHandler> make_handler(OperatorView& of, std::function<void()> pause) {
     return std::make_unique<RequestHandler>(
-        signals, requests, of, [this] { return frame; }, control.get(), std::move(pause));
+        signals, requests, of, [this] { return frame; }, control.get(), &progress,
+        std::move(pause));
   }
   /// A person who has said it; hear() is the answer, once the handler has been at work.
   int say(const char* word) const {
@@ -94,6 +96,7 @@ class Requests : public testing::Test {
   };
   OperatorView view{device, lines, false};
   protocol::Frame frame;
+  loop::Progress progress;
   std::string path = control_path(testing::TempDir(), "liver.toml", getpid());
   std::unique_ptr<ControlSocket> control;
   std::unique_ptr<RequestHandler> request_handler;
@@ -111,6 +114,25 @@ TEST_F(Requests, ArmsOnlyAfterTheWordsThatItMayBe) {
   EXPECT_EQ(armed.message, "puppet: armed, force is on");
   EXPECT_EQ(edges, (std::vector<std::string>{"arm"}));
   EXPECT_EQ(requests.refused.load(), 2u);
+}
+
+TEST_F(Requests, AnswersByTheLoopsOwnCountersWithTheirAge) {
+  show(State::kArmed);
+  const auto now_ns = [] { return loop::MonotonicClock().now_ns(); };
+  progress.show({.time_ns = now_ns(),
+                 .state = State::kStopped,
+                 .fault = model::Fault::kLoopLate,
+                 .force_N = {0.0f, 0.0f, 0.25f}});
+  EXPECT_TRUE(ask("status").done);
+  const std::string reported = ask("status").message;
+  EXPECT_TRUE(reported.starts_with("puppet: stopped, 0.250 N, fault 105, ")) << reported;
+  EXPECT_TRUE(reported.ends_with(" ms ago")) << reported;
+  EXPECT_NE(refusal("arm").find("it has stopped"), std::string::npos);
+  progress.show({.time_ns = now_ns() - 60 * model::kMillisecond_ns, .state = State::kArmed});
+  EXPECT_NE(refusal("status").find("not answered: the loop stands still; puppet: armed"),
+            std::string::npos);
+  requests.trip(model::Fault::kLoopStalled);
+  EXPECT_NE(refusal("status").find("stopped, 0.000 N, fault 120"), std::string::npos);
 }
 
 TEST_F(Requests, ARequestThatWaitsWhileTheWordsAreToldIsRefused) {

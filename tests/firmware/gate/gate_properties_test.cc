@@ -101,7 +101,7 @@ Wall lean_on_wall(double stiffness_N_per_m, double budget_J) {
   limits.slew_N_per_s = 1e4;
   firmware::gate::Gate gate(limits, 0.001, 1.0);
   constexpr double kMass_kg = 0.15, kDamping_Ns_per_m = 1.0, kPush_N = 1.0, kStep_s = 0.25e-3;
-  double x_m = 0.001, v_mps = 0.0, low_m = 1.0, high_m = -1.0;
+  double x_m = 0.001, v_mps = 0.0, low_m = 1.0, high_m = -1.0, given_J = 0.0;
   Wall out;
   for (int tick = 0; tick < 40000; ++tick) {
     firmware::gate::GateInput input;
@@ -111,12 +111,15 @@ Wall lean_on_wall(double stiffness_N_per_m, double budget_J) {
     input.fresh = input.armed = true;
     const firmware::gate::LimitedForce verdict = gate.limit(input);
     out.is_latched = out.is_latched || latches(verdict.fault);
+    const double from_m = x_m;
     for (int i = 0; i < 4; ++i) {
       v_mps +=
           kStep_s / kMass_kg * (verdict.wrench.force_N.x - kPush_N - kDamping_Ns_per_m * v_mps);
       x_m += kStep_s * v_mps;
     }
-    out.given_J = std::max(out.given_J, gate.given_energy_J());
+    // Summed here, beyond the recovery: a tank that books wrongly would hide what it gives.
+    given_J += verdict.wrench.force_N.x * (x_m - from_m) - 1e-3 * limits.recovery_W;
+    out.given_J = std::max(out.given_J, given_J);
     if (tick < 39000) continue;
     low_m = std::min(low_m, x_m);
     high_m = std::max(high_m, x_m);

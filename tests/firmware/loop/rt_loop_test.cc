@@ -196,7 +196,7 @@ TEST_F(RtLoopTest, AClockStepBackCausesNoExcessForceAndNoCatchUp) {
     run_ticks(1);
     const TickRecord now = newest();
     EXPECT_TRUE(is_finite(device.last.force_N));
-    EXPECT_LE(norm(device.last.force_N), controller.gate().force_limit_N());
+    EXPECT_LE(norm(device.last.force_N), scene.limits.force_N);
     EXPECT_EQ(now.due_ns, before.due_ns + 1'000'000) << "one period on, as ever";
     EXPECT_EQ(now.skipped_ticks, before.skipped_ticks);
     EXPECT_EQ(now.output.state, State::kArmed);

@@ -43,7 +43,7 @@ TEST(RttimeLimit, IsLiftedWhereTheSessionMayRaiseIt) {
   const auto lifted = [] {
     limit_to(kShort_us, RLIM_INFINITY);
     drop_the_right_to_raise_limits();
-    leave(!lift_rttime_limit() && limit_now_us() == RLIM_INFINITY);
+    leave(lift_time_limits().empty() && limit_now_us() == RLIM_INFINITY);
   };
   EXPECT_EXIT(lifted(), testing::ExitedWithCode(0), "");
 }
@@ -52,9 +52,14 @@ TEST(RttimeLimit, IsToldWithItsNumberAndRaisedAsFarAsItGoesWhereItStays) {
   const auto reported = [] {
     limit_to(kShort_us / 2, kShort_us);
     drop_the_right_to_raise_limits();
-    const auto shortfall = lift_rttime_limit();
-    leave(shortfall && shortfall->message.find("after 300000 us") != std::string::npos &&
-          limit_now_us() == kShort_us);
+    const rlimit cpu{.rlim_cur = 100, .rlim_max = 3600};
+    setrlimit(RLIMIT_CPU, &cpu);
+    const auto kept = lift_time_limits();
+    rlimit now{};
+    getrlimit(RLIMIT_CPU, &now);
+    leave(kept.size() == 2 && kept[0].message.find("after 300000 us") != std::string::npos &&
+          kept[1].message.find("after 3600 s of CPU time") != std::string::npos &&
+          limit_now_us() == kShort_us && now.rlim_cur == 3600);
   };
   EXPECT_EXIT(reported(), testing::ExitedWithCode(0), "");
 }
@@ -62,7 +67,7 @@ TEST(RttimeLimit, IsToldWithItsNumberAndRaisedAsFarAsItGoesWhereItStays) {
 TEST(RttimeLimit, OfNoSessionIsLeftAlone) {
   const auto none = [] {
     if (limit_now_us() != RLIM_INFINITY) limit_to(RLIM_INFINITY, RLIM_INFINITY);
-    leave(!lift_rttime_limit() && limit_now_us() == RLIM_INFINITY);
+    leave(lift_time_limits().empty() && limit_now_us() == RLIM_INFINITY);
   };
   EXPECT_EXIT(none(), testing::ExitedWithCode(0), "");
 }

@@ -60,26 +60,38 @@ TEST_F(HttpSession, EndsAConnectionThatSaysNothing) {
   EXPECT_EQ(say(""), "");
 }
 
-TEST_F(HttpSession, TurnsTheSixtyFifthConnectionAwayAndTellsIt) {
+TEST_F(HttpSession, TurnsTheSixtyFifthPageAwayAndTellsIt) {
   start();
   start_source();
   std::list<Socket> pages;
-  for (int i = 0; i < 32; ++i)
+  for (int i = 0; i < 64; ++i)
     ASSERT_FALSE(open_live(pages.emplace_back(client_io_), "http://localhost:1"));
-  std::vector<tcp::socket> silent;
-  for (int i = 0; i < 32; ++i) silent.push_back(connect());
   for (int i = 0; i < 3; ++i) {
-    const auto answer = get("/");
+    const auto answer = get("/session");
     EXPECT_EQ(answer.result(), http::status::service_unavailable);
     EXPECT_EQ(answer.body().substr(0, 5), "503: ");
   }
+  EXPECT_EQ(get("/").result(), http::status::ok) << "the page itself is public";
   EXPECT_TRUE(wait_until([this] {
     return warnings_.size() == 1 && warnings_[0].starts_with("64 pages and downloads are open");
   })) << "told once";
-  silent.pop_back();
   pages.pop_back();
-  EXPECT_TRUE(wait_until([this] { return view_.listeners() == 31; }));
-  EXPECT_EQ(get("/").result(), http::status::ok) << "there is room again";
+  EXPECT_TRUE(wait_until([this] { return view_.listeners() == 63; }));
+  EXPECT_EQ(get("/session").result(), http::status::no_content) << "there is room again";
+}
+
+TEST_F(HttpSession, AConnectionWithoutTheTokenTakesNobodysPlace) {
+  start();
+  start_source();
+  Socket page(client_io_);
+  ASSERT_FALSE(open_live(page, "http://localhost:1"));
+  std::vector<tcp::socket> silent;
+  for (int i = 0; i < 200; ++i) {
+    silent.push_back(connect());
+    if (i % 10 == 0) EXPECT_EQ(get("/session").result(), http::status::no_content) << i;
+  }
+  EXPECT_EQ(view_.listeners(), 1u) << "who has shown the token stays";
+  EXPECT_TRUE(warnings_.empty());
 }
 
 TEST(LiveView, SharesItsFramesAndMeshesWithAllDownloads) {

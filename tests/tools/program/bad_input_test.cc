@@ -76,6 +76,19 @@ TEST_F(BadInput, EveryProgramTellsItsVersionAndWhatBuiltIt) {
   }
 }
 
+// Its name is read after main(), where no object of main() is left.
+TEST_F(BadInput, EveryProgramTellsThatItsOutputIsNotTaken) {
+  for (const std::string& line : kPrograms) {
+    const std::string program = line.substr(0, line.find(' '));
+    const Outcome outcome = run_command("(" + program_path(program) + " --help >/dev/full)");
+    EXPECT_EQ(outcome.status, 2) << program;
+    EXPECT_EQ(outcome.output,
+              program +
+                  ": standard output cannot be written: No space left on device; check where "
+                  "it goes\n");
+  }
+}
+
 TEST_F(BadInput, AnEmptyArgumentIsRefusedByEveryProgram) {
   for (const std::string& program : kPrograms)
     for (const char* empty : {"''", "--out=", "--json ''"}) refuses(program, empty, "is empty");

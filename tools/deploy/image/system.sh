@@ -91,8 +91,10 @@ EOT
 [Partition]
 Type=root-x86-64
 EOT
+  (umask 077; echo "$password" >"$pc/etc/first-password")
   inside 'useradd --create-home --shell /bin/bash --groups sudo,haptics lab
-    passwd --quiet --delete lab && passwd --quiet --expire lab
+    read -r password </etc/first-password && echo "lab:$password" | chpasswd && rm /etc/first-password
+    passwd --quiet --expire lab
     systemctl enable systemd-networkd tactd@liver'
   [ "$device" = sim-delta ] || choose_device "$pc/etc/tact/liver.toml"
 }
