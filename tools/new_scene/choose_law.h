@@ -20,7 +20,7 @@ model::Result<std::vector<std::string>> ask(const char* program,
 
 /// `files.scene` says law = "auto"; files.reference and files.tool_reference are written, tactd
 /// takes the scene with the law that was chosen. An error says why none was: CalculiX is missing,
-/// no law is good enough, Ctrl-C. Minutes to an hour.
+/// no law could be measured, Ctrl-C. Minutes to an hour.
 std::optional<model::Error> choose_law(
     const OutputNames& files, const std::string& log_path,
     const std::function<void(const char* step, const std::string& text)>& report);
