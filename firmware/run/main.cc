@@ -125,7 +125,7 @@ model::Result<model::scene::Scene> load(firmware::run::Options& options) {
   if (!plan) return plan.error();
   const auto choice = model::scene::overrides_of(plan->sizes);
   const std::string time = plan->machine.empty()
-                               ? "no plan of this machine, the least error of the accuracy file"
+                               ? "no plan of this machine, by the accuracy file"
                                : fmt::format("p99.9 {:.3g} us", plan->tick_p999_us);
   say(stderr, "tactd: law \"auto\" is{}: {}, force error {:.1f} %\n",
       model::scene::command_text(choice), time, 100.0 * plan->force_error_ratio);

@@ -172,9 +172,11 @@ std::optional<Accuracy> nearest_law(const Scene& scene) {
   std::optional<Accuracy> out;
   Scene own = scene;
   for (const LawRow& row : all_laws()) {
+    // What a blade cannot cut is no law for a scene with one.
+    if (scene.tool.blade && row.name != "spring_patch") continue;
     own.law = row.name;
     const auto found = scene.describes(row.name) ? read_accuracy(own) : Error{};
-    if (found && (!out || worst_error_ratio(*found) < worst_error_ratio(*out))) out = *found;
+    if (found && (!out || worst_error_ratio(*found) <= worst_error_ratio(*out))) out = *found;
   }
   return out;
 }

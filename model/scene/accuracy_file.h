@@ -46,7 +46,7 @@ Result<Accuracy> read_accuracy(const Scene& scene);
 /// The largest of its errors, the RMS of the peak or an own force.
 double worst_error_ratio(const Accuracy& accuracy);
 /// Of all laws of the scene with a figure, the one with the least worst error; of equal ones the
-/// first. None: no figure counts.
+/// last, as a net of springs may be felt as `compliance` and costs more. None: no figure counts.
 std::optional<Accuracy> nearest_law(const Scene& scene);
 
 /// For people: the figure, and whether it is within the tolerance of the scene.

@@ -219,7 +219,12 @@ Result<Plan> find_plan(const Scene& scene, const std::vector<std::string>& overr
 Result<Plan> find_auto_law(const Scene& scene, const std::vector<std::string>& overrides) {
   auto plan = find_plan(scene, overrides);
   if (plan) return plan;
-  const auto nearest = nearest_law(scene);
+  std::vector<std::string> others = overrides;
+  std::erase_if(others, [](const std::string& one) { return one.starts_with("law="); });
+  // What its file names was chosen with a device and a time in mind.
+  const auto shipped = load_scene(scene.path, others);
+  const auto its_own = shipped && shipped->law != kAutoLaw ? read_accuracy(*shipped) : Error{};
+  const auto nearest = its_own ? std::optional(*its_own) : nearest_law(scene);
   if (!nearest) return plan.error();
   Plan out;
   out.sizes.law = nearest->law;

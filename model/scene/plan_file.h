@@ -50,8 +50,9 @@ Result<Plan> read_plan(const std::string& path, const Scene& scene,
 /// The plan of this scene on this machine, from the cache. With law=auto among the overrides that
 /// may be the plan of the scene without it, whatever law stands in its file.
 Result<Plan> find_plan(const Scene& scene, const std::vector<std::string>& overrides);
-/// That plan. Where this machine has none, as after a fresh clone: the law of SCENE.accuracy with
-/// the least worst error, its sizes as the scene says, `machine` empty.
+/// That plan. Where this machine has none, as after a fresh clone: the law that the scene's file
+/// names, if SCENE.accuracy has its figure, else the one there with the least worst error; its sizes
+/// as the scene says, `machine` empty.
 Result<Plan> find_auto_law(const Scene& scene, const std::vector<std::string>& overrides);
 
 }  // namespace tact::model::scene

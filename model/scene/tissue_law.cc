@@ -63,8 +63,8 @@ TissueLawBuilder::Step TissueLawBuilder::add_spring_patch() {
     const std::string net = law_->title_;
     if (auto failed = add_compliance()) return failed;
     law_->title_ = net + ", under the tool " + law_->title_;
-    law_->felt_law_ = std::move(law_->contact_law_);
-    parameters.felt = law_->felt_law_.get();
+    law_->organ_law_ = std::move(law_->contact_law_);
+    parameters.organ = law_->organ_law_.get();
   } else {
     law_->range_ = {-parameters.working_depth_m, parameters.working_depth_m};
     law_->press_stiffness_N_per_m_ = parameters.coupling_stiffness_N_per_m;

@@ -16,7 +16,7 @@
 // the rest. Tissue that relaxes shares its energy out (patch_memory.h); the virtual spring does
 // not.
 //
-// Where the organ is known (`felt`), the tool feels that law alone: the nodes follow the tool and can
+// Where the organ is known (`organ`), the tool feels that law alone: the nodes follow the tool and can
 // be cut, and give it nothing back. A net of springs cannot be an elastic body: its indentation
 // fades within a length of its own, and its force grows with the depth, not with d^1.5.
 //
@@ -53,7 +53,7 @@ struct SpringPatchParameters {
   std::size_t iterations = 10;   // of implicit Euler, 1 .. 100
   std::size_t substeps = 1;      // 1 .. 16
   law::Relaxation relaxation{};  // made for tick_s; of springs and anchors, not of the coupling
-  contact::ContactLaw* felt = nullptr;  // the organ under the tool; outlives the patch
+  contact::ContactLaw* organ = nullptr;  // the organ under the tool; outlives the patch
 };
 void visit(ParameterVisitor& v, SpringPatchParameters& p);
 
@@ -99,7 +99,7 @@ class SpringPatch final : public contact::ContactLaw {
   };
 
   SpringPatch(PatchSurface surface, const SpringPatchParameters& parameters);
-  contact::ContactLaw* felt() const RT_SAFE { return parameters_.felt; }
+  contact::ContactLaw* organ() const RT_SAFE { return parameters_.organ; }
   std::span<const ProbeSpring> probes() RT_SAFE;
   void follow_contacts() RT_SAFE;
   void give_up() RT_SAFE;

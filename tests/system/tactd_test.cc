@@ -131,7 +131,7 @@ TEST_F(Tactd, ARunOfAnAutomaticLawIsReplayedWithoutThePlan) {
   // A fresh clone has no plan of its machine: the scene's accuracy file chooses.
   const Outcome unplanned = tactd(kLiver + " --set law=auto --free-run --ticks 3");
   EXPECT_EQ(unplanned.status, 0) << unplanned.output;
-  EXPECT_TRUE(has(unplanned, "--set law=compliance: no plan of this machine")) << unplanned.output;
+  EXPECT_TRUE(has(unplanned, "--set law=rhombus: no plan of this machine")) << unplanned.output;
   // Its figures are not of other tissue.
   const std::string stiffer = " --set law=auto --set elastic.youngs_modulus_Pa=6000";
   const Outcome unknown = tactd(kLiver + stiffer + " --free-run --ticks 3");

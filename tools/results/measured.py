@@ -125,8 +125,8 @@ def tool():
 
 
 # Which solved presses judge which scene: the same organ, held alike, and the same spheres.
-SCENE_REFERENCES = {"liver": "liver", "liver_twist": "liver", "liver_source": "liver_source", "heart": "heart",
-                    "skin": "skin", "gum": "gum", "maintenance": "maintenance"}
+SCENE_REFERENCES = {"liver": "liver", "liver_twist": "liver", "liver_source": "liver_source",
+                    "heart": "heart", "skin": "skin", "gum": "gum", "maintenance": "maintenance"}
 LIGHT_TOUCH_M = 0.001  # shallower presses are solved, and not judged
 
 

@@ -60,9 +60,9 @@ def goals_of(law):
 SCENE_GOAL_PERCENT = {"rms": 3.0, "own": 7.0}  # of the law that a scene ships
 # Why a scene misses its goal; said only where it does.
 REASONS = {
-    "liver": "a rim: one give and one coupling for each place ([why](tools/chart/README.md#the-whole-tool))",
-    "liver_source": "the source's 530 N/m at rest; this liver has 13 to 28 N/m at the hand's site",
-    "gum": "a hollow of the ridge: a law takes the surface as flat",
+    "liver": "[rim](tools/chart/README.md)",
+    "liver_source": "530 N/m, not 13 to 28",
+    "gum": "a hollow, taken as flat",
 }
 SAME_PRESSES = {"liver_twist": "liver"}  # in the row of the other, if its values are the same
 

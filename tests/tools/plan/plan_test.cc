@@ -107,7 +107,7 @@ TEST(Choose, NeverTakesAWorseLawThanAnotherOfEqualTime) {
   EXPECT_EQ(choose(laws, kTolerance).chosen, 1U);
 }
 
-TEST(Plan, OfAFreshCloneIsTheLawOfTheLeastErrorInTheAccuracyFile) {
+TEST(Plan, OfAFreshCloneIsNoWorseThanTheShippedLaw) {
   ASSERT_EQ(setenv("XDG_CACHE_HOME", (testing::TempDir() + "tact_no_plan").c_str(), 1), 0);
   for (const std::string name : {"liver", "heart", "skin", "gum", "maintenance"}) {
     const std::string path = std::string(TACT_SOURCE_DIR) + "/model/scenes/" + name + ".toml";
@@ -120,6 +120,11 @@ TEST(Plan, OfAFreshCloneIsTheLawOfTheLeastErrorInTheAccuracyFile) {
     const auto accuracy = model::scene::read_accuracy(*shipped);
     ASSERT_TRUE(accuracy) << accuracy.error().message;
     EXPECT_LE(plan->force_error_ratio, model::scene::worst_error_ratio(*accuracy)) << name;
+    // A file that says "auto" itself, as one of tact-lab new-scene.
+    const auto nearest = model::scene::nearest_law(*automatic);
+    ASSERT_TRUE(nearest) << name;
+    EXPECT_LE(worst_error_ratio(*nearest), worst_error_ratio(*accuracy)) << name;
+    EXPECT_EQ(nearest->law == "spring_patch", name == "gum") << nearest->law;
   }
   unsetenv("XDG_CACHE_HOME");
 }
