@@ -111,8 +111,8 @@ model::Result<std::vector<std::string>> recorded_overrides(const std::string& pa
   return log->header().overrides;
 }
 
-/// The scene to run. law = "auto" is replaced by the choice of tact-lab plan on this machine, as
-/// --set values; a tick log keeps them, so its replay needs no plan.
+/// The scene to run. law = "auto" is replaced by the choice of tact-lab plan on this machine, or of
+/// the scene's accuracy file, as --set values; a tick log keeps them, so its replay needs no plan.
 model::Result<model::scene::Scene> load(firmware::run::Options& options) {
   if (!options.replay_path.empty() && options.overrides.empty()) {
     auto recorded = recorded_overrides(options.replay_path);
@@ -121,11 +121,14 @@ model::Result<model::scene::Scene> load(firmware::run::Options& options) {
   }
   auto scene = hal::registry::load_scene(options.scene_path, options.overrides);
   if (!scene || scene->law != model::scene::kAutoLaw) return scene;
-  const auto plan = model::scene::find_plan(*scene, options.overrides);
+  const auto plan = model::scene::find_auto_law(*scene, options.overrides);
   if (!plan) return plan.error();
   const auto choice = model::scene::overrides_of(plan->sizes);
-  say(stderr, "tactd: law \"auto\" is{}: p99.9 {:.3g} us, force error {:.1f} %\n",
-      model::scene::command_text(choice), plan->tick_p999_us, 100.0 * plan->force_error_ratio);
+  const std::string time = plan->machine.empty()
+                               ? "no plan of this machine, by the accuracy file"
+                               : fmt::format("p99.9 {:.3g} us", plan->tick_p999_us);
+  say(stderr, "tactd: law \"auto\" is{}: {}, force error {:.1f} %\n",
+      model::scene::command_text(choice), time, 100.0 * plan->force_error_ratio);
   // Appended last, so that the plan's law overrides law=auto.
   options.overrides.insert(options.overrides.end(), choice.begin(), choice.end());
   return hal::registry::load_scene(options.scene_path, options.overrides);

@@ -11,6 +11,7 @@
 #include "model/io/input_file.h"
 #include "model/io/toml.h"
 #include "model/reader/scene_text.h"
+#include "model/scene/laws.h"
 #include "model/scene/scene.h"
 
 namespace tact::model::scene {
@@ -158,10 +159,26 @@ std::size_t worst_depth(const Accuracy& accuracy) {
   return static_cast<std::size_t>(std::max_element(own.begin(), own.end(), nearer) - own.begin());
 }
 
+// Both: an RMS of the peak hides a light touch that is far off.
+double worst_error_ratio(const Accuracy& accuracy) {
+  return std::max(accuracy.rms_ratio, std::abs(accuracy.own_worst_ratio[worst_depth(accuracy)]));
+}
+
 bool keeps(const Accuracy& accuracy, const ToleranceSettings& tolerance) {
-  // Both: an RMS of the peak hides a light touch that is far off.
-  const double own_ratio = std::abs(accuracy.own_worst_ratio[worst_depth(accuracy)]);
-  return std::max(accuracy.rms_ratio, own_ratio) <= tolerance.force_error_ratio;
+  return worst_error_ratio(accuracy) <= tolerance.force_error_ratio;
+}
+
+std::optional<Accuracy> nearest_law(const Scene& scene) {
+  std::optional<Accuracy> out;
+  Scene own = scene;
+  for (const LawRow& row : all_laws()) {
+    // What a blade cannot cut is no law for a scene with one.
+    if (scene.tool.blade && row.name != "spring_patch") continue;
+    own.law = row.name;
+    const auto found = scene.describes(row.name) ? read_accuracy(own) : Error{};
+    if (found && (!out || worst_error_ratio(*found) <= worst_error_ratio(*out))) out = *found;
+  }
+  return out;
 }
 
 std::string accuracy_line(const Scene& scene) {

@@ -8,6 +8,7 @@
 // tolerance.force_error_ratio: an RMS alone hides light touch. Set-up code only.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,11 @@ std::string accuracy_text(const std::vector<Accuracy>& laws);
 /// The figure of this scene's law. An error says that there is none, or that it is of something
 /// else, and the remedy.
 Result<Accuracy> read_accuracy(const Scene& scene);
+/// The largest of its errors, the RMS of the peak or an own force.
+double worst_error_ratio(const Accuracy& accuracy);
+/// Of all laws of the scene with a figure, the one with the least worst error; of equal ones the
+/// last, as a net of springs may be felt as `compliance` and costs more. None: no figure counts.
+std::optional<Accuracy> nearest_law(const Scene& scene);
 
 /// For people: the figure, and whether it is within the tolerance of the scene.
 std::string accuracy_line(const Scene& scene);

@@ -17,6 +17,7 @@
 #include "model/io/input_file.h"
 #include "model/io/seal.h"
 #include "model/io/toml.h"
+#include "model/scene/accuracy_file.h"
 
 namespace tact::model::scene {
 namespace {
@@ -213,6 +214,22 @@ Result<Plan> find_plan(const Scene& scene, const std::vector<std::string>& overr
   const auto its_path = plan_path(planned->hash);
   if (!its_path) return its_path.error();
   return read_plan(*its_path, *planned, others);
+}
+
+Result<Plan> find_auto_law(const Scene& scene, const std::vector<std::string>& overrides) {
+  auto plan = find_plan(scene, overrides);
+  if (plan) return plan;
+  std::vector<std::string> others = overrides;
+  std::erase_if(others, [](const std::string& one) { return one.starts_with("law="); });
+  // What its file names was chosen with a device and a time in mind.
+  const auto shipped = load_scene(scene.path, others);
+  const auto its_own = shipped && shipped->law != kAutoLaw ? read_accuracy(*shipped) : Error{};
+  const auto nearest = its_own ? std::optional(*its_own) : nearest_law(scene);
+  if (!nearest) return plan.error();
+  Plan out;
+  out.sizes.law = nearest->law;
+  out.force_error_ratio = worst_error_ratio(*nearest);
+  return out;
 }
 
 }  // namespace tact::model::scene

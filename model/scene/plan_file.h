@@ -3,7 +3,8 @@
 //
 // A scene with law = "auto" is felt through it. The file stands in the user's cache, named by the
 // hash of the scene, so a changed scene has none; it also names the machine that was measured. A
-// file that is missing, damaged or of another machine is an error whose remedy is to plan again.
+// file that is missing, damaged or of another machine is an error whose remedy is to plan again;
+// then the figures of SCENE.accuracy choose, without a time.
 // Set-up code only.
 #pragma once
 
@@ -49,5 +50,9 @@ Result<Plan> read_plan(const std::string& path, const Scene& scene,
 /// The plan of this scene on this machine, from the cache. With law=auto among the overrides that
 /// may be the plan of the scene without it, whatever law stands in its file.
 Result<Plan> find_plan(const Scene& scene, const std::vector<std::string>& overrides);
+/// That plan. Where this machine has none, as after a fresh clone: the law that the scene's file
+/// names, if SCENE.accuracy has its figure, else the one there with the least worst error; its sizes
+/// as the scene says, `machine` empty.
+Result<Plan> find_auto_law(const Scene& scene, const std::vector<std::string>& overrides);
 
 }  // namespace tact::model::scene

@@ -45,7 +45,7 @@ TissueLawBuilder::Step TissueLawBuilder::add_compliance() {
   return finish_field();
 }
 
-// The hand meets no more than the virtual spring, whatever the nodes do in one tick.
+// Without a map the hand meets no more than the virtual spring, whatever the nodes do in one tick.
 TissueLawBuilder::Step TissueLawBuilder::add_spring_patch() {
   const auto& own = scene_.laws.of<springs::SpringPatchParameters>();
   // As the patch does: a mesh may have fewer vertices.
@@ -59,14 +59,19 @@ TissueLawBuilder::Step TissueLawBuilder::add_spring_patch() {
   auto relaxation = make_relaxation(scene_.relaxation, parameters.tick_s);
   if (!relaxation) return blame(relaxation.error());
   parameters.relaxation = *relaxation;
-  const auto compliance_m_per_N = read_scene_compliance(scene_);
-  if (!compliance_m_per_N) return compliance_m_per_N.error();
-  parameters.tissue.compliance_m_per_N = *compliance_m_per_N;
+  if (scene_.varies_by_place) {
+    const std::string net = law_->title_;
+    if (auto failed = add_compliance()) return failed;
+    law_->title_ = net + ", under the tool " + law_->title_;
+    law_->organ_law_ = std::move(law_->contact_law_);
+    parameters.organ = law_->organ_law_.get();
+  } else {
+    law_->range_ = {-parameters.working_depth_m, parameters.working_depth_m};
+    law_->press_stiffness_N_per_m_ = parameters.coupling_stiffness_N_per_m;
+  }
   auto patch = make_spring_patch(scene_.organ_mesh.view(), parameters);
   if (!patch) return blame(patch.error());
-  law_->range_ = {-parameters.working_depth_m, parameters.working_depth_m};
-  law_->press_stiffness_N_per_m_ = parameters.coupling_stiffness_N_per_m;
-  law_->memory_bytes_ = (*patch)->memory_bytes();
+  law_->memory_bytes_ += (*patch)->memory_bytes();
   law_->contact_law_ = std::move(*patch);
   return std::nullopt;
 }

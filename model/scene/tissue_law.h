@@ -63,6 +63,7 @@ class TissueLaw {
   std::vector<contact::SurfaceCorner> corner_;         // of the smooth surface
   std::vector<contact::VertexCompliance> compliance_;  // of each vertex, where the organ bends
   std::optional<contact::BendingOrgan> organ_;
+  std::unique_ptr<contact::ContactLaw> organ_law_;  // under the tool, where contact_law_ is a net
   std::unique_ptr<contact::ContactLaw> contact_law_;
   law::LawRange range_;
   double pull_limit_N_ = 0.0;

@@ -67,17 +67,6 @@ Result<double> scene_tip_radius_m(const Scene& scene) {
   return spheres[0].radius_m;
 }
 
-Result<std::vector<float>> read_scene_compliance(const Scene& scene) {
-  std::vector<float> out;
-  if (!scene.varies_by_place) return out;
-  auto map = read_scene_map(scene);
-  if (!map) return map.error();
-  out = std::move(map->regular_times_E_per_m);
-  // r E to r.
-  for (float& r : out) r /= static_cast<float>(scene.elastic->youngs_modulus_Pa);
-  return out;
-}
-
 Result<tissue::ComplianceFamily> read_scene_family(const Scene& scene, bool large_strain) {
   const auto tip_radius_m = scene_tip_radius_m(scene);
   if (!tip_radius_m) return Error{scene.path + ": " + tip_radius_m.error().message};

@@ -57,19 +57,6 @@ double across_N_per_m(const PatchTissue& tissue) {
          (1.0 + tissue.pretension_ratio);
 }
 
-// MA-22  a_i = 4 pi M_n/(exp(4 pi M_n G_i/1.2) - 1),  M_n = sqrt(3) k_x; with the mean area
-double anchor_of_compliance_N_per_m(const PatchTissue& tissue, double more_m_per_N) {
-  // Without pretension M_n is 0 and MA-22 is 0/0: this is near enough to its limit.
-  constexpr double kMinModulus_N_per_m = 1e-6;
-  const double modulus =
-      std::max(std::numbers::sqrt3 * across_N_per_m(tissue), kMinModulus_N_per_m);
-  const double mean_m_per_N = compliance_m_per_N(modulus, tissue.body_stiffness_N_per_m);
-  const double give =
-      std::max(mean_m_per_N + more_m_per_N, mean_m_per_N / contact::kMaxStiffness_ratio);
-  const double all_waves = 4.0 * std::numbers::pi * modulus;
-  return all_waves / std::expm1(all_waves * give / kShortWaves);
-}
-
 }  // namespace
 
 std::size_t PatchSurface::memory_bytes() const {
@@ -108,11 +95,7 @@ PatchSurface make_patch_surface(const contact::SurfaceView& mesh, const PatchTis
   // a = a_mean A_i / A_mean
   const double per_m2 = static_cast<double>(n) / sum_m2;
   for (std::size_t v = 0; v < n; ++v)
-    out.anchor_N_per_m[v] *=
-        per_m2 * (tissue.compliance_m_per_N.empty()
-                      ? tissue.body_stiffness_N_per_m
-                      : anchor_of_compliance_N_per_m(tissue, double{tissue.compliance_m_per_N[v]}));
-  out.tissue.compliance_m_per_N = {};  // it need not outlive this
+    out.anchor_N_per_m[v] *= per_m2 * tissue.body_stiffness_N_per_m;
   out.sideways_m_per_N.reserve(n);
   for (const double anchor : out.anchor_N_per_m)
     out.sideways_m_per_N.push_back(sideways_compliance_m_per_N(tissue, anchor));

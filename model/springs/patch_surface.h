@@ -5,7 +5,6 @@
 //     vertices      anchor a = a_mean A_i / A_mean, drag = tau_b a   A: area around the vertex
 //                   load = - sum of the edges' pull at rest          so that rest is equilibrium
 //
-//     anchor        by MA-22 where the give r of each vertex is known: a body of varying depth
 //     sideways      MA-21 for the anchor of each vertex             a tool that drags it
 //
 // p is the pretension: a cut edge no longer pulls its ends together, and the loads open the lips.
@@ -33,12 +32,11 @@ struct PatchEdge {
 
 /// What the springs of a whole surface are made of.
 struct PatchTissue {
-  double surface_stiffness_N_per_m = 0.0;       // k, of an edge
-  double body_stiffness_N_per_m = 0.0;          // a_mean, of a vertex of mean area
-  double damping_time_s = 0.0;                  // tau
-  double body_damping_time_s = 0.0;             // tau_b
-  double pretension_ratio = 0.0;                // p
-  std::span<const float> compliance_m_per_N{};  // r of each vertex; or empty
+  double surface_stiffness_N_per_m = 0.0;  // k, of an edge
+  double body_stiffness_N_per_m = 0.0;     // a_mean, of a vertex of mean area
+  double damping_time_s = 0.0;             // tau
+  double body_damping_time_s = 0.0;        // tau_b
+  double pretension_ratio = 0.0;           // p
 };
 
 struct PatchSurface {

@@ -88,8 +88,6 @@ Result<std::unique_ptr<SpringPatch>> make_spring_patch(const contact::SurfaceVie
   if (auto failed = check_everywhere(springs, p)) return *failed;
   SpringPatchParameters fitted = p;
   fitted.nodes = std::min(p.nodes, surface.vertex_m.size());
-  // Read by now: the span need not outlive this.
-  fitted.tissue.compliance_m_per_N = {};
   return std::unique_ptr<SpringPatch>(new SpringPatch(std::move(springs), fitted));
 }
 
@@ -101,6 +99,7 @@ std::size_t SpringPatch::memory_bytes() const {
 void SpringPatch::leave(std::size_t sphere) RT_SAFE {
   if (sphere >= contact::kMaxSpheres) return;
   contact_[sphere] = {};
+  if (organ() != nullptr) organ()->leave(sphere);
   if (std::none_of(contact_.begin(), contact_.end(), [](const Touch& t) { return t.active; }))
     broke_ = false;
 }
@@ -119,6 +118,7 @@ contact::ContactLawResponse SpringPatch::respond(const contact::Indentation& in)
   sphere_contact = {
       .active = true, .held = in.held, .depth_m = depth_m, .surface_point = in.surface_point};
   if (broke_) return {.law = {.status = law::LawStatus::kSingular}};
+  if (organ() != nullptr) return organ()->respond(in);
 
   const contact::TriangleCorners& corner = mesh.triangle[in.surface_point.triangle];
   std::array<double, 3> indentation{};
@@ -148,9 +148,30 @@ contact::ContactLawResponse SpringPatch::respond(const contact::Indentation& in)
   return out;
 }
 
+double SpringPatch::resistance_N(const contact::Indentation& in, double force_N) const RT_SAFE {
+  return organ() != nullptr ? organ()->resistance_N(in, force_N) : 0.0;
+}
+
+contact::ContactCoupling SpringPatch::coupling(const contact::Indentation& a,
+                                               const contact::Indentation& b,
+                                               double distance_m) const RT_SAFE {
+  return organ() != nullptr ? organ()->coupling(a, b, distance_m) : contact::ContactCoupling{};
+}
+
+double SpringPatch::stiffest_N_per_m(const contact::SurfacePoint& surface_point,
+                                     bool held) const RT_SAFE {
+  return organ() != nullptr ? organ()->stiffest_N_per_m(surface_point, held) : 0.0;
+}
+
+double SpringPatch::fade_ratio() const RT_SAFE {
+  return organ() != nullptr ? organ()->fade_ratio() : 0.0;
+}
+
 // 1 / q + that of the place: linear over each triangle.
 contact::TangentCompliance SpringPatch::tangent_compliance(
-    const contact::SurfacePoint& surface_point, bool, const contact::Axes&) const RT_SAFE {
+    const contact::SurfacePoint& surface_point, bool held,
+    const contact::Axes& axes) const RT_SAFE {
+  if (organ() != nullptr) return organ()->tangent_compliance(surface_point, held, axes);
   const PatchSurface& surface = region_.surface();
   if (!is_on_surface(surface_point, surface.mesh)) return {};
   double compliance_m_per_N = 1.0 / parameters_.coupling_stiffness_N_per_m;
@@ -208,6 +229,7 @@ std::span<const ProbeSpring> SpringPatch::probes() RT_SAFE {
 }
 
 void SpringPatch::advance() RT_SAFE {
+  if (organ() != nullptr) organ()->advance();
   if (broke_) return;
   follow_contacts();
   const SpringNetwork network = region_.network(probes());

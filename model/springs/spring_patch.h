@@ -16,7 +16,11 @@
 // the rest. Tissue that relaxes shares its energy out (patch_memory.h); the virtual spring does
 // not.
 //
-// Sideways the tool drags its place with that give, and the nodes do not move (MA-21): the virtual
+// Where the organ is known (`organ`), the tool feels that law alone: the nodes follow the tool and can
+// be cut, and give it nothing back. A net of springs cannot be an elastic body: its indentation
+// fades within a length of its own, and its force grows with the depth, not with d^1.5.
+//
+// Without it, sideways the tool drags its place with that give, and the nodes do not move (MA-21): the virtual
 // spring and the tissue in a row, whatever the radius, since a node is the smallest contact.
 //
 // Valid for |d| <= working_depth_m; beyond, the force is that of the limit and kSaturated. Cost a
@@ -49,6 +53,7 @@ struct SpringPatchParameters {
   std::size_t iterations = 10;   // of implicit Euler, 1 .. 100
   std::size_t substeps = 1;      // 1 .. 16
   law::Relaxation relaxation{};  // made for tick_s; of springs and anchors, not of the coupling
+  contact::ContactLaw* organ = nullptr;  // the organ under the tool; outlives the patch
 };
 void visit(ParameterVisitor& v, SpringPatchParameters& p);
 
@@ -65,6 +70,12 @@ class SpringPatch final : public contact::ContactLaw {
   std::size_t profile(const contact::Indentation&, std::span<double>) const RT_SAFE override {
     return 0;
   }
+  double resistance_N(const contact::Indentation& in, double force_N) const RT_SAFE override;
+  contact::ContactCoupling coupling(const contact::Indentation& a, const contact::Indentation& b,
+                                    double distance_m) const RT_SAFE override;
+  double stiffest_N_per_m(const contact::SurfacePoint& surface_point,
+                          bool held) const RT_SAFE override;
+  double fade_ratio() const RT_SAFE override;
   double ring_pitch_m() const RT_SAFE override { return ring_pitch_m_; }
 
   /// Displaced vertices, lips of cuts first, then the nearest to the contact; cost bounded.
@@ -88,6 +99,7 @@ class SpringPatch final : public contact::ContactLaw {
   };
 
   SpringPatch(PatchSurface surface, const SpringPatchParameters& parameters);
+  contact::ContactLaw* organ() const RT_SAFE { return parameters_.organ; }
   std::span<const ProbeSpring> probes() RT_SAFE;
   void follow_contacts() RT_SAFE;
   void give_up() RT_SAFE;

@@ -271,7 +271,7 @@ async function run() {
     browser,
     "heart",
     "shows the heart dented by a finger",
-    () => window.tact.most_m > 0.003 && window.tact.vertex_count === 10026,
+    () => window.tact.most_m > 0.003 && window.tact.vertex_count === 4002,
   );
   await check_scene(
     browser,

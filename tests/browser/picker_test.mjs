@@ -26,8 +26,8 @@ import {
   waits,
 } from "./stage.mjs";
 
-const kScenes = ["grasper", "gum", "heart", "liver", "liver_twist", "maintenance", "skin"];
-const kSoft_Pa = "set_disc_stack.youngs_modulus_Pa";
+const kScenes = ["grasper", "gum", "heart", "liver", "liver_source", "liver_twist", "maintenance", "skin"];
+const kSoft = "set_rhombus.normal_stiffness_N_per_m";
 
 const words = (page) => page.textContent("#picker_words");
 const says = (page, text) => waits(page, (wanted) => document.getElementById("picker_words").textContent.includes(wanted), text);
@@ -88,43 +88,43 @@ async function check_scenes(page) {
 
 async function check_numbers(page) {
   const shipped_N = await peak_N(page, 8);
-  const shipped_Pa = Number(await page.inputValue(`[id="${kSoft_Pa}"]`));
-  await set(page, kSoft_Pa, String(shipped_Pa / 4));
+  const shipped = Number(await page.inputValue(`[id="${kSoft}"]`));
+  await set(page, kSoft, String(shipped / 4));
   check("a number of the law is changed from its field", await says(page, "heart runs, 1 changed"), await words(page));
   const soft_N = await peak_N(page, 8);
   check(
     "... and the force is another",
     soft_N > 0.01 && soft_N < 0.7 * shipped_N,
-    `${shipped_N.toFixed(2)} N, then ${soft_N.toFixed(2)} N with a quarter of the modulus`,
+    `${shipped_N.toFixed(2)} N, then ${soft_N.toFixed(2)} N with a quarter of the stiffness`,
   );
   await page.screenshot({ path: join(build, "page_picker.png") });
 }
 
 async function check_refusals(page) {
   const scene_before = await page.evaluate(() => window.tact.tick);
-  await set(page, kSoft_Pa, "1e14");
+  await set(page, kSoft, "1e14");
   check(
     "a number out of its range is refused with its range",
-    await says(page, "is out of range; allowed: 1 .. "),
+    await says(page, "is out of range; allowed: 0.01 .. "),
     await words(page),
   );
   check("... in sight, with the button", (await in_sight(page, "picker_words")) && (await in_sight(page, "apply")));
-  await page.locator(`[id="${kSoft_Pa}"]`).fill("2000");
+  await page.locator(`[id="${kSoft}"]`).fill("2000");
   check("... until a number is edited", (await words(page)) === "1 change not applied yet", await words(page));
-  await set(page, kSoft_Pa, "1e12");
-  check("what tactd refuses is told in its words", await says(page, "law disc_stack is too stiff"), await words(page));
+  await set(page, kSoft, "1e5");
+  check("what tactd refuses is told in its words", await says(page, "law rhombus is too stiff"), await words(page));
   await page.reload();
   check("... and not to who comes later", await says(page, "heart runs, 1 changed"), await words(page));
   await waits(page, () => document.getElementById("pick").checkVisibility());
   await page.keyboard.press("l");
-  await set(page, kSoft_Pa, "");
+  await set(page, kSoft, "");
   check("no number is none", await says(page, "has no number"), await words(page));
-  await page.locator(`[id="${kSoft_Pa}"]`).fill("1,5");
+  await page.locator(`[id="${kSoft}"]`).fill("1,5");
   await page.click("#apply");
-  check("... a decimal comma is told", await says(page, "youngs_modulus_Pa: 1,5 is no number: write 1.5"), await words(page));
+  check("... a decimal comma is told", await says(page, "normal_stiffness_N_per_m: 1,5 is no number: write 1.5"), await words(page));
   check(
     "... where it stands",
-    (await page.evaluate(() => document.activeElement.id)) === kSoft_Pa && (await in_sight(page, kSoft_Pa)),
+    (await page.evaluate(() => document.activeElement.id)) === kSoft && (await in_sight(page, kSoft)),
   );
   check(
     "... and the scene before has gone on",
@@ -146,7 +146,7 @@ async function check_phone(browser, url, page) {
     "on a phone the panel opens at its top",
     (await in_sight(phone, "picker_title")) && (await in_sight(phone, "requested_scene")),
   );
-  await set(phone, kSoft_Pa, "1e14");
+  await set(phone, kSoft, "1e14");
   check("... and a refusal is in sight there", (await says(phone, "is out of range")) && (await in_sight(phone, "picker_words")));
   await phone.screenshot({ path: join(build, "page_picker_phone.png") });
   await phone.tap("#as_shipped");
@@ -157,14 +157,14 @@ async function check_phone(browser, url, page) {
 
 /** The slider moves by the keyboard, is read aloud, and moves the field. */
 async function check_slider(page) {
-  const id = kSoft_Pa.replace("set_", "slide_");
-  const before = Number(await page.inputValue(`[id="${kSoft_Pa}"]`));
+  const id = kSoft.replace("set_", "slide_");
+  const before = Number(await page.inputValue(`[id="${kSoft}"]`));
   await page.focus(`[id="${id}"]`);
   await page.keyboard.press("ArrowRight");
-  const after = Number(await page.inputValue(`[id="${kSoft_Pa}"]`));
-  check("an arrow key moves a slider and its field", after > before, `${before} Pa, then ${after} Pa`);
-  check("... and it is read with its unit", (await page.getAttribute(`[id="${id}"]`, "aria-valuetext")) === `${after} Pa`);
-  await page.focus(`[id="${kSoft_Pa}"]`);
+  const after = Number(await page.inputValue(`[id="${kSoft}"]`));
+  check("an arrow key moves a slider and its field", after > before, `${before} N/m, then ${after} N/m`);
+  check("... and it is read with its unit", (await page.getAttribute(`[id="${id}"]`, "aria-valuetext")) === `${after} N/m`);
+  await page.focus(`[id="${kSoft}"]`);
   await page.keyboard.press("End");
   await page.keyboard.type("e1");
   check("letters in a field are no keys of the page", !(await numbers(page)).eyes_on && (await page.isVisible("#picker")));

@@ -13,24 +13,31 @@ namespace {
 
 using report::kJustNoticeable_ratio;
 
+double local_ratio(double error_N, double force_N) {
+  constexpr double kFloor_N = 0.1;  // fit_check.h
+  return std::abs(error_N) / std::max(std::abs(force_N), kFloor_N);
+}
+
 /// Sums up to a Residual.
 class Errors {
  public:
-  void add(double error_N) {
+  void add(double error_N, double force_N) {
     sum_ += error_N * error_N;
     worst_N_ = std::max(worst_N_, std::abs(error_N));
+    local_ratio_ = std::max(local_ratio_, local_ratio(error_N, force_N));
     ++count_;
   }
   Residual of_peak(double peak_N) const {
     return {.samples = count_,
             .rms_N = count_ > 0 ? std::sqrt(sum_ / static_cast<double>(count_)) : 0.0,
             .worst_N = worst_N_,
-            .peak_N = peak_N};
+            .peak_N = peak_N,
+            .local_ratio = local_ratio_};
   }
 
  private:
   std::size_t count_ = 0;
-  double sum_ = 0.0, worst_N_ = 0.0;
+  double sum_ = 0.0, worst_N_ = 0.0, local_ratio_ = 0.0;
 };
 
 /// Root of the mean of the squares that were added; NaN if there were none.
@@ -112,6 +119,26 @@ std::string slope_reason(const FitData& data, std::span<const FitAnswer> answers
                      word_of(of_law), word_of(of_data));
 }
 
+/// The sample that is farthest off by its own force, if a hand tells that.
+std::string local_reason(const FitData& data, std::span<const FitAnswer> answers,
+                         const Evaluation& j) {
+  double worst_ratio = kJustNoticeable_ratio;
+  std::string out;
+  std::size_t i = 0, at_site = 0;
+  for (const FitSite& site : data.sites) {
+    const double scale = j.sites[at_site++].scale;
+    for (const FitSample& s : site.samples) {
+      const double force_N = scale * answers[i++].force_N;
+      const double ratio = local_ratio(force_N - s.force_N, s.force_N);
+      if (!(ratio > worst_ratio)) continue;
+      worst_ratio = ratio;
+      out = fmt::format("at {:.3g} mm it gives {:.3g} N, the data {:.3g} N", 1e3 * s.depth_m,
+                        force_N, s.force_N);
+    }
+  }
+  return out;
+}
+
 std::vector<std::string> reasons_of(const FitData& data, std::span<const FitAnswer> answers,
                                     const Evaluation& j, bool scale_by_site, double press_limit_m) {
   std::vector<std::string> reasons;
@@ -120,6 +147,7 @@ std::vector<std::string> reasons_of(const FitData& data, std::span<const FitAnsw
                                   1e3 * press_limit_m, 1e3 * data.deepest_m()));
   if (const std::string slope = slope_reason(data, answers); !slope.empty())
     reasons.push_back(slope);
+  const std::string local = local_reason(data, answers, j);
   const auto [low, high] = std::minmax_element(
       j.sites.begin(), j.sites.end(),
       [](const SiteResidual& a, const SiteResidual& b) { return a.best_scale < b.best_scale; });
@@ -129,6 +157,7 @@ std::vector<std::string> reasons_of(const FitData& data, std::span<const FitAnsw
         fmt::format("one stiffness for all sites: sites differ by ±{:.0f} %, from "
                     "{} to {}",
                     100.0 * spread, low->name, high->name));
+  if (!local.empty()) reasons.push_back(local);
   // None of the known reasons: say at least that it is the form.
   if (reasons.empty()) reasons.emplace_back("its curve has another form than the data");
   return reasons;
@@ -174,9 +203,9 @@ Evaluation check(const FitData& data, std::span<const FitAnswer> answers, bool s
       const FitSample& s = site.samples[i];
       const double error_N = row.scale * own[i].force_N - s.force_N;
       peak_N = std::max(peak_N, std::abs(s.force_N));
-      of_site.add(error_N);
-      (site.held_out ? held_out : fitted).add(error_N);
-      (s.depth_m < 0.0 ? pull : press).add(error_N);
+      of_site.add(error_N, s.force_N);
+      (site.held_out ? held_out : fitted).add(error_N, s.force_N);
+      (s.depth_m < 0.0 ? pull : press).add(error_N, s.force_N);
       const double u = shape_error(s, own[i]);
       site_shape.add(u);
       (site.held_out ? held_out_shape : shape).add(u);
@@ -192,8 +221,10 @@ Evaluation check(const FitData& data, std::span<const FitAnswer> answers, bool s
   out.pull = pull.of_peak(peak_N);
   out.shape_rms_ratio = shape.root();
   out.held_out_shape_rms_ratio = held_out_shape.root();
-  out.follows = out.fitted.rms_ratio() <= kJustNoticeable_ratio &&
-                out.held_out.rms_ratio() <= kJustNoticeable_ratio;
+  const auto is_near = [](const Residual& r) {
+    return std::max(r.rms_ratio(), r.local_ratio) <= kJustNoticeable_ratio;
+  };
+  out.follows = is_near(out.fitted) && is_near(out.held_out);
   const bool suits_all = std::all_of(out.sites.begin(), out.sites.end(), [](const auto& site) {
     return site.force.rms_ratio() <= kJustNoticeable_ratio;
   });

@@ -24,9 +24,10 @@ std::string percent(double ratio) {
 
 std::string line_of(const char* what, const Residual& r) {
   if (r.samples == 0) return {};
-  return fmt::format("  {:10} RMS {:8.3g} N {:>8}   worst {:8.3g} N {:>8}   {} samples\n", what,
-                     r.rms_N, percent(r.rms_ratio()), r.worst_N, percent(r.worst_ratio()),
-                     r.samples);
+  return fmt::format(
+      "  {:10} RMS {:8.3g} N {:>8}   worst {:8.3g} N {:>8}   of the own force {:>8}   {} samples\n",
+      what, r.rms_N, percent(r.rms_ratio()), r.worst_N, percent(r.worst_ratio()),
+      percent(r.local_ratio), r.samples);
 }
 
 /// Sections of some keys; `written` are the keys that others wrote before.
@@ -96,8 +97,10 @@ std::string text_of_law(const FittedLaw& law) {
 }
 
 ordered_json json_of(const Residual& r) {
-  return {{"samples", r.samples}, {"rms_N", r.rms_N},           {"worst_N", r.worst_N},
-          {"peak_N", r.peak_N},   {"rms_ratio", r.rms_ratio()}, {"worst_ratio", r.worst_ratio()}};
+  return {{"samples", r.samples},        {"rms_N", r.rms_N},
+          {"worst_N", r.worst_N},        {"peak_N", r.peak_N},
+          {"rms_ratio", r.rms_ratio()},  {"worst_ratio", r.worst_ratio()},
+          {"local_ratio", r.local_ratio}};
 }
 
 ordered_json json_of(const FittedLaw& law) {

@@ -69,8 +69,13 @@ std::optional<Error> check_reference_fits(const ReferenceData& reference, const 
 
 std::optional<Error> check_tool_reference_fits(const ToolReference& reference, const Scene& scene) {
   const auto& spheres = scene.tool.spheres;
-  const auto same = [](const auto& a, const auto& b) {
-    return is_same(a.offset_m, b.offset_m) && is_same(a.radius_m, b.radius_m);
+  // Where along the way the tool's own origin lies, as at a longer handle, changes no press.
+  Vec3 raised_m;
+  if (!spheres.empty() && !reference.sphere.empty())
+    raised_m = dot(spheres[0].offset_m - reference.sphere[0].offset_m, scene.hand_inward) *
+               scene.hand_inward;
+  const auto same = [&raised_m](const auto& a, const auto& b) {
+    return is_same(a.offset_m - raised_m, b.offset_m) && is_same(a.radius_m, b.radius_m);
   };
   if (!std::equal(spheres.begin(), spheres.end(), reference.sphere.begin(), reference.sphere.end(),
                   same))

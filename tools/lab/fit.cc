@@ -200,8 +200,9 @@ void add_fit(program::Program& lab) {
       "fit", "the numbers of the laws from measured or solved forces",
       R"(Fits the laws of a scene to measured forces (and shapes), says how far each stays off,
 and prints the keys to paste into the scene. Residuals are root mean squares over all
-samples, in % of the largest force; a law that stays above 7 %, the least difference of
-force that people feel, cannot follow: a failed check if none can.
+samples, in % of the largest force; a law whose RMS stays above 7 %, the least difference
+of force that people feel, or whose worst sample is off by more than 7 % of the force there
+(7 mN below 0.1 N), cannot follow: a failed check if none can.
 Example: tact-lab fit model/scenes/liver.toml --data press.csv --law rhombus --out keys.toml)",
       add_options, run);
 }

@@ -100,10 +100,9 @@ nlohmann::json to_json(const Candidate& c) {
 void print(const Options& o, const std::vector<Candidate>& candidates, const Choice& choice,
            const std::string& written) {
   if (!o.json) {
-    fmt::print(
-        "{}\n{}\n",
-        choice.meets_by_rms ? text_of(candidates[*choice.chosen].sizes) : "no law is good enough",
-        choice.reason);
+    fmt::print("{}\n{}\n",
+               choice.chosen ? text_of(candidates[*choice.chosen].sizes) : "no law was measured",
+               choice.reason);
     if (!candidates.empty() && !candidates.front().own_error_ratio)
       fmt::print(
           "Judged by one sphere, as no --tool-reference was given: a tool of several may be "
@@ -111,26 +110,21 @@ void print(const Options& o, const std::vector<Candidate>& candidates, const Cho
     if (!written.empty()) fmt::print("{}\n", written);
     return;
   }
-  nlohmann::json out{{"format", "tact-plan"},
-                     {"version", 1},
-                     {"meets", choice.meets},
-                     {"meets_by_rms", choice.meets_by_rms},
-                     {"reason", choice.reason}};
-  if (choice.chosen)
-    out[choice.meets_by_rms ? "chosen" : "nearest"] = to_json(candidates[*choice.chosen]);
+  nlohmann::json out{
+      {"format", "tact-plan"}, {"version", 1}, {"meets", choice.meets}, {"reason", choice.reason}};
+  if (choice.chosen) out["chosen"] = to_json(candidates[*choice.chosen]);
   if (choice.runner_up) out["runner_up"] = to_json(candidates[*choice.runner_up]);
   if (!written.empty()) out["plan"] = written;
   fmt::print("{}\n", model::io::text_of(out, 2));
 }
 
-/// Writes the plan that tactd reads, or takes away the one that is no longer good enough.
+/// Writes the plan that tactd reads, or takes away the one that nothing measured stands behind.
 Result<std::string> keep(const Choice& choice, const std::vector<Candidate>& candidates,
                          const Scene& scene) {
   const auto path = model::scene::plan_path(scene.hash);
   if (!path) return path.error();
-  if (!choice.meets_by_rms) {
+  if (!choice.chosen) {
     std::error_code ignored;
-    // An older plan would go on to be used for a tolerance that it does not meet.
     std::filesystem::remove(*path, ignored);
     return std::string{};
   }
@@ -161,8 +155,7 @@ Result<int> run(const program::Program& program, Options& o) {
     written = *path;
   }
   print(o, *candidates, choice, written);
-  // 1: measured, and nothing is good enough.
-  return choice.meets_by_rms ? 0 : 1;
+  return choice.chosen ? 0 : 1;
 }
 
 }  // namespace
@@ -173,7 +166,8 @@ void add_plan(program::Program& lab) {
       R"(No more model than the scene needs. A reference is linear elastic: compliance is checked
 with large_strain off. Time is detect, render and limit of the whole tool; shape is that
 under one sphere. The plan is kept in $XDG_CACHE_HOME/tact/plan (or ~/.cache); tactd
-reads it when the scene says law = "auto". When no law is good enough there is no plan.
+reads it when the scene says law = "auto". When no law is good enough, it is
+the one with the least excess over a limit, and that is said.
 Example: tact-lab plan model/scenes/liver.toml --chart chart/chart.json)",
       add_options, run);
 }

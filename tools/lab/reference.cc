@@ -35,7 +35,7 @@ struct Options {
   std::vector<double> depths_m;
   int level = 2;
   unsigned jobs = 1;
-  bool tool = false, skin = false, sideways = false, json = false;
+  bool tool = false, away_from_edges = false, skin = false, sideways = false, json = false;
 };
 
 void add_options(CLI::App& app, Options& o) {
@@ -46,6 +46,10 @@ void add_options(CLI::App& app, Options& o) {
       "--tool", o.tool,
       "press all spheres of the tool together, at the hand's own site, along its slides and "
       "at six places that no law is fitted on (README.md says how they are chosen)");
+  app.add_flag("--away-from-edges", o.away_from_edges,
+               "with --tool: none of the six where a face within three radii is turned by 30 "
+               "degrees or more")
+      ->needs("--tool");
   app.add_flag("--skin", o.skin, "with --tool: also how far the skin around it goes")
       ->needs("--tool");
   app.add_flag("--sideways", o.sideways, "drag a round patch along the surface of each site")
@@ -106,10 +110,19 @@ void add_scene(json& job, const model::scene::Scene& scene) {
 }
 
 Result<json> job_of(const Options& o) {
-  json job = {{"sites", o.sites}, {"depths_m", o.depths_m}, {"large_strain", o.large_strain_sites},
-              {"level", o.level}, {"jobs", o.jobs},         {"tool_together", o.tool},
-              {"skin", o.skin},   {"sideways", o.sideways}, {"cache", o.cache},
-              {"out", o.out},     {"json", o.json},         {"self_check", o.self_check}};
+  json job = {{"sites", o.sites},
+              {"depths_m", o.depths_m},
+              {"large_strain", o.large_strain_sites},
+              {"level", o.level},
+              {"jobs", o.jobs},
+              {"tool_together", o.tool},
+              {"skin", o.skin},
+              {"sideways", o.sideways},
+              {"cache", o.cache},
+              {"away_from_edges", o.away_from_edges},
+              {"out", o.out},
+              {"json", o.json},
+              {"self_check", o.self_check}};
   if (!o.self_check.empty()) return job;
   // Before hours of work.
   if (auto error = program::check_output(o.out, "{", {o.scene.path})) return *error;

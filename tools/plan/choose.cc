@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace tact::tools::plan {
@@ -89,13 +90,6 @@ bool is_enough(const Candidate& c, const ToleranceSettings& t) {
   return is_measured(c) && excess_ratio(c, t) <= 1.0;
 }
 
-bool is_enough_by_rms(const Candidate& c, const ToleranceSettings& t) {
-  Candidate by_rms = c;
-  // The same judgement without the own force: light touch at a rim may spoil every law.
-  by_rms.own_error_ratio.reset();
-  return is_measured(c) && is_enough(by_rms, t);
-}
-
 double excess_ratio(const Candidate& c, const ToleranceSettings& t) {
   return std::max({c.force_error_ratio / t.force_error_ratio,
                    c.own_error_ratio.value_or(0.0) / t.force_error_ratio,
@@ -103,38 +97,36 @@ double excess_ratio(const Candidate& c, const ToleranceSettings& t) {
 }
 
 Choice choose(std::span<const Candidate> candidates, const ToleranceSettings& tolerance) {
-  std::vector<std::size_t> enough, by_rms;
-  Choice out;
+  std::vector<std::size_t> enough, nearest;
+  double least_ratio = std::numeric_limits<double>::infinity();
+  for (const Candidate& c : candidates)
+    if (is_measured(c)) least_ratio = std::min(least_ratio, excess_ratio(c, tolerance));
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const Candidate& c = candidates[i];
-    if (is_enough(c, tolerance)) enough.push_back(i);
-    if (is_enough_by_rms(c, tolerance)) by_rms.push_back(i);
-    const bool nearer =
-        is_measured(c) && (!out.chosen || excess_ratio(c, tolerance) <
-                                              excess_ratio(candidates[*out.chosen], tolerance));
-    if (nearer) out.chosen = i;
+    if (!is_measured(candidates[i])) continue;
+    const double ratio = excess_ratio(candidates[i], tolerance);
+    if (ratio <= 1.0) enough.push_back(i);
+    if (ratio <= least_ratio) nearest.push_back(i);
   }
-  if (!out.chosen) {
+  Choice out;
+  if (nearest.empty()) {
     out.reason = "no law of the scene could be measured";
     return out;
   }
   out.meets = !enough.empty();
-  out.meets_by_rms = !by_rms.empty();
-  if (!out.meets_by_rms) {
-    const Candidate& nearest = candidates[*out.chosen];
-    out.reason = fmt::format("no law meets [tolerance]; nearest is {}. {}", text_of(nearest),
-                             lacks(nearest, tolerance));
+  if (!out.meets) {
+    out.chosen = least_of(candidates, nearest);
+    const Candidate& c = candidates[*out.chosen];
+    out.reason =
+        fmt::format("no law meets [tolerance]; nearest is {}. {}", text_of(c), lacks(c, tolerance));
     return out;
   }
-  if (!out.meets) enough = by_rms;
   out.chosen = least_of(candidates, enough);
   const auto others = others_of(candidates, enough, *out.chosen);
   out.reason = fmt::format(
-      "{}{} of {} measured laws and sizes meet [tolerance]{}; of these it is the fastest, "
+      "{} of {} measured laws and sizes meet [tolerance]; of these it is the fastest, "
       "within {:g} % the smallest. {}",
-      out.meets ? "" : "every law misses [tolerance] by its own force at some place and depth. ",
-      enough.size(), candidates.size(), out.meets ? "" : " by the RMS",
-      100.0 * chart::kSameTime_ratio, text_of(candidates[*out.chosen]));
+      enough.size(), candidates.size(), 100.0 * chart::kSameTime_ratio,
+      text_of(candidates[*out.chosen]));
   if (others.empty()) return out;
   out.runner_up = least_of(candidates, others);
   out.reason += fmt::format(". Runner-up: {}", text_of(candidates[*out.runner_up]));

@@ -5,10 +5,9 @@
 //              tool the error of the own force at the worst place and depth <= wanted too
 //     least    by time, then by memory, then by the smaller force error
 //
-// Where no law is enough by its own force, those that are by the RMS are chosen from, and that is
-// said: light touch at a rim may spoil every law. Times of two candidates count as equal within
-// 10 %: a clock tells them no better, and the next measurement would turn them round. If none is
-// enough, the nearest is the one whose worst excess over a limit, as a ratio, is smallest.
+// If none is enough, the nearest: the one whose worst excess over a limit, as a ratio, is smallest,
+// then by time and memory. That it is not enough is said. Times of two candidates count as equal
+// within 10 %: a clock tells them no better, and the next measurement would turn them round.
 #pragma once
 
 #include <optional>
@@ -34,15 +33,12 @@ struct Candidate {
 
 struct Choice {
   bool meets = false;                    // chosen is enough
-  bool meets_by_rms = false;             // or all but its own force is
   std::optional<std::size_t> chosen;     // or the nearest
   std::optional<std::size_t> runner_up;  // the next that is enough, of another law if there is one
   std::string reason;
 };
 
 bool is_enough(const Candidate& c, const model::scene::ToleranceSettings& tolerance);
-/// The same, its own force not asked.
-bool is_enough_by_rms(const Candidate& c, const model::scene::ToleranceSettings& tolerance);
 /// The largest of its errors and its time over their limits; at most 1: it is enough.
 double excess_ratio(const Candidate& c, const model::scene::ToleranceSettings& tolerance);
 

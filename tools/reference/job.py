@@ -87,7 +87,7 @@ def solve_tool(job):
     nearest = int(np.linalg.norm(organ.vertex_m - hand["site_m"], axis=1).argmin())
     plans.check(plans.Plan(organ, tool[0]["radius_m"], job["sites"] or [nearest], depths_m, [], job["level"]))
     places = tool_plan.Places(organ, np.array([s["offset_m"] for s in tool]), np.array([s["radius_m"] for s in tool]),
-                              np.array(hand["inward"]), depths_m[-1])
+                              np.array(hand["inward"]), depths_m[-1], job["away_from_edges"])
     fitted = [site["vertex"] for site in job["reference_sites"] if not site["held_out"]]
     solver = f"tact, gmsh {body.gmsh_version()}"
     tool_places = tool_plan.places_of(places, hand, fitted, job["sites"])

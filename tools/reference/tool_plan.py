@@ -8,6 +8,7 @@ places that no fit has used, chosen by a rule that nobody can bend: of all verti
     the whole tool finds tissue          along the tool's way each sphere's axis meets it within half a radius of the same height
     the tissue is deep enough            twice the deepest press along every axis
     nothing is held nearby               no held triangle's corner within three radii and the deepest press
+    no edge is near, where asked         every face within three radii looks within 30 degrees the vertex's way
 
 each time the one farthest from the hand's site, from the places chosen before and from the [[reference_site]]s that a law is
 fitted on; of equal ones the least number. The tool comes along the inward normal and first touches at depth 0.
@@ -25,6 +26,7 @@ from tool_press import ToolCase, ToolPress
 DEPTHS_M = [1e-3, 2e-3, 5e-3, 10e-3]
 UNSEEN_PLACES = 6
 TOWARDS_HAND = 0.5  # cosine
+EDGE, FROM_EDGE = 0.866, 3.0  # cosine; of the radius
 SAME_HEIGHT, FROM_HELD, FROM_ABOVE = 0.5, 3.0, 5.0  # of the radius; the last: in which a first touch is looked for
 THICKNESS = 2.0  # of the deepest press
 SAMPLES = 10  # of a sphere's radius, to find where it first touches
@@ -66,8 +68,9 @@ def rotate(turn, v):
 class Places:
     """Where a tool of spheres, offset_m (s, 3) and radius_m (s,), can be pressed into an organ; inward is the hand's way in."""
 
-    def __init__(self, organ, offset_m, radius_m, inward, deepest_m):
+    def __init__(self, organ, offset_m, radius_m, inward, deepest_m, away_from_edges=False):
         self.organ, self.offset_m, self.radius_m, self.inward, self.deepest_m = organ, offset_m, radius_m, inward, deepest_m
+        self.away_from_edges = away_from_edges
         self.corner_m = organ.vertex_m[organ.triangle]
         a, b, c = self.corner_m.transpose(1, 0, 2)
         self.face_normal = surface.unit(np.cross(b - a, c - a))
@@ -98,7 +101,15 @@ class Places:
         good = -organ.vertex_normal @ self.inward >= TOWARDS_HAND
         if len(held):
             good &= scipy.spatial.cKDTree(organ.vertex_m[held]).query(organ.vertex_m)[0] >= far_m
-        return [v for v in np.flatnonzero(good).tolist() if self.is_level(self.at(v))]
+        return [v for v in np.flatnonzero(good).tolist() if self.is_level(self.at(v)) and not self.has_edge(v)]
+
+    def has_edge(self, vertex):
+        """Is an edge near, where places away from edges are asked for?"""
+        if not self.away_from_edges:
+            return False
+        off_m = self.corner_m - self.organ.vertex_m[vertex]
+        near = (np.linalg.norm(off_m, axis=2) <= FROM_EDGE * self.radius_m.max()).any(axis=1)
+        return (self.face_normal[near] @ self.organ.vertex_normal[vertex] < EDGE).any()
 
     def is_level(self, place):
         """Does every sphere meet thick tissue at nearly the same height?"""

@@ -124,6 +124,31 @@ def tool():
     return " ".join(command) + " --out DIR", values
 
 
+# Which solved presses judge which scene: the same organ, held alike, and the same spheres.
+SCENE_REFERENCES = {"liver": "liver", "liver_twist": "liver", "liver_source": "liver_source",
+                    "heart": "heart", "skin": "skin", "gum": "gum", "maintenance": "maintenance"}
+LIGHT_TOUCH_M = 0.001  # shallower presses are solved, and not judged
+
+
+def scenes():
+    """Each scene with the law that it ships, under its whole tool; none of the places was in a fit."""
+    values = {}
+    for scene, reference in SCENE_REFERENCES.items():
+        path = f"model/scenes/{scene}"
+        told = json_in_file("build/tact-lab", "chart", f"{path}.toml", "--tool-reference",
+                            f"tests/data/reference/{reference}_tool.json", "--accuracy", f"{path}.accuracy",
+                            option="--out", name="tool.json")
+        law = re.search(r'^law = "(\w+)"', (ROOT / f"{path}.toml").read_text(), re.M)[1]
+        row = next(row for row in told["laws"] if row["law"] == law)
+        worst = max((r for r in told["rows"] if r["law"] == law and r["depth_m"] > 0.99 * LIGHT_TOUCH_M),
+                    key=lambda r: abs(r["own_error_ratio"]))
+        values[scene] = {"law": law, "rms_percent": 100 * row["force_rms_ratio"],
+                         "own_percent": 100 * worst["own_error_ratio"], "place": worst["place"],
+                         "depth_mm": 1e3 * worst["depth_m"],
+                         "within_percent": 100 * row["within_jnd_ratio"], "median_us": row["tick_median_us"]}
+    return "build/tact-lab chart model/scenes/SCENE.toml --tool-reference tests/data/reference/SCENE_tool.json --out DIR", values
+
+
 def stability():
     """The maps that tools/stability/README.md quotes, with the numbers of their findings."""
     values = {}
@@ -199,5 +224,5 @@ def finite_strain():
         "worst_percent": max(abs(told["worst_percent"]) for told in places.values()), "place": places}
 
 
-MEASURED = {f.__name__: f for f in (bench, limits, verify, size, chart, tool, stability, tracking,
+MEASURED = {f.__name__: f for f in (bench, limits, verify, size, chart, tool, scenes, stability, tracking,
                                     coupling, measured, image, finite_strain)}

@@ -50,8 +50,6 @@ def tick_size(load):
     yield f"Lines between read and write: {told}; goal {goal} (`tools/tick_size`)."
 
 
-SCENES = {"compliance": "`liver.toml` with `--set 'law=\"compliance\"'`", "hex_sheet": "`skin.toml`, `maintenance.toml`",
-          "disc_stack": "`heart.toml`", "rhombus": "`liver.toml`", "spring_patch": "`gum.toml`"}
 RMS_GOAL_PERCENT, OWN_GOAL_PERCENT = {"compliance": 3.0}, {"compliance": 7.0}  # of others 5 and 10
 
 
@@ -59,19 +57,51 @@ def goals_of(law):
     return RMS_GOAL_PERCENT.get(law, 5.0), OWN_GOAL_PERCENT.get(law, 10.0)
 
 
-def laws(load):
-    """Each law in the liver: the whole tool, one sphere, and what a tick costs."""
-    yield from ("| law | scenes | tool, RMS of the peak | own force, worst place | one sphere, RMS "
-                "| tick: detect, render, limit |",
+SCENE_GOAL_PERCENT = {"rms": 3.0, "own": 7.0}  # of the law that a scene ships
+# Why a scene misses its goal; said only where it does.
+REASONS = {
+    "liver": "[rim](tools/chart/README.md)",
+    "liver_source": "530 N/m, not 13 to 28",
+    "gum": "a hollow, taken as flat",
+}
+SAME_PRESSES = {"liver_twist": "liver"}  # in the row of the other, if its values are the same
+
+
+def off(percent):
+    """+3.4 %, -12 %, +870 %"""
+    return f"{percent:+.2g} %" if abs(percent) < 100 else f"{percent:+.0f} %"
+
+
+def told_of(value):
+    """What its row says but for the time."""
+    return {key: f"{told:.3g}" if isinstance(told, float) else told for key, told in value.items() if key != "median_us"}
+
+
+def rows_of_scenes(load):
+    """(names, value) of each row."""
+    rows = {}
+    for scene, value in load("scenes").items():
+        other = SAME_PRESSES.get(scene)
+        same = other in rows and all(told_of(rows[other][1])[key] == told for key, told in told_of(value).items())
+        if same:
+            rows[other][0].append(scene)
+        else:
+            rows[scene] = ([scene], value)
+    return rows.values()
+
+
+def scenes(load):
+    """Each scene with the law that it ships: the whole tool against its solid."""
+    yield from ("| scene | law | RMS of the peak | worst force from 1 mm on | tick | missed because |",
                 "|---|---|---|---|---|---|")
-    chart, tools = load("chart"), load("tool")
-    for law, scenes in SCENES.items():
-        rms, own = goals_of(law)
-        value = tools[law]
-        worst = max(value["own_percent_at_mm"].values(), key=abs)
-        yield (f"| `{law}` | {scenes} | {judged(value['rms_percent'], rms, '%.3g %%' % value['rms_percent'])} | "
-               f"{judged(abs(worst), own, f'{worst:+.3g} %')} | {chart[law]['error_percent']:.3g} % | "
-               f"{value['median_us']:.2g} us |")
+    for names, value in rows_of_scenes(load):
+        rms, own = value["rms_percent"], value["own_percent"]
+        missed = rms > SCENE_GOAL_PERCENT["rms"] or abs(own) > SCENE_GOAL_PERCENT["own"]
+        at = "the hand's site" if value["place"] == "hand's" else value["place"]
+        yield (f"| {', '.join(f'`{name}`' for name in names)} | `{value['law']}` | "
+               f"{judged(rms, SCENE_GOAL_PERCENT['rms'], off(rms)[1:])} | "
+               f"{judged(abs(own), SCENE_GOAL_PERCENT['own'], off(own))} at {at}, {value['depth_mm']:.2g} mm | "
+               f"{value['median_us']:.2g} us | {REASONS.get(names[0], 'not known') if missed else ''} |")
 
 
 def finite_strain(load):
@@ -85,15 +115,15 @@ def finite_strain(load):
 
 
 def known_errors(load):
-    """How far the tool's force is off at its worst place and depth, in the words of the front page."""
-    told = "* **Known errors** of the whole tool's force, the largest that was found ([laws](#the-laws))."
-    for goal in sorted({goals_of(law)[1] for law in SCENES}):
-        met, missed = [], []
-        for law in (law for law in SCENES if goals_of(law)[1] == goal):
-            worst = max(load("tool")[law]["own_percent_at_mm"].values(), key=abs)
-            (met if abs(worst) <= goal else missed).append(f"`{law}` {worst:+.2g} %".replace(" ", "\N{NO-BREAK SPACE}"))
-        parts = [f"{', '.join(laws)} {verdict}" for laws, verdict in ((met, "met"), (missed, "**missed**")) if laws]
-        told += f" Goal {goal:.0f} %: {', '.join(parts)}."
+    """How far the force of each scene's tool is off at its worst place and depth, in the words of the front page."""
+    met, missed = [], []
+    for names, value in rows_of_scenes(load):
+        own = value["own_percent"]
+        told = f"`{names[0]}` {off(own)}".replace(" ", "\N{NO-BREAK SPACE}")
+        (met if abs(own) <= SCENE_GOAL_PERCENT["own"] else missed).append(told)
+    parts = [f"{', '.join(told)} {verdict}" for told, verdict in ((met, "met"), (missed, "**missed**")) if told]
+    told = ("* **Known errors** of the whole tool's force from 1 mm on ([laws](#the-laws)), goal "
+            f"{SCENE_GOAL_PERCENT['own']:.0f} %: {'; '.join(parts)}.")
     for line in textwrap.wrap(told, 130, break_long_words=False, break_on_hyphens=False, subsequent_indent="  "):
         yield line.replace("\N{NO-BREAK SPACE}", " ")
 
@@ -127,4 +157,4 @@ def silicone(load):
                    f"{judged(worst, 7, f'{worst:.2g} %')} |")
 
 
-TABLES = {f.__name__: f for f in (measured, tick_size, known_errors, laws, finite_strain, tool, silicone)}
+TABLES = {f.__name__: f for f in (measured, tick_size, known_errors, scenes, finite_strain, tool, silicone)}

@@ -155,7 +155,7 @@ json network_results(const json& one_case) {
     v.push_back(vector_of(node.at("v")));
     // An infinite mass does not move.
     inverse.push_back(node.at("fixed").get<bool>() ? 0.0 : 1.0 / number(node.at("m")));
-    // The published networks have no anchors; those are ours (MA-22).
+    // The published networks have no anchors; those are ours.
     anchor.push_back(0.0);
     drag.push_back(number(p.at("global_damping")));
   }

@@ -33,7 +33,7 @@ TEST(InertiaNote, TellsOfAStrokeThatIsTooFastForALawWithoutInertia) {
 
 TEST(InertiaNote, OfTheShippedScenesTheHeartIsPressedTooFastForItsLaw) {
   for (const std::string name :
-       {"grasper", "gum", "heart", "liver", "liver_twist", "maintenance", "skin"}) {
+       {"grasper", "gum", "heart", "liver", "liver_source", "liver_twist", "maintenance", "skin"}) {
     const auto scene =
         model::scene::load_scene(TACT_SOURCE_DIR "/model/scenes/" + name + ".toml", {});
     ASSERT_TRUE(scene) << scene.error().message;

@@ -143,8 +143,8 @@ TEST_P(EveryScene, TheSameRunGivesTheSameBits) {
 }
 
 INSTANTIATE_TEST_SUITE_P(ClosedLoop, EveryScene,
-                         testing::Values("liver", "liver_twist", "grasper", "heart", "skin", "gum",
-                                         "maintenance"),
+                         testing::Values("liver", "liver_twist", "liver_source", "grasper", "heart",
+                                         "skin", "gum", "maintenance"),
                          [](const auto& one) { return std::string(one.param); });
 
 }  // namespace tact::firmware::run::closed_loop_test

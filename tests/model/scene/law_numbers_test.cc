@@ -63,7 +63,7 @@ TEST(LawNumbers, NothingBeyondTheToldRangeIsTaken) {
 /// The page of tools/run names a scene, and tools/run takes the file of that name.
 TEST(LawNumbers, OfAShippedSceneTheNameIsThatOfItsFile) {
   for (const char* name :
-       {"liver", "liver_twist", "grasper", "heart", "skin", "gum", "maintenance"})
+       {"liver", "liver_twist", "liver_source", "grasper", "heart", "skin", "gum", "maintenance"})
     EXPECT_EQ(load(name, {})->name, name);
 }
 

@@ -246,7 +246,7 @@ TEST(Scene, VariesByPlaceOnItsOwnOrganAloneAndSaysSo) {
   ASSERT_TRUE(own) << own.error().message;
   EXPECT_TRUE(own->varies_by_place);
   EXPECT_EQ(own->note, "");
-  const auto other = hal::registry::load_scene(kLiver, {"organ.mesh=meshes/heart_10026.obj"});
+  const auto other = hal::registry::load_scene(kLiver, {"organ.mesh=meshes/heart_4002.obj"});
   ASSERT_TRUE(other) << other.error().message;
   EXPECT_FALSE(other->varies_by_place);
   EXPECT_NE(other->note.find("is of another organ than"), std::string::npos) << other->note;

@@ -60,16 +60,15 @@ std::uint32_t vertex_near(const mesh::SurfaceMesh& mesh, const Vec3& p_m) {
   return static_cast<std::uint32_t>(nearest - mesh.vertex_m.begin());
 }
 
-// No shipped scene sets it by hand. Without [elastic] the tissue is the half-space whose force
-// under the tip is the law's at a depth of one radius R: 8 G R / (2 - nu) = 4/3 E* R for nu = 1/2,
-// held; gum has the virtual spring and the net of its patch in a row.
+// No shipped scene sets it by hand: a disc of the tip's radius on a half-space of [elastic], 8 G R /
+// (2 - nu), in series with the give of the place along the surface.
 TEST(Sideways, EveryShippedSceneTakesItsStiffnessFromItsTissue) {
   struct Want {
     const char* scene;
     double held_N_per_m;
   };
   for (const Want& want :
-       {Want{"heart", 89.0}, {"skin", 67.0}, {"gum", 112.0}, {"maintenance", 267.0}}) {
+       {Want{"heart", 84.9}, {"skin", 22.0}, {"gum", 52.8}, {"maintenance", 19.5}}) {
     const auto scene =
         load_scene(TACT_SOURCE_DIR "/model/scenes/" + std::string(want.scene) + ".toml", {});
     ASSERT_EQ(tests::message_of(scene), "");

@@ -62,7 +62,7 @@ TEST(TissueLaw, StiffnessIsTheLargestSlopeShortOfTheTear) {
 // Hertz: u(r) = d / pi ((2 - s^2) asin(1 / s) + sqrt(s^2 - 1)), s = r / a, a^2 = R d
 TEST(TissueLaw, SpringsInARowAreDrawnAsTheDentOfAHalfSpace) {
   constexpr double kDepth_m = 0.003, kRadius_m = 0.0065;  // of the fingertip
-  const auto law = made(shipped("heart"));
+  const auto law = made(shipped("heart", {"varies_by_place=false"}));
   std::array<double, 32> ring_m{};
   const std::size_t rings = law->contact_law().profile({.indentation_m = kDepth_m}, ring_m);
   double sum_m2 = 0.0;
@@ -89,11 +89,35 @@ TEST(TissueLaw, TitlesNameTheirSizes) {
             "elastic compliance, large strain under the tip, 17 curves");
   EXPECT_EQ(made(liver, "spring_patch")->title(), "mass-spring patch, 500 nodes, improved-euler");
   EXPECT_EQ(made(shipped("liver"))->title(), patch + ", on an organ that bends");
+  EXPECT_EQ(
+      made(shipped("gum"))->title(),
+      "mass-spring patch, 300 nodes, improved-euler, under the tool elastic compliance, small "
+      "strain under the tip, 17 curves");
+}
+
+// The net moves, is cut and is drawn; the tool feels the organ.
+TEST(TissueLaw, ASpringPatchOnAnOrganIsFeltAsTheOrgan) {
+  const Scene gum = shipped("gum");
+  const auto patch = made(gum), organ = made(gum, "compliance");
+  const contact::SurfaceView mesh = gum.organ_mesh.view();
+  for (std::uint32_t t = 0; t < mesh.triangle.size(); t += 400) {
+    const contact::Indentation at{.surface_point = {.triangle = t, .weight = {0.2, 0.3, 0.5}},
+                                  .normal = mesh.vertex_normal[mesh.triangle[t][0]],
+                                  .indentation_m = 1e-3};
+    for (int tick = 0; tick < 20; ++tick, patch->contact_law().advance())
+      EXPECT_EQ(patch->contact_law().respond(at).law.force_N,
+                organ->contact_law().respond(at).law.force_N);
+    contact::PatchShape shape{};
+    EXPECT_TRUE(patch->contact_law().shape(shape));
+    EXPECT_GT(shape.node_count, 0U);
+    patch->contact_law().leave(0);
+  }
 }
 
 TEST(TissueLaw, ZeroRingsAreAsFewAsTheToleranceAllows) {
-  const std::string few = made(shipped("skin", {"hex_sheet.rings=0"}))->title();
-  EXPECT_EQ(few, made(shipped("skin"))->title());
+  const std::string even = "varies_by_place=false";
+  const std::string few = made(shipped("skin", {even, "hex_sheet.rings=0"}), "hex_sheet")->title();
+  EXPECT_EQ(few, made(shipped("skin", {even}), "hex_sheet")->title());
   EXPECT_EQ(few.find(", 0 rings"), few.npos) << few;
 }
 

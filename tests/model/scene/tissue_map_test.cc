@@ -50,7 +50,7 @@ TEST(TissueMap, AMissingMapOfItsOwnIsMadeUnderItsName) {
 }
 
 TEST(TissueMap, RefusesTheMapOfAnotherOrgan) {
-  const Scene other_mesh = liver({"organ.mesh=meshes/heart_10026.obj"});
+  const Scene other_mesh = liver({"organ.mesh=meshes/heart_4002.obj"});
   EXPECT_NE(refusal(other_mesh).find("belongs to another organ mesh"), std::string::npos);
   EXPECT_TRUE(ends_with_command(refusal(other_mesh), other_mesh)) << refusal(other_mesh);
   const Scene other_nu = liver({"elastic.poisson_ratio=0.4"});

@@ -88,6 +88,35 @@ TEST(FitCheck, ARhombusChainCannotFollowARoundTip) {
   EXPECT_TRUE(says(j, "while the data hardens")) << j.reasons[0];
 }
 
+// An RMS of the peak hides both.
+TEST(FitCheck, ATenthOfTheForceAtLightTouchIsNotFollowed) {
+  const FitData data{.sites = {{.name = "a", .samples = {{1_mm, 0.02}, {5_mm, 0.4}, {9_mm, 1.0}}}}};
+  const auto at_1_mm = [&](double force_N) {
+    return check(data, std::vector<FitAnswer>{{force_N}, {0.4}, {1.0}}, false, 1.0);
+  };
+  const Evaluation tenth = at_1_mm(0.002);
+  EXPECT_LT(tenth.fitted.rms_ratio(), 0.02);
+  EXPECT_NEAR(tenth.fitted.local_ratio, 0.18, 1e-12) << "18 mN of 0.1 N";
+  EXPECT_FALSE(tenth.follows);
+  EXPECT_TRUE(says(tenth, "at 1 mm it gives 0.002 N, the data 0.02 N")) << tenth.reasons[0];
+  EXPECT_TRUE(at_1_mm(0.014).follows) << "6 mN, below the floor of 7 mN";
+}
+
+TEST(FitCheck, LoadingAndUnloadingAreNotAveraged) {
+  FitData data{.sites = {{.name = "a", .samples = {}}}};
+  std::vector<FitAnswer> mean;
+  for (double d_mm = 1.0; d_mm <= 10.0; d_mm += 1.0) {
+    const double force_N = 0.1 * d_mm, loss_N = 0.006 * d_mm * (10.0 - d_mm);
+    for (const double branch : {1.0, -1.0}) {
+      data.sites[0].samples.push_back({d_mm * 1_mm, force_N + branch * 0.25 * loss_N});
+      mean.push_back({.force_N = force_N});
+    }
+  }
+  const Evaluation j = check(data, mean, false, 1.0);
+  EXPECT_LT(j.fitted.rms_ratio(), 0.046);
+  EXPECT_FALSE(j.follows);
+}
+
 TEST(FitCheck, SaysWhereALawEnds) {
   const FitData data{.sites = {power_site("a", 0.5, 1.0)}};
   std::vector<FitAnswer> answers = line(data, 50.0);

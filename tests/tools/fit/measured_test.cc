@@ -2,9 +2,11 @@
 // Laws against published measurements; model/MEASURED.md says who measured and what stays open.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <vector>
 
 #include "model/indent/compliance_tip.h"
@@ -42,6 +44,26 @@ TEST(Measured, ASheetFittedToOneSiliconeFollowsTwoOthersTo30PercentStrain) {
     EXPECT_EQ(site.force.samples, 31U);  // every 0.3 mm, and at rest
     EXPECT_GT(site.force.rms_ratio(), 0.003) << site.name;
     EXPECT_LT(site.force.rms_ratio(), 0.012) << site.name;
+  }
+}
+
+// E of two shipped scenes: force over area and strain, of 30 mm, diameter 50 mm.
+TEST(Measured, TheShippedSiliconesHaveTheModulusOfTheirCylinders) {
+  const auto data = read_bench_csv(
+      kRoot + "/tests/data/measured/silicone_compression.csv",
+      {.depth = "compression_mm", .force = "load_mean_N", .depth_unit_m = 0.001}, {});
+  ASSERT_TRUE(data) << data.error().message;
+  for (const auto& [name, material, pressed_m] :
+       {std::tuple{"gum", "EF30_50T", 0.003}, std::tuple{"maintenance", "EF10_100T", 0.003}}) {
+    const auto scene = model::scene::load_scene(kRoot + "/model/scenes/" + name + ".toml", {});
+    ASSERT_TRUE(scene && scene->elastic) << name;
+    const auto site = std::ranges::find(data->sites, material, &FitSite::name);
+    ASSERT_NE(site, data->sites.end());
+    const auto at = std::ranges::min_element(
+        site->samples, {}, [&](const FitSample& s) { return std::abs(s.depth_m - pressed_m); });
+    ASSERT_NE(at, site->samples.end());
+    const double modulus_Pa = at->force_N / (M_PI * 0.025 * 0.025) / (at->depth_m / 0.030);
+    EXPECT_NEAR(scene->elastic->youngs_modulus_Pa / modulus_Pa, 1.0, 0.015) << name;
   }
 }
 

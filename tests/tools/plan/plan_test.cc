@@ -10,6 +10,7 @@
 #include <fstream>
 
 #include "model/io/seal.h"
+#include "model/scene/accuracy_file.h"
 #include "tests/support/damage.h"
 #include "tests/support/program.h"
 #include "tests/support/test_scene.h"
@@ -82,12 +83,50 @@ TEST(Choose, PrefersWhatKeepsTheOwnForceOfTheWholeToolToo) {
   EXPECT_FALSE(both.runner_up);
   EXPECT_TRUE(has(both.reason, "of the own at worst 6 %")) << both.reason;
   laws[1].own_error_ratio = 0.09;
-  const Choice by_rms = choose(laws, kTolerance);
-  EXPECT_FALSE(by_rms.meets);
-  EXPECT_TRUE(by_rms.meets_by_rms);
-  EXPECT_EQ(by_rms.chosen, 0U) << "the least of those whose RMS is enough";
-  EXPECT_TRUE(has(by_rms.reason, "every law misses [tolerance] by its own force")) << by_rms.reason;
-  EXPECT_FALSE(choose({laws.data(), 0}, kTolerance).meets_by_rms);
+  const Choice none = choose(laws, kTolerance);
+  EXPECT_FALSE(none.meets);
+  EXPECT_EQ(none.chosen, 1U) << "the least excess, although the other is faster";
+  EXPECT_TRUE(has(none.reason, "0.09 of the own force at the worst place")) << none.reason;
+}
+
+// As the shipped liver: every law misses by its own force, and two cost the same.
+TEST(Choose, NeverTakesAWorseLawThanAnotherOfEqualTime) {
+  std::vector<Candidate> laws{candidate("hex_sheet", 0.02, 0.10, 1.8, 1e4),
+                              candidate("rhombus", 0.014, 0.10, 1.9, 1e4)};
+  for (const double hex_own : {0.24, 0.091}) {
+    laws[0].own_error_ratio = hex_own;
+    laws[1].own_error_ratio = 0.09;
+    EXPECT_EQ(choose(laws, kTolerance).chosen, 1U) << hex_own;
+  }
+  // Equally far off: the faster, and of equal times the smaller.
+  laws[0].own_error_ratio = 0.09;
+  laws[1].tick_median_us = 2.5;
+  EXPECT_EQ(choose(laws, kTolerance).chosen, 0U);
+  laws[1].tick_median_us = 1.9;
+  laws[1].memory_bytes = 1e3;
+  EXPECT_EQ(choose(laws, kTolerance).chosen, 1U);
+}
+
+TEST(Plan, OfAFreshCloneIsNoWorseThanTheShippedLaw) {
+  ASSERT_EQ(setenv("XDG_CACHE_HOME", (testing::TempDir() + "tact_no_plan").c_str(), 1), 0);
+  for (const std::string name : {"liver", "heart", "skin", "gum", "maintenance"}) {
+    const std::string path = std::string(TACT_SOURCE_DIR) + "/model/scenes/" + name + ".toml";
+    const auto shipped = model::scene::load_scene(path, {});
+    const auto automatic = model::scene::load_scene(path, {"law=auto"});
+    ASSERT_TRUE(shipped && automatic) << name;
+    const auto plan = model::scene::find_auto_law(*automatic, {"law=auto"});
+    ASSERT_TRUE(plan) << plan.error().message;
+    EXPECT_TRUE(plan->machine.empty()) << name;
+    const auto accuracy = model::scene::read_accuracy(*shipped);
+    ASSERT_TRUE(accuracy) << accuracy.error().message;
+    EXPECT_LE(plan->force_error_ratio, model::scene::worst_error_ratio(*accuracy)) << name;
+    // A file that says "auto" itself, as one of tact-lab new-scene.
+    const auto nearest = model::scene::nearest_law(*automatic);
+    ASSERT_TRUE(nearest) << name;
+    EXPECT_LE(worst_error_ratio(*nearest), worst_error_ratio(*accuracy)) << name;
+    EXPECT_EQ(nearest->law == "spring_patch", name == "gum") << nearest->law;
+  }
+  unsetenv("XDG_CACHE_HOME");
 }
 
 TEST(Choose, NeverTakesWhatWasNotMeasured) {
