@@ -51,8 +51,8 @@ Result<Plan> read_plan(const std::string& path, const Scene& scene,
 /// may be the plan of the scene without it, whatever law stands in its file.
 Result<Plan> find_plan(const Scene& scene, const std::vector<std::string>& overrides);
 /// That plan. Where this machine has none, as after a fresh clone: the law that the scene's file
-/// names, if SCENE.accuracy has its figure, else the one there with the least worst error; its sizes
-/// as the scene says, `machine` empty.
+/// names, if SCENE.accuracy has its figure, else the one there with the least worst error; its
+/// sizes as the scene says, `machine` empty.
 Result<Plan> find_auto_law(const Scene& scene, const std::vector<std::string>& overrides);
 
 }  // namespace tact::model::scene

@@ -16,12 +16,13 @@
 // the rest. Tissue that relaxes shares its energy out (patch_memory.h); the virtual spring does
 // not.
 //
-// Where the organ is known (`organ`), the tool feels that law alone: the nodes follow the tool and can
-// be cut, and give it nothing back. A net of springs cannot be an elastic body: its indentation
-// fades within a length of its own, and its force grows with the depth, not with d^1.5.
+// Where the organ is known (`organ`), the tool gets the force of that law alone: the nodes follow
+// the tool, can be cut, and give it nothing back. A net of springs cannot be an elastic body: its
+// indentation fades within a length of its own, and its force grows with the depth, not with d^1.5.
 //
-// Without it, sideways the tool drags its place with that give, and the nodes do not move (MA-21): the virtual
-// spring and the tissue in a row, whatever the radius, since a node is the smallest contact.
+// Without it, sideways the tool drags its place with that give, and the nodes do not move (MA-21):
+// the virtual spring and the tissue in a row, whatever the radius, since a node is the smallest
+// contact.
 //
 // Valid for |d| <= working_depth_m; beyond, the force is that of the limit and kSaturated. Cost a
 // tick: the region's nodes, whatever the mesh. Should the nodes leave the finite numbers, or an

@@ -6,10 +6,10 @@
 // measured, of all vertices, and shall not grow:
 //   liver        where a jaw slips past a rim, energy is lost (at most 59 %, at 55 of 4386
 //                presses); at 6 the force changes faster than the device shows.
-//   heart        closed by three flat caps. Within 10 mm of an edge of more than 30 degrees, as of a
-//                cap or between vessels, the sphere of 6.5 mm slips round: it may be drawn in, lose
-//                energy, and meet up to three times the slope that the device shows (81 of 992
-//                presses). Elsewhere 16 of 4037 do.
+//   heart        closed by three flat caps. Within 10 mm of an edge of more than 30 degrees, as
+//                of a cap or between vessels, the sphere of 6.5 mm slips round: it may be drawn
+//                in, lose energy, and meet up to three times the slope that the device shows
+//                (81 of 992 presses). Elsewhere 16 of 4037 do.
 //   skin         a block with rounded edges: upright, within a working depth of them, energy is
 //                lost (at most 17 %); pressed square nothing is.
 //   gum          a mesh of 1.5 to 10 mm with facets 20 degrees apart: where the nearest point

@@ -60,8 +60,8 @@ std::uint32_t vertex_near(const mesh::SurfaceMesh& mesh, const Vec3& p_m) {
   return static_cast<std::uint32_t>(nearest - mesh.vertex_m.begin());
 }
 
-// No shipped scene sets it by hand: a disc of the tip's radius on a half-space of [elastic], 8 G R /
-// (2 - nu), in series with the give of the place along the surface.
+// No shipped scene sets it by hand: a disc of the tip's radius on a half-space of [elastic],
+// 8 G R / (2 - nu), in series with the give of the place along the surface.
 TEST(Sideways, EveryShippedSceneTakesItsStiffnessFromItsTissue) {
   struct Want {
     const char* scene;

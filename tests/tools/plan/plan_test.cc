@@ -10,7 +10,6 @@
 #include <fstream>
 
 #include "model/io/seal.h"
-#include "model/scene/accuracy_file.h"
 #include "tests/support/damage.h"
 #include "tests/support/program.h"
 #include "tests/support/test_scene.h"
@@ -105,28 +104,6 @@ TEST(Choose, NeverTakesAWorseLawThanAnotherOfEqualTime) {
   laws[1].tick_median_us = 1.9;
   laws[1].memory_bytes = 1e3;
   EXPECT_EQ(choose(laws, kTolerance).chosen, 1U);
-}
-
-TEST(Plan, OfAFreshCloneIsNoWorseThanTheShippedLaw) {
-  ASSERT_EQ(setenv("XDG_CACHE_HOME", (testing::TempDir() + "tact_no_plan").c_str(), 1), 0);
-  for (const std::string name : {"liver", "heart", "skin", "gum", "maintenance"}) {
-    const std::string path = std::string(TACT_SOURCE_DIR) + "/model/scenes/" + name + ".toml";
-    const auto shipped = model::scene::load_scene(path, {});
-    const auto automatic = model::scene::load_scene(path, {"law=auto"});
-    ASSERT_TRUE(shipped && automatic) << name;
-    const auto plan = model::scene::find_auto_law(*automatic, {"law=auto"});
-    ASSERT_TRUE(plan) << plan.error().message;
-    EXPECT_TRUE(plan->machine.empty()) << name;
-    const auto accuracy = model::scene::read_accuracy(*shipped);
-    ASSERT_TRUE(accuracy) << accuracy.error().message;
-    EXPECT_LE(plan->force_error_ratio, model::scene::worst_error_ratio(*accuracy)) << name;
-    // A file that says "auto" itself, as one of tact-lab new-scene.
-    const auto nearest = model::scene::nearest_law(*automatic);
-    ASSERT_TRUE(nearest) << name;
-    EXPECT_LE(worst_error_ratio(*nearest), worst_error_ratio(*accuracy)) << name;
-    EXPECT_EQ(nearest->law == "spring_patch", name == "gum") << nearest->law;
-  }
-  unsetenv("XDG_CACHE_HOME");
 }
 
 TEST(Choose, NeverTakesWhatWasNotMeasured) {
