@@ -31,6 +31,9 @@ void run(const char* name, const std::function<void()>& body) {
   } catch (const std::exception& error) {
     std::fprintf(stderr, "the thread %s has ended (%s), so the program ends\n", name, error.what());
     kill(getpid(), SIGTERM);
+  } catch (...) {
+    std::fprintf(stderr, "the thread %s has ended, so the program ends\n", name);
+    kill(getpid(), SIGTERM);
   }
 }
 

@@ -3,8 +3,9 @@
 //
 //     SCENE-DATE-NUMBER-FAULT.tactlog      liver-20260131T120000Z-105-loop-late.tactlog
 //
-// Head, meshes, changes of the law's numbers, ticks and frames (firmware/protocol/run_file.h); frames at the frame rate, and one
-// per tick in the last half second. An existing file is never overwritten.
+// Head, meshes, changes of the law's numbers, ticks and frames (firmware/protocol/run_file.h);
+// frames at the frame rate, and one per tick in the last half second. An existing file is never
+// overwritten.
 #pragma once
 
 #include <cstddef>

@@ -7,9 +7,9 @@
 #include "firmware/gate/limits_for.h"
 #include "model/scene/variant.h"
 
-namespace tact {
+namespace tact::firmware::embed {
 
-using firmware::loop::OfferedContact;
+using loop::OfferedContact;
 using model::contact::Contact;
 
 /// A tissue that was set, and the contact with it.
@@ -34,25 +34,20 @@ model::Result<std::unique_ptr<Haptics>> Haptics::make(const std::string& scene_p
   if (!own) return own.error();
   const Made& made = out->made_.emplace_back(std::move(*own), 0);
   const double period_s = 1.0 / out->scene_->rate_Hz;
-  const double share = settings.hard_real_time ? 1.0 : firmware::gate::kNonRtForceShare;
-  const model::Limits limits =
-      settings.device ? firmware::gate::limits_for(out->scene_->limits, *settings.device)
-                      : out->scene_->limits;
-  out->controller_ = std::make_unique<firmware::loop::Controller>(
-      made.variant.tissue->contact_scene(), firmware::gate::Gate(limits, period_s, share),
-      settings.hard_real_time);
+  const double share = settings.hard_real_time ? 1.0 : gate::kNonRtForceShare;
+  const model::Limits limits = settings.device
+                                   ? gate::limits_for(out->scene_->limits, *settings.device)
+                                   : out->scene_->limits;
+  out->controller_ = std::make_unique<loop::Controller>(made.variant.tissue->contact_scene(),
+                                                        gate::Gate(limits, period_s, share),
+                                                        settings.hard_real_time);
   return out;
 }
 
-firmware::loop::TickOutput Haptics::tick(const hal::Sample& sample, std::uint32_t skipped_periods,
-                                         model::Fault device_fault) RT_SAFE {
-  OfferedContact* offered = offered_.load(std::memory_order_acquire);
-  if (offered != nullptr && controller_->is_clear() &&
-      offered_.compare_exchange_strong(offered, nullptr, std::memory_order_acq_rel)) {
-    controller_->use(offered->contact);
-    input_.variant = offered->variant;
-    in_use_.store(offered->variant, std::memory_order_release);
-  }
+loop::TickOutput Haptics::tick(const hal::Sample& sample, std::uint32_t skipped_periods,
+                               model::Fault device_fault) RT_SAFE {
+  contacts_.take(*controller_, input_);
+  in_use_.store(input_.variant, std::memory_order_release);
   input_.sample = sample;
   input_.skipped_periods = skipped_periods;
   input_.device_fault = device_fault;
@@ -68,7 +63,7 @@ std::optional<model::Error> Haptics::set(const std::vector<std::string>& numbers
   numbers_ = std::move(all);
   Made& made = made_.emplace_back(std::move(*variant), ++count_);
   // One that no tick has taken is never used; nor is any before the one in use.
-  const OfferedContact* const replaced = offered_.exchange(&made.offer);
+  const OfferedContact* const replaced = contacts_.offer(made.offer);
   const std::uint32_t in_use = in_use_.load(std::memory_order_acquire);
   made_.remove_if([&](const Made& old) {
     return &old.offer == replaced || (old.offer.variant < in_use && old.offer.variant > 0);
@@ -76,4 +71,4 @@ std::optional<model::Error> Haptics::set(const std::vector<std::string>& numbers
   return std::nullopt;
 }
 
-}  // namespace tact
+}  // namespace tact::firmware::embed

@@ -17,24 +17,27 @@
 #include <vector>
 
 #include "firmware/gate/gate.h"
+#include "firmware/loop/contact_exchange.h"
 #include "firmware/loop/controller.h"
 #include "hal/device.h"
 #include "model/result.h"
 #include "model/scene/scene.h"
 
-namespace tact {
+namespace tact::firmware::embed {
 
 /// How a scene is used.
 struct HapticsSettings {
   std::vector<std::string> set{};  // KEY=VALUE, as tactd --set takes them
   /// Limits of the device; those of the scene hold as well. nullopt: those of the scene alone.
   std::optional<hal::DeviceInfo> device{};
-  bool hard_real_time = false;  // false: a quarter of the force, and more late ticks are borne
+  // false: a quarter of the force limit, and an overrun fault after 100 late periods, not 20
+  bool hard_real_time = false;
 };
 
 class Haptics {
  public:
-  /// Set-up code: reads scene, meshes and map. The error names file, line and what is allowed.
+  /// Set-up code: reads scene, meshes and map. The error names file, line and what is allowed. Does
+  /// not check whether your device can render so stiff a law; tactd does (firmware/admission).
   static model::Result<std::unique_ptr<Haptics>> make(const std::string& scene_path,
                                                       const HapticsSettings& settings = {});
   Haptics(const Haptics&) = delete;
@@ -43,8 +46,8 @@ class Haptics {
 
   /// One period; from one thread. `skipped_periods`: before this one, if the loop was late.
   /// `device_fault`: of the last read or write. Write `written` to the device, and no other force.
-  firmware::loop::TickOutput tick(const hal::Sample& sample, std::uint32_t skipped_periods = 0,
-                                  model::Fault device_fault = model::Fault::kNone) RT_SAFE;
+  loop::TickOutput tick(const hal::Sample& sample, std::uint32_t skipped_periods = 0,
+                        model::Fault device_fault = model::Fault::kNone) RT_SAFE;
 
   /// Requests for the next tick, from the thread that calls tick(). arm() acts in state Ready only;
   /// after a fault it needs reset() in an earlier tick.
@@ -57,7 +60,7 @@ class Haptics {
   /// thread at a time.
   std::optional<model::Error> set(const std::vector<std::string>& numbers);
   /// All numbers that were set are in use.
-  bool is_set() const { return offered_.load(std::memory_order_acquire) == nullptr; }
+  bool is_set() const { return !contacts_.is_pending(); }
 
   /// Of the last tick, one for each sphere of the tool.
   std::span<const model::contact::SphereContact> contacts() const RT_SAFE {
@@ -73,13 +76,18 @@ class Haptics {
 
   std::unique_ptr<const model::scene::Scene> scene_;
   std::list<Made> made_;  // the scene's own tissue first
-  std::unique_ptr<firmware::loop::Controller> controller_;
-  std::vector<std::string> numbers_;  // set so far
+  std::unique_ptr<loop::Controller> controller_;
+  std::vector<std::string> numbers_;  // set so far, the newest last
   std::uint32_t count_ = 0;           // of set()
-  std::atomic<firmware::loop::OfferedContact*> offered_{nullptr};
+  loop::ContactExchange contacts_;
   std::atomic<std::uint32_t> in_use_{0};
-  firmware::loop::Commands commands_;
-  firmware::loop::TickInput input_;
+  loop::Commands commands_;
+  loop::TickInput input_;
 };
 
+}  // namespace tact::firmware::embed
+
+namespace tact {
+using firmware::embed::Haptics;
+using firmware::embed::HapticsSettings;
 }  // namespace tact

@@ -46,12 +46,6 @@ struct TickOutput {
 
 using ShapeSlot = hal::LatestSlot<model::contact::PatchShape>;
 
-/// A tissue with other numbers of its law, made beside the loop.
-struct OfferedContact {
-  std::uint32_t variant = 0;  // see TickInput
-  model::contact::Contact contact;
-};
-
 class Controller {
  public:
   /// `hard_real_time` sets the limits of the OverrunCounter.

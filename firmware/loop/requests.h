@@ -15,8 +15,6 @@
 
 namespace tact::firmware::loop {
 
-struct OfferedContact;
-
 enum class Request : std::uint8_t { kNone, kArm, kReset, kDisarm };
 
 struct Requests {
@@ -26,8 +24,6 @@ struct Requests {
   std::atomic<bool> stop{false};          // zero force, then end the loop
   std::atomic<model::Fault> fault{model::Fault::kNone};  // first fault of the watch
   std::atomic<std::uint32_t> refused{0};  // requests refused: arm by the loop, others before it
-  // Null, or a contact that the loop takes as soon as the tool touches nothing, and makes it null.
-  std::atomic<OfferedContact*> offered{nullptr};
 
   /// Replaces a request that is not answered yet. Returns the number; only one thread may ask.
   std::uint32_t ask(Request request) {

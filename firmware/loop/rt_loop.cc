@@ -59,8 +59,8 @@ void RtLoop::release_device() RT_SAFE {
 }
 
 void RtLoop::hear_requests() RT_SAFE {
-  // Relaxed, as everywhere in this file: no word orders other data. A request that is read a tick
-  // later acts a tick later.
+  // Relaxed, as every request: it orders no other data. One that is read a tick later acts a tick
+  // later.
   const Commands before = record_.input.commands;
   const std::uint32_t asked = requests_.asked.load(std::memory_order_relaxed);
   // Compares only numbers: a request that a tick has taken cannot be cancelled. The supervisor acts
@@ -73,17 +73,6 @@ void RtLoop::hear_requests() RT_SAFE {
                             .stop = requests_.stop.load(std::memory_order_relaxed),
                             .reset = request == Request::kReset,
                             .disarm = request == Request::kDisarm};
-}
-
-// In one tick, in which no force depends on the tissue. Another thread may replace the offer in
-// between; then a later tick takes that one.
-void RtLoop::take_offered_contact() RT_SAFE {
-  OfferedContact* offered = requests_.offered.load(std::memory_order_acquire);
-  if (offered == nullptr || !controller_.is_clear()) return;
-  if (!requests_.offered.compare_exchange_strong(offered, nullptr, std::memory_order_acq_rel))
-    return;
-  controller_.use(offered->contact);
-  record_.input.variant = offered->variant;
 }
 
 // Answers a person's request in the tick that took it: done or refused.
@@ -195,8 +184,8 @@ void RtLoop::cycle(std::int64_t due_ns) RT_SAFE {
   record_phase(Phase::kWake, wake_ns - due_ns);
 
   hear_requests();
-  take_offered_contact();
   TickInput& input = record_.input;
+  contacts_.take(controller_, input);
   input.device_fault = read(wake_ns);
   // After both were read: a loss of power stops the force in the same tick.
   input.ready = lines_.enabled() && device_.ready();

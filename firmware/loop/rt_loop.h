@@ -11,6 +11,7 @@
 
 #include "firmware/loop/clock.h"
 #include "firmware/loop/clutch.h"
+#include "firmware/loop/contact_exchange.h"
 #include "firmware/loop/controller.h"
 #include "firmware/loop/grip_input.h"
 #include "firmware/loop/latency_histogram.h"
@@ -71,6 +72,8 @@ class RtLoop {
   bool may_run() const RT_SAFE;
   /// Removes power permission and writes zero force: the last call of every loop.
   void release_device() RT_SAFE;
+  /// Offers of other numbers of the law.
+  ContactExchange& contacts() { return contacts_; }
   const LoopStatistics& statistics() const { return statistics_; }
   /// For the watch; callable at any time.
   const Progress& progress() const { return progress_; }
@@ -80,7 +83,6 @@ class RtLoop {
   /// Copies the pending request into this tick's input.
   void hear_requests() RT_SAFE;
   void answer_requests() RT_SAFE;
-  void take_offered_contact() RT_SAFE;
   bool arms_at_start() const RT_SAFE;
   Fault read(std::int64_t now_ns) RT_SAFE;
   void use_clutch(bool pressed) RT_SAFE;
@@ -111,6 +113,7 @@ class RtLoop {
   bool answers_ = false;              // this tick has taken a request
   Fault write_fault_ = Fault::kNone;  // latches in the next tick
   StopTimer stop_timer_;
+  ContactExchange contacts_;
   Progress progress_;
 };
 

@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "model/io/json.h"
+
 namespace tact::firmware::protocol {
 
 model::Result<TickLog> TickLog::open(const std::string& path) {
@@ -33,8 +35,10 @@ bool TickLog::next(LoggedTick& tick) {
 
 // Invalid JSON is as if it were not there: its ticks then have no numbers.
 void TickLog::keep_variant() {
-  const auto json = nlohmann::json::parse(chunk_.content, nullptr, false);
-  if (!json.is_object() || !json.value("variant", nlohmann::json()).is_number_unsigned()) return;
+  const auto parsed = model::io::parse_json(chunk_.content, "changes of the law");
+  if (!parsed || !parsed->is_object()) return;
+  const nlohmann::json& json = *parsed;
+  if (!json.value("variant", nlohmann::json()).is_number_unsigned()) return;
   std::vector<std::string> set;
   for (const auto& each : json.value("set", nlohmann::json::array()))
     if (each.is_string()) set.push_back(each);

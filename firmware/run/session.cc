@@ -186,7 +186,7 @@ void Session::run_free() {
 std::optional<model::Error> Session::run_real_time() {
   say(stderr, "tactd: limits {} (the page shows them too)\n", parts_.limits_checksum);
   if (auto error = telemetry_->start()) return error;
-  auto variants = Variants::make(scene_, parts_, requests_, *telemetry_);
+  auto variants = Variants::make(scene_, parts_, requests_, loop_->contacts(), *telemetry_);
   if (!variants) return variants.error();
   variants_ = std::move(*variants);
   LoopExecutor executor({.turns = {{loop_->progress(), [this] { loop_->run(); }}},

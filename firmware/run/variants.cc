@@ -13,7 +13,7 @@
 namespace tact::firmware::run {
 namespace {
 
-// Of work(): the answer comes within a second, also while the tool touches.
+// Of poll(): the answer comes within a second, also while the tool touches.
 constexpr int kMaxTurns = 5;
 
 std::string key_of(const std::string& set) { return set.substr(0, set.find('=')); }
@@ -28,9 +28,10 @@ std::vector<std::string> words_of(const std::string& text) {
 model::Result<std::unique_ptr<Variants>> Variants::make(const model::scene::Scene& scene,
                                                         const LoopParts& parts,
                                                         loop::Requests& requests,
+                                                        loop::ContactExchange& contacts,
                                                         telemetry::Telemetry& telemetry) {
-  std::unique_ptr<Variants> made(new Variants(scene, parts, requests, telemetry));
-  auto thread = hal::start_thread("law-numbers", [&variants = *made] { variants.run(); });
+  std::unique_ptr<Variants> made(new Variants(scene, parts, requests, contacts, telemetry));
+  auto thread = hal::start_thread("tact-law", [&variants = *made] { variants.run(); });
   if (!thread) return thread.error();
   made->thread_ = std::move(*thread);
   return made;
@@ -106,7 +107,7 @@ Variants::Outcome Variants::make(const std::vector<std::string>& set) const {
   return std::make_unique<Made>(std::move(*variant));
 }
 
-std::optional<std::string> Variants::work() {
+std::optional<std::string> Variants::poll() {
   forget_old();
   std::optional<Outcome> outcome;
   {
@@ -116,9 +117,9 @@ std::optional<std::string> Variants::work() {
   if (outcome) is_in_work_ = false;
   if (outcome && !*outcome) return refuse(take_waiting(), outcome->error().message);
   if (outcome) offer(std::move(**outcome));
-  const bool is_used = requests_.offered.load() == nullptr;
+  const bool is_used = !contacts_.is_pending();
   if (!is_offered_) return std::nullopt;
-  // One that is offered, while other numbers are in work, answers nobody.
+  // While a newer request is prepared, the older offer does not answer it.
   const bool is_waited_for = waiting_ && !is_in_work_;
   if (!is_used && !(is_waited_for && --turns_left_ == 0)) return std::nullopt;
   is_offered_ = !is_used;
@@ -140,7 +141,7 @@ void Variants::offer(std::unique_ptr<Made> made) {
   is_offered_ = true;
   made->contact.variant = ++count_;
   telemetry_.expect_variant(count_, set_, made->variant.tissue->law().contact_law());
-  loop::OfferedContact* const before = requests_.offered.exchange(&made->contact);
+  loop::OfferedContact* const before = contacts_.offer(made->contact);
   // The loop has not taken it, and cannot any more.
   if (before != nullptr)
     std::erase_if(kept_, [before](const auto& kept) { return &kept->contact == before; });

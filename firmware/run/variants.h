@@ -2,7 +2,7 @@
 // variants.h - changes the law's numbers while the loop runs, at the request of a person.
 //
 // An ordinary thread makes the tissue with the new numbers and checks it as at the start. The loop
-// takes it in one tick in which the tool touches nothing (Requests::offered), so that no force
+// takes it in one tick in which the tool touches nothing (contact_exchange.h), so that no force
 // steps. On hardware only the keys of the scene's [[live]] may change.
 #pragma once
 
@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "firmware/console/control_socket.h"
-#include "firmware/loop/controller.h"
+#include "firmware/loop/contact_exchange.h"
 #include "firmware/loop/requests.h"
 #include "firmware/run/loop_parts.h"
 #include "firmware/telemetry/telemetry.h"
@@ -30,23 +30,29 @@ class Variants {
   static model::Result<std::unique_ptr<Variants>> make(const model::scene::Scene& scene,
                                                        const LoopParts& parts,
                                                        loop::Requests& requests,
+                                                       loop::ContactExchange& contacts,
                                                        telemetry::Telemetry& telemetry);
   ~Variants();
   Variants(const Variants&) = delete;
   Variants& operator=(const Variants&) = delete;
 
-  /// Takes "KEY=VALUE KEY=VALUE" and answers now, if it is refused, with a report for the operator;
-  /// or in a later work(). Keys that are not named keep what they are.
+  /// Takes "KEY=VALUE KEY=VALUE"; keys that are not named keep their values. Answers and returns a
+  /// report for the operator if it is refused at once; otherwise a later poll() answers.
   std::optional<std::string> ask(console::ControlRequest request, const std::string& set);
-  /// Offers what is made and answers the request. Returns a report for the operator, or nothing.
-  std::optional<std::string> work();
+  /// Call regularly: offers the contact that is ready and answers the request. Returns a report for
+  /// the operator, or nothing.
+  std::optional<std::string> poll();
   /// Tissues that were offered to the loop.
   std::uint32_t count() const { return count_; }
 
  private:
   Variants(const model::scene::Scene& scene, const LoopParts& parts, loop::Requests& requests,
-           telemetry::Telemetry& telemetry)
-      : scene_(scene), parts_(parts), requests_(requests), telemetry_(telemetry) {}
+           loop::ContactExchange& contacts, telemetry::Telemetry& telemetry)
+      : scene_(scene),
+        parts_(parts),
+        requests_(requests),
+        contacts_(contacts),
+        telemetry_(telemetry) {}
   struct Made {
     explicit Made(model::scene::Variant made)
         : variant(std::move(made)),
@@ -67,15 +73,16 @@ class Variants {
   const model::scene::Scene& scene_;
   const LoopParts& parts_;
   loop::Requests& requests_;
+  loop::ContactExchange& contacts_;
   telemetry::Telemetry& telemetry_;
   std::vector<std::string> set_;    // of the newest tissue, each KEY=VALUE
   std::vector<std::string> asked_;  // in work
   std::string what_, asked_what_;   // of these only what was named, for people
   std::optional<console::ControlRequest> waiting_;
-  std::uint32_t count_ = 0;                // tissues offered so far
-  bool is_in_work_ = false;                // the numbers that waiting_ asked for
-  bool is_offered_ = false;                // numbers that are not reported as used yet
-  int turns_left_ = 0;                     // until waiting_ is answered although the tool touches
+  std::uint32_t count_ = 0;  // tissues offered so far
+  bool is_in_work_ = false;  // the numbers that waiting_ asked for
+  bool is_offered_ = false;  // numbers that are not reported as used yet
+  int turns_left_ = 0;       // polls until waiting_ is answered although the tool touches
   std::list<std::unique_ptr<Made>> kept_;  // offered, and those that telemetry still reads
 
   std::mutex mutex_;  // guards the rest; the loop never takes it

@@ -8,6 +8,7 @@
 #include "firmware/loop/clock.h"
 #include "firmware/loop/release_schedule.h"
 #include "firmware/telemetry/force_hash.h"
+#include "model/io/json.h"
 #include "model/time_ns.h"
 
 namespace tact::firmware::telemetry {
@@ -83,11 +84,13 @@ void Telemetry::expect_variant(std::uint32_t variant, const std::vector<std::str
                                const model::contact::IndentationView& indentations) {
   const nlohmann::json numbers{{"variant", variant}, {"set", set}};
   const std::lock_guard lock(newest_mutex_);
-  expected_.push_back(
-      {variant, chunk_of(protocol::ChunkKind::kVariant, numbers.dump()), &indentations});
+  expected_.push_back({variant,
+                       chunk_of(protocol::ChunkKind::kVariant, model::io::text_of(numbers)),
+                       &indentations});
 }
 
-// Before the first tick of the new tissue. One that was replaced before the loop took it is dropped.
+// Before the first tick of the new tissue. One that was replaced before the loop took it is left
+// out.
 void Telemetry::change_variant() {
   const std::lock_guard lock(newest_mutex_);
   for (const Expected& expected : std::exchange(expected_, {})) {

@@ -145,4 +145,22 @@ std::string homing_trouble(const FaultCause& cause, const DeltaSettings& delta) 
   }
 }
 
+std::string silence_trouble(const FaultCause& cause, const char* position) {
+  switch (static_cast<CanCause>(cause.kind)) {
+    case CanCause::kSilent:
+      return fmt::format(
+          "no heartbeat for {} ms: check its supply and the CAN cable, then start tactd again",
+          cause.code);
+    case CanCause::kNoPosition:
+      return fmt::format(
+          "no {} for {} ms: check its supply and the CAN cable, then start tactd again", position,
+          cause.code);
+    case CanCause::kJumped:
+      return "its position jumped without motion: the encoder slips or two drives share a node; "
+             "check both and home again";
+    default:
+      return {};
+  }
+}
+
 }  // namespace tact::hal::can

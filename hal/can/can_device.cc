@@ -4,12 +4,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <thread>
 #include <utility>
 
+#include "hal/can/foreign_commands.h"
 #include "hal/can/sample_gap.h"
 #include "hal/mounting.h"
 #include "model/time_ns.h"
@@ -125,14 +125,15 @@ class CanDevice final : public Device {
     if (auto words = can_bus_trouble(cause, can_.interface, Frame::kLinkType); !words.empty())
       return words;
     if (auto words = homing_trouble(cause, delta_settings_); !words.empty()) return words;
-    if (cause.kind == static_cast<std::uint8_t>(CanCause::kForeign)) return foreign_text(cause);
+    if (cause.kind == static_cast<std::uint8_t>(CanCause::kForeign))
+      return foreign_commands_.text(cause.code, can_.interface);
     return fmt::format("{}: {}", can_arm_name(cause.axis, can_), words(cause));
   }
 
   std::vector<DeviceCount> counters() const override {
     const CanBusCounts& bus = bus_->counts();
     std::vector<DeviceCount> all{{"strays", unknown_frames_},
-                                 {"foreign_commands", foreign_commands_}};
+                                 {"foreign_commands", foreign_commands_.count()}};
     for (const DeviceCount& one : drives_.counters()) all.push_back(one);
     all.insert(all.end(), {{"missed_cycles", bus.missed_cycles},
                            {"error_frames", bus.error_frames},
@@ -160,21 +161,16 @@ class CanDevice final : public Device {
   }
 
   void take(const Frame& frame, std::int64_t arrival_ns) RT_SAFE {
-    if (drives_.is_command(frame)) return meet_stranger(frame);
+    if (drives_.is_command(frame)) return on_foreign_command(frame);
     const int node = drives_.node_of(frame);
     std::size_t i = 0;
     while (i < 3 && loop_.axes[i].node != node) ++i;
     if (i == 3 || !drives_.take(loop_, i, frame, arrival_ns)) ++unknown_frames_;
   }
 
-  // Zero torque and disable are sent again after each of its commands, also when latched.
-  void meet_stranger(const Frame& frame) RT_SAFE {
-    if (foreign_commands_++ == 0) {
-      std::uint64_t bytes = 0;
-      for (std::size_t i = 0; i < std::min<std::size_t>(frame.payload().size(), 8); ++i)
-        bytes |= std::uint64_t{frame.data[i]} << (8 * i);
-      foreign_bytes_.store(bytes, std::memory_order_relaxed);
-    }
+  // Zero torque and disable are sent again after each of them, also when the fault is latched.
+  void on_foreign_command(const Frame& frame) RT_SAFE {
+    foreign_commands_.add(frame);
     loop_.fail(0, CanCause::kForeign, frame.id, Fault::kForeignCommand);
     fault_batches_ = 0;
   }
@@ -253,33 +249,9 @@ class CanDevice final : public Device {
                        drives_.words(wait));
   }
 
-  std::string foreign_text(const FaultCause& cause) const {
-    std::string bytes;
-    const std::uint64_t all = foreign_bytes_.load(std::memory_order_relaxed);
-    for (int i = 0; i < 8; ++i) bytes += fmt::format(" {:02X}", all >> (8 * i) & 0xFF);
-    return fmt::format(
-        "frame 0x{:03X} with{} on {} is a command that tactd did not send: end the other program, "
-        "or "
-        "take the other computer off the bus (candump {} shows it), then start tactd again",
-        cause.code, bytes, can_.interface, can_.interface);
-  }
-
   std::string words(const FaultCause& cause) const {
-    switch (static_cast<CanCause>(cause.kind)) {
-      case CanCause::kSilent:
-        return fmt::format(
-            "no heartbeat for {} ms: check its supply and the CAN cable, then start tactd again",
-            cause.code);
-      case CanCause::kNoPosition:
-        return fmt::format(
-            "no {} for {} ms: check its supply and the CAN cable, then start tactd again",
-            start_.position, cause.code);
-      case CanCause::kJumped:
-        return "its position jumped without motion: the encoder slips or two drives share a node; "
-               "check both and home again";
-      default:
-        return drives_.words(cause);
-    }
+    auto text = silence_trouble(cause, start_.position);
+    return text.empty() ? drives_.words(cause) : text;
   }
 
   std::unique_ptr<BasicCanBus<Frame>> bus_;
@@ -296,8 +268,8 @@ class CanDevice final : public Device {
   std::uint64_t sequence_ = 0;
   std::uint64_t cut_reads_ = 0;       // the kernel may have had more than one call takes
   std::uint64_t unknown_frames_ = 0;  // frames of nodes or kinds that are not ours
-  std::uint64_t foreign_commands_ = 0;
-  std::atomic<std::uint64_t> foreign_bytes_{0};  // of the first one, little endian
+  ForeignCommands foreign_commands_;
+};  // of the first one, little endian
 };
 
 }  // namespace

@@ -10,7 +10,7 @@
 // three have sent a new position since the last read. Of drives on clocks of their own, when one
 // has and none is older than one and a half periods: now and then a tick gets no frame of one axis
 // and the next gets two. Power does not matter. Its stamp is the arrival of the oldest. Without
-// samples the torques ramp-down (sample_gap.h). A fault stops all three and latches; only opening
+// samples the torques ramp down (sample_gap.h). A fault stops all three and latches; only opening
 // the device again clears it.
 //
 // A new kind of drive is its frames, its bring-up and a CanDrives; nothing of a device is in them.
@@ -125,7 +125,7 @@ class BasicCanDrives {
   /// A frame of this axis: its position, its heartbeat, its faults. False: nobody asked for it.
   virtual bool take(Loop& loop, std::size_t axis, const Frame& frame,
                     std::int64_t arrival_ns) RT_SAFE = 0;
-  /// Commands drives, or all nodes. Our own do not come back (can_open.cc): somebody else sent it.
+  /// A command to drives or to all nodes. Loopback is off, so it came from another sender.
   virtual bool is_command(const Frame& frame) const RT_SAFE = 0;
   /// Once all frames are taken: starting becomes ready; a drive that does not start, or lets go, is
   /// a fault.

@@ -10,7 +10,7 @@
 // One request at a time.
 //
 //     request SCENE KEY=VALUE ...   another start; keys that are not named are as shipped
-//     set SCENE KEY=VALUE ...       while the scene runs; keys that are not named keep what they are
+//     set SCENE KEY=VALUE ...       while the scene runs; other keys keep their values
 #pragma once
 
 #include <functional>

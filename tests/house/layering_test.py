@@ -103,7 +103,7 @@ def thread_breaches(path, text):
 
 
 def throw_breaches(path, text):
-    if path.startswith("tests/"):
+    if path.startswith(("tests/", "tools/python/")):  # a module of Python raises what Python catches
         return
     code = COMMENT.sub(blank, text)
     for found in re.finditer(r"\bthrow\b", code):

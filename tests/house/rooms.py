@@ -48,6 +48,7 @@ ROOMS = {
     "firmware/pc": ["model/io", "hal", "hal/list"],
     "firmware/gate": ["model", "hal"],
     "firmware/loop": LOOP,
+    "firmware/embed": [*LOOP, "model/scene", "firmware/loop"],
     "firmware/watch": ["model", "hal", "firmware/loop", "firmware/pc"],
     "firmware/guardian": ["model", "hal", "firmware/loop"],
     "firmware/protocol": ["model", "model/io", "firmware/loop"],
@@ -72,7 +73,7 @@ ROOMS = {
 }
 # A tool measures every room above; of the other tools it may include these.
 TOOLS = {
-    **dict.fromkeys(["examples", "ground_truth", "printed", "program"], []),
+    **dict.fromkeys(["examples", "ground_truth", "printed", "program", "python"], []),
     **dict.fromkeys(["calibrate", "doctor", "mesh", "report"], ["program"]),
     **dict.fromkeys(["jitter", "limits", "sweep"], ["program", "report"]),
     "fit": ["program", "report", "ground_truth"],

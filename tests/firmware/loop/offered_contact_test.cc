@@ -37,15 +37,15 @@ TEST_F(OfferedContactLoop, IsTakenAfterTheToolHasLeftAndThenGivesAnotherForce) {
   press();
   const double before_N = device.last.force_N.z;
   const Made made(scene, 1, 1.5);
-  requests.offered.store(made.offer.get());
+  loop.contacts().offer(*made.offer);
   run_ticks(100);
   EXPECT_EQ(device.last.force_N.z, before_N) << "not while it touches";
   EXPECT_EQ(newest().input.variant, 0u);
-  EXPECT_NE(requests.offered.load(), nullptr);
+  EXPECT_TRUE(loop.contacts().is_pending());
 
   for (; device.height_m < 0.006; device.height_m += 0.00005) loop.step();
   run_ticks(200);
-  EXPECT_EQ(requests.offered.load(), nullptr);
+  EXPECT_FALSE(loop.contacts().is_pending());
   EXPECT_EQ(newest().input.variant, 1u);
   for (; device.height_m > 0.001; device.height_m -= 0.00005) loop.step();
   run_ticks(10);
@@ -58,7 +58,7 @@ TEST_F(OfferedContactLoop, InTheTickThatTouchesLosesNoContact) {
   requests.arm_at_start.store(true);
   run_ticks(600);
   const Made made(scene, 1, 1.5);
-  requests.offered.store(made.offer.get());
+  loop.contacts().offer(*made.offer);
   device.height_m = 0.0039;
   run_ticks(10);
   EXPECT_EQ(newest().input.variant, 1u);
@@ -75,16 +75,16 @@ TEST_F(OfferedContactLoop, AThousandChangesStepNoForceAndAllocateNothing) {
   double phase = 0.0;
   std::uint32_t taken = 0;
   for (int i = 0; i < 1000; ++i) {
-    requests.offered.store((i % 2 == 0 ? soft : hard).offer.get());
+    loop.contacts().offer(*(i % 2 == 0 ? soft : hard).offer);
     // In contact for half of the time, at another phase at each change.
     for (int k = 0; k < 41; ++k, phase += 0.05) {
       device.height_m = 0.004 + 0.001 * std::sin(phase);
-      const bool was_offered = requests.offered.load() != nullptr;
+      const bool was_offered = loop.contacts().is_pending();
       const model::Wrench before = device.last;
       const HeapCallCounter heap;
       loop.step();
       EXPECT_EQ(heap.calls(), 0u);
-      if (!was_offered || requests.offered.load() != nullptr) continue;
+      if (!was_offered || loop.contacts().is_pending()) continue;
       ++taken;
       EXPECT_EQ(before, model::Wrench{}) << i;
     }

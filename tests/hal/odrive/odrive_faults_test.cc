@@ -3,49 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <random>
 
-#include "hal/odrive/odrive_delta.h"
-#include "tests/hal/odrive/odrive_drives.h"
-#include "tests/support/can_bench.h"
+#include "tests/hal/odrive/odrive_faults_bench.h"
 
 namespace tact::hal::odrive::odrive_faults_test {
 
-using tests::jig_settings;
-using tests::published_pose;
 using enum OdriveCommand;
 
-struct Bench : tests::CanBench<tests::PlayedOdrives> {
-  explicit Bench(bool v06 = true) : CanBench(jig_settings(published_pose())) {
-    for (auto& axis : drives.axis) axis.v06 = v06;
-  }
-  void run() {
-    ASSERT_EQ(open(&start_odrive_delta), "");
-    ASSERT_GT(ticks_until_ready(), 0) << device->trouble();
-    drives.forget();
-    tick({0.0, 0.0, 5.0});
-  }
-  bool says(const char* words) const { return device->trouble().find(words) != std::string::npos; }
-  /// The fault stays, whatever the bus and the drives do from now on; the hand feels nothing.
-  void expect_latched(Fault fault) {
-    for (auto& axis : drives.axis) axis.error = 0, axis.powered = axis.says_heartbeat = true;
-    drives.bus.socket().send_error = drives.bus.socket().receive_error = 0;
-    for (int i = 0; i < 400; ++i) {
-      ASSERT_EQ(tick({0.0, 0.0, 5.0}), fault);
-      ASSERT_EQ(read_fault, fault);
-      ASSERT_EQ(write_fault, fault);
-      ASSERT_FALSE(sample.fresh);
-    }
-    for (const auto& axis : drives.axis) EXPECT_EQ(axis.torque_Nm, 0.0f);
-    EXPECT_EQ(allocations, 0u);
-  }
-  void expect_stopped() const {
-    for (std::size_t i = 0; i < 3; ++i) {
-      EXPECT_EQ(drives.axis[i].torque_Nm, 0.0f);
-      EXPECT_EQ(drives.times(i, kEstop), 1);
-    }
-  }
-};
+using Bench = tests::OdriveFaultsBench;
 
 TEST(OdriveFaults, ADrivesErrorStopsAllThreeInTheSameTick) {
   Bench bench;
@@ -283,52 +248,6 @@ TEST(OdriveFaults, AMotorSupplyThatGoesAfterAForceIsAFault) {
   Fault fault = Fault::kNone;
   for (int i = 0; i < 200 && fault == Fault::kNone; ++i) fault = bench.tick({0.0, 0.0, 1.0});
   EXPECT_EQ(fault, Fault::kDriveFault);
-}
-
-// At random ticks, one or a burst, with and without force: whatever makes a drive act.
-TEST(OdriveFaults, ACommandOfAnotherSenderLatchesInTheTickThatHearsIt) {
-  std::mt19937 random(7);
-  const auto any = [&random](int low, int high) {
-    return std::uniform_int_distribution<int>(low, high)(random);
-  };
-  for (int trial = 0; trial < 120; ++trial) {
-    Bench bench;
-    bench.run();
-    for (int wait = any(0, 30); wait > 0; --wait) bench.tick({0.0, 0.0, 5.0});
-    ASSERT_EQ(bench.count("foreign_commands"), 0u) << "no false alarm";
-    const auto act = kOdriveActs[static_cast<std::size_t>(any(0, kOdriveActs.size() - 1))];
-    auto frame = can::make_can_frame(static_cast<std::uint32_t>(any(1, 3)) << 5 | act,
-                                     static_cast<std::uint8_t>(any(0, 8)));
-    const int burst = any(1, 40);
-    for (int i = 0; i < burst; ++i) bench.drives.bus.say(frame);
-    ASSERT_EQ(bench.tick({0.0, 0.0, 5.0}), Fault::kForeignCommand) << frame.id;
-    for (const auto& axis : bench.drives.axis) ASSERT_EQ(axis.torque_Nm, 0.0f) << frame.id;
-    ASSERT_EQ(bench.count("foreign_commands"), static_cast<std::uint64_t>(burst));
-    ASSERT_TRUE(bench.says("a command that tactd did not send")) << bench.device->trouble();
-    bench.expect_latched(Fault::kForeignCommand);
-  }
-}
-
-TEST(OdriveFaults, ADriveThatAnotherSenderStartsAgainIsStoppedEachTime) {
-  Bench bench;
-  bench.run();
-  for (int i = 0; i < 50; ++i) {
-    bench.drives.bus.say(*odrive_input_torque(2, 0.7, OdriveTorqueLength::kPadded));
-    bench.drives.forget();
-    ASSERT_EQ(bench.tick({0.0, 0.0, 5.0}), Fault::kForeignCommand);
-    bench.expect_stopped();
-  }
-  EXPECT_TRUE(bench.says("frame 0x04E with 33 33 33 3F 00 00 00 00 on can0"))
-      << bench.device->trouble();
-}
-
-TEST(OdriveFaults, FramesOfOtherNodesAndQuestionsAreNoCommands) {
-  Bench bench;
-  bench.run();
-  bench.drives.bus.say(*odrive_input_torque(9, 0.7, OdriveTorqueLength::kPadded));
-  bench.drives.bus.say(*odrive_request(2, OdriveCommand::kGetVersion));
-  EXPECT_EQ(bench.tick({0.0, 0.0, 5.0}), Fault::kNone) << bench.device->trouble();
-  EXPECT_EQ(bench.count("foreign_commands"), 0u);
 }
 
 }  // namespace tact::hal::odrive::odrive_faults_test
