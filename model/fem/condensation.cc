@@ -241,7 +241,7 @@ Result<tissue::ComplianceMap> condense(const TetMesh& body, const contact::Surfa
     return Error{
         "condensation: no triangle of the surface lies in the held box, elastic.fixed_min_m to "
         "elastic.fixed_max_m; make it hold one"};
-  auto solver = make_linear_solver(body, {1.0, settings.poisson_ratio}, fixed);
+  auto solver = make_linear_solver(body, {1.0, settings.poisson_ratio, settings.lumps}, fixed);
   if (!solver) return solver.error();
   const std::size_t n = surface.vertex_m.size();
   tissue::ComplianceMap map{.poisson_ratio = settings.poisson_ratio,

@@ -20,6 +20,7 @@
 #include <optional>
 #include <span>
 
+#include "model/fem/elasticity.h"
 #include "model/fem/tet_mesh.h"
 #include "model/mesh/mesh.h"
 #include "model/result.h"
@@ -38,7 +39,8 @@ std::optional<Error> one_after_the_other(std::size_t jobs, std::span<float> resu
 struct CondensationSettings {
   double poisson_ratio = 0.0;
   Vec3 fixed_min_m{}, fixed_max_m{};  // skin triangles with all corners in this box are held
-  double patch_radius_m = 0.0;        // a0
+  std::vector<Lump> lumps{};
+  double patch_radius_m = 0.0;  // a0
   double ring_pitch_m = 0.0;
   std::size_t rings = 0;
   RunJobs run_jobs = one_after_the_other;

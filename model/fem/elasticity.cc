@@ -11,6 +11,9 @@ namespace {
 using Gradients = Eigen::Matrix<double, 10, 3>;          // dN_a / dx_i, 1/m
 using ElementStiffness = Eigen::Matrix<double, 30, 30>;  // row 3 a + i
 
+// (5 + 3 sqrt(5))/20 and (5 - sqrt(5))/20
+constexpr double kFar = 0.5854101966249685, kNear = 0.1381966011250105;
+
 /// dN_a / dL_i at the barycentric point L, where L_0 = 1 - L_1 - L_2 - L_3.
 Gradients reference_gradients(const std::array<double, 4>& l) {
   Eigen::Matrix<double, 4, 3> dl;  // dL / d(L_1, L_2, L_3)
@@ -30,8 +33,6 @@ Gradients reference_gradients(const std::array<double, 4>& l) {
 /// Reference gradients at the four Gauss points; each weighs 1/24.
 const std::array<Gradients, 4>& gauss_gradients() {
   static const std::array<Gradients, 4> points = [] {
-    // (5 + 3 sqrt(5))/20 and (5 - sqrt(5))/20
-    constexpr double kFar = 0.5854101966249685, kNear = 0.1381966011250105;
     std::array<Gradients, 4> out;
     for (std::size_t k = 0; k < 4; ++k) {
       std::array<double, 4> l{kNear, kNear, kNear, kNear};
@@ -53,19 +54,31 @@ bool middles_in_order(const TetMesh& mesh, const TetNodes& nodes) {
   return true;
 }
 
+double modulus_ratio(const std::vector<Lump>& lumps, const Vec3& at_m) {
+  double ratio = 1.0;
+  for (const Lump& lump : lumps)
+    if (norm(at_m - lump.center_m) <= lump.radius_m) ratio = lump.modulus_ratio;
+  return ratio;
+}
+
 /// False if the element has no positive volume at a Gauss point.
-bool element_stiffness(const TetMesh& mesh, const TetNodes& nodes, double lambda_Pa, double mu_Pa,
+bool element_stiffness(const TetMesh& mesh, const TetNodes& nodes, const Elasticity& material,
                        ElementStiffness& k) {
+  const double nu = material.poisson_ratio, mu_Pa = material.shear_modulus_Pa();
+  const double lambda_Pa = material.youngs_modulus_Pa * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
   Gradients x;
   for (int a = 0; a < 10; ++a) {
     const Vec3& p = mesh.node_m[nodes[static_cast<std::size_t>(a)]];
     x.row(a) << p.x, p.y, p.z;
   }
   k.setZero();
-  for (const Gradients& reference : gauss_gradients()) {
+  for (std::size_t point = 0; point < 4; ++point) {
+    const Gradients& reference = gauss_gradients()[point];
+    Vec3 at_m;
+    for (std::size_t c = 0; c < 4; ++c) at_m += (c == point ? kFar : kNear) * mesh.node_m[nodes[c]];
     const Eigen::Matrix3d jacobian = x.transpose() * reference;  // dx_i / dL_j
-    const double volume_m3 = jacobian.determinant() / 24.0;
-    if (!(volume_m3 > 0.0)) return false;
+    if (!(jacobian.determinant() > 0.0)) return false;
+    const double volume_m3 = modulus_ratio(material.lumps, at_m) * jacobian.determinant() / 24.0;
     const Gradients g = reference * jacobian.inverse();
     const Eigen::Matrix<double, 10, 10> dots = volume_m3 * mu_Pa * (g * g.transpose());
     for (Eigen::Index a = 0; a < 10; ++a)
@@ -101,8 +114,6 @@ Result<StiffnessMatrix> assemble_stiffness(const TetMesh& mesh, const Elasticity
     return Error{
         "finite elements: poisson_ratio must be 0 or more and below 0.5; 0.49 is usual for "
         "tissue that keeps its volume"};
-  const double mu_Pa = material.shear_modulus_Pa();
-  const double lambda_Pa = e_Pa * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
   std::vector<Eigen::Triplet<double, std::int32_t>> entries;
   // 30 x 31 / 2: the lower triangle of an element.
   entries.reserve(mesh.element.size() * 465);
@@ -112,7 +123,7 @@ Result<StiffnessMatrix> assemble_stiffness(const TetMesh& mesh, const Elasticity
     if (!middles_in_order(mesh, nodes))
       return Error{"finite elements: the middle nodes of element " + std::to_string(e) +
                    " (counted from 0) do not lie in the order of tet_mesh.h"};
-    if (!element_stiffness(mesh, nodes, lambda_Pa, mu_Pa, k))
+    if (!element_stiffness(mesh, nodes, material, k))
       return Error{"finite elements: element " + std::to_string(e) +
                    " (counted from 0) is inside out or flat; mesh the body again, finer"};
     for (int r = 0; r < 30; ++r)

@@ -20,9 +20,16 @@
 
 namespace tact::model::fem {
 
+/// A ball of the same material with another modulus; a Gauss point lies in it or not.
+struct Lump {
+  Vec3 center_m;
+  double radius_m = 0.0, modulus_ratio = 1.0;
+};
+
 struct Elasticity {
   double youngs_modulus_Pa = 0.0;  // E, > 0
   double poisson_ratio = 0.0;      // nu, from 0 to below 0.5; close to it quadratic tetrahedra lock
+  std::vector<Lump> lumps{};
 
   double shear_modulus_Pa() const { return youngs_modulus_Pa / (2.0 * (1.0 + poisson_ratio)); }
   /// E* = E / (1 - nu^2), of a half-space under a frictionless tool.

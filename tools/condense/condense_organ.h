@@ -25,6 +25,7 @@ struct CondenseSettings {
 struct CondenseInput {
   model::mesh::SurfaceMesh surface;
   CondenseSettings settings{};
+  std::uint32_t inclusions = 0;  // what the map says of its lumps
 };
 
 /// What was built, for people.

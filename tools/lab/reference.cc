@@ -143,6 +143,9 @@ Result<json> job_of(const Options& o) {
         "{}: has no [elastic]; add it with youngs_modulus_Pa, poisson_ratio, fixed_min_m and "
         "fixed_max_m, or give them with --set",
         scene->path)};
+  if (!scene->elastic->inclusions.empty())
+    return Error{fmt::format(
+        "{}: the reference knows no [[elastic.inclusion]]; leave them out of it", scene->path)};
   add_scene(job, *scene);
   return job;
 }

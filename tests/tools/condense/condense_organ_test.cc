@@ -3,7 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <tuple>
+
+#include "model/scene/compliance_file.h"
+#include "model/scene/press.h"
+#include "model/scene/tissue_map.h"
+#include "tests/support/mesh_files.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test_scene.h"
 #include "tools/program/run_program.h"
 
 namespace tact::tools::condense::condense_organ_test {
@@ -35,6 +43,85 @@ TEST(CondenseOrgan, FillsASurfaceAndFindsItSoftestFarFromWhereItIsHeld) {
     if (input.surface.vertex_m[v].z < input.surface.vertex_m[bottom].z) bottom = v;
   }
   EXPECT_GT(map->regular_times_E_per_m[top], map->regular_times_E_per_m[bottom] + 5.0F);
+}
+
+/// A scene of that ball with a lump of ten times its modulus, 10 mm below its top.
+model::scene::Scene ball_scene(double radius_m) {
+  model::scene::Scene scene = tests::make_plate_scene();
+  scene.organ_mesh = tests::make_ball(0.03, 3);
+  scene.law = "compliance";
+  scene.compliance = {.map_path = {}, .working_depth_m = 0.008};
+  scene.contact.tear_force_N = 0.1;
+  scene.contact.sliding_stiffness_N_per_m = 0.0;
+  scene.elastic = {.youngs_modulus_Pa = 4000.0,
+                   .poisson_ratio = 0.45,
+                   .fixed_min_m = {-1.0, -1.0, -1.0},
+                   .fixed_max_m = {1.0, 1.0, -0.015}};
+  if (radius_m > 0.0)
+    scene.elastic->inclusions = {
+        {.center_m = {0.0, 0.0, 0.02}, .radius_m = radius_m, .youngs_modulus_Pa = 40000.0}};
+  return scene;
+}
+
+struct Presses {
+  double over_N = 0.0, beside_N = 0.0;
+};
+
+/// Forces of presses 5 mm deep, where the ball looks up and where it looks aside.
+Presses pressed(model::scene::Scene scene) {
+  const tests::TempDirectory folder;
+  scene.compliance.map_path = folder.path() + "/ball.compliance";
+  auto input = condense_input(scene);
+  input->settings.mesh_size_m = 0.005;
+  CondenseFacts facts;
+  const auto map = condense_organ(*input, facts);
+  EXPECT_TRUE(map) << map.error().message;
+  EXPECT_TRUE(model::scene::write_compliance_map(*map, scene.compliance.map_path));
+  const auto presser = model::scene::Presser::make(scene, {.step_m = 1e-4, .depth_m = 0.005});
+  EXPECT_TRUE(presser) << presser.error().message;
+  const auto press_N = [&](const model::Vec3& way) {
+    const auto& normal = scene.organ_mesh.vertex_normal;
+    const auto vertex =
+        std::ranges::max_element(normal, {}, [&](const model::Vec3& n) { return dot(n, way); });
+    const auto place = static_cast<std::uint32_t>(vertex - normal.begin());
+    return (*presser)->press({place, model::scene::PressWay::kSquare}).force_N;
+  };
+  return {.over_N = press_N({0.0, 0.0, 1.0}), .beside_N = press_N({1.0, 0.0, 0.1})};
+}
+
+TEST(CondenseOrgan, ALumpIsFeltOverItAndNotBesideIt) {
+  const Presses plain = pressed(ball_scene(0.0)), lump = pressed(ball_scene(0.008));
+  EXPECT_GT(lump.over_N / plain.over_N, 1.07) << "more than a hand notices";
+  EXPECT_NEAR(lump.beside_N / plain.beside_N, 1.0, 0.01);
+}
+
+TEST(CondenseOrgan, ALumpBelongsToItsMapAndLiesInTheOrgan) {
+  const tests::TempDirectory folder;
+  model::scene::Scene scene = ball_scene(0.007);
+  scene.compliance.map_path = folder.path() + "/ball.compliance";
+  CondenseFacts facts;
+  const auto map = condense_organ(*condense_input(scene), facts);
+  ASSERT_TRUE(map) << map.error().message;
+  ASSERT_TRUE(model::scene::write_compliance_map(*map, scene.compliance.map_path));
+  EXPECT_TRUE(read_scene_map(scene));
+  scene.elastic->youngs_modulus_Pa *= 2.0;
+  EXPECT_FALSE(read_scene_map(scene)) << "the ratio counts";
+  scene.elastic->inclusions[0].youngs_modulus_Pa *= 2.0;
+  EXPECT_TRUE(read_scene_map(scene));
+  scene.elastic->inclusions.clear();
+  const auto other = read_scene_map(scene);
+  ASSERT_FALSE(other);
+  EXPECT_NE(other.error().message.find("[[elastic.inclusion]]"), std::string::npos);
+
+  for (const auto& [center_m, radius_m, words] :
+       {std::tuple<model::Vec3, double, const char*>{
+            {0.0, 0.0, 0.02}, 0.011, "1 of 1 has its centre 10 mm below the surface"},
+        {{0.0, 0.0, 0.04}, 0.003, "1 of 1 has its centre 10 mm outside the surface"}}) {
+    scene.elastic->inclusions = {{center_m, radius_m, 40000.0}};
+    const auto refused = condense_organ(*condense_input(scene), facts);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find(words), std::string::npos) << refused.error().message;
+  }
 }
 
 TEST(CondenseOrgan, RefusesASurfaceWithoutAnInside) {
