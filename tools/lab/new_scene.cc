@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // tact-lab new-scene: a mesh in, a scene out.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -31,11 +33,14 @@ using model::Result;
 using new_scene::Organ;
 using new_scene::OutputNames;
 
+/// A scene whose map is still to come, as tools/run starts it.
+constexpr std::array kTipAlone{"--set", "law=rhombus", "--set", "varies_by_place=false"};
+
 struct Options {
   new_scene::OrganOrder organ{.source = {}, .faces = 6000};
   std::string out;
   double youngs_modulus_Pa = 5000.0, poisson_ratio = 0.45;
-  bool plan = false, force = false;
+  bool plan = false, without_map = false, force = false;
 };
 
 void add_options(CLI::App& app, Options& o) {
@@ -62,6 +67,10 @@ void add_options(CLI::App& app, Options& o) {
       "--plan", o.plan,
       "also solve references and let tact-lab plan choose the law for this PC: minutes to an "
       "hour; needs CalculiX, which Debian 13 has not");
+  app.add_flag("--without-map", o.without_map,
+               "leave the minutes of finite elements out: the scene is felt by the tip's own law "
+               "until tact-lab condense has made its map")
+      ->excludes("--plan");
   app.add_flag("--force", o.force, "replace the files of an earlier run");
 }
 
@@ -89,6 +98,7 @@ std::optional<Error> check_before(const Options& o, const OutputNames& names) {
     if (auto error = new_scene::check_new(names.organ, std::string(mesh::kRepairedBeginning),
                                           source, o.force))
       return error;
+  if (o.without_map) return std::nullopt;
   const auto gmsh = condense::gmsh_version();
   return gmsh ? std::nullopt : std::optional(gmsh.error());
 }
@@ -189,10 +199,13 @@ Result<bool> make_scene(const Options& o, const OutputNames& names, const std::s
     if (auto error = model::io::write_file(made->organ, organ->obj_text)) return *error;
   if (auto error = model::io::write_file(made->tool, new_scene::tool_mesh())) return *error;
   if (auto error = write_scene("compliance")) return *error;
-  if (auto error = condense(made->scene, made->map)) return *error;
+  std::vector<std::string> check{made->scene, "--check"};
+  if (o.without_map)
+    check.insert(check.end(), kTipAlone.begin(), kTipAlone.end());
+  else if (auto error = condense(made->scene, made->map))
+    return *error;
   // Its own message if it does not.
-  if (const auto taken = new_scene::ask("tactd", {made->scene, "--check"}, log); !taken)
-    return taken.error();
+  if (const auto taken = new_scene::ask("tactd", check, log); !taken) return taken.error();
   bool is_planned = o.plan;
   if (o.plan) {
     if (auto error = write_scene("auto")) return *error;
@@ -224,8 +237,15 @@ std::string as_word(const std::string& path) {
   return "'" + word + "'";
 }
 
-void report_what_next(const OutputNames& names, bool was_asked, bool is_planned) {
+void report_what_next(const OutputNames& names, const Options& o, bool is_planned) {
   const std::string scene = as_word(names.scene);
+  if (o.without_map) {
+    fmt::print(
+        "\nFeel its tip alone:\n  tactd {} {} --free-run --seconds 5\nIts map, minutes:\n"
+        "  tact-lab condense {} --out {}\n",
+        scene, fmt::join(kTipAlone, " "), scene, as_word(names.map));
+    return;
+  }
   report("law",
          is_planned ? "as tact-lab plan has chosen for this PC" : "compliance, from the map");
   fmt::print("\nFeel it:\n  tactd {} --free-run --seconds 5\n", scene);
@@ -234,7 +254,7 @@ void report_what_next(const OutputNames& names, bool was_asked, bool is_planned)
         "On another PC its times differ; there, once:\n  tact-lab plan {} --reference {} "
         "--tool-reference {}\n",
         scene, as_word(names.reference), as_word(names.tool_reference));
-  else if (!was_asked)
+  else if (!o.plan)
     fmt::print(
         "Is a faster law good enough? The same with --plan --force compares them, by CalculiX.\n");
 }
@@ -249,7 +269,7 @@ Result<int> run(const program::Program&, Options& o) {
   if (!is_planned)
     return Error{about(is_planned.error().message, folder->path(), *names),
                  is_planned.error().code};
-  report_what_next(*names, o.plan, *is_planned);
+  report_what_next(*names, o, *is_planned);
   return 0;
 }
 

@@ -20,7 +20,8 @@ using model::mesh::SurfaceMesh;
 constexpr double kMinSize_m = 0.005, kMaxSize_m = 2.5;
 
 std::vector<std::string> repair_options(const OrganOrder& order) {
-  std::vector<std::string> options{"--weld", "--drop-degenerate", "--largest", "--close-holes"};
+  std::vector<std::string> options{"--weld", "--drop-degenerate", "--largest", "--hollow-refused",
+                                   "--close-holes"};
   if (order.smooth) options.emplace_back("--smooth");
   options.push_back(fmt::format("--decimate={}", order.faces));
   return options;

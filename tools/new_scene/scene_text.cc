@@ -46,23 +46,24 @@ std::string tool_mesh() { return kForceps; }
 std::string scene_text(const SceneValues& values, const ScenePlacement& place) {
   const double nu = values.poisson_ratio;
   const double of_liver = values.youngs_modulus_Pa / (1.0 - nu * nu) / kLiver_Pa;
+  const double depth_ratio = place.working_depth_m / kMaxDepth_m;  // a thin organ pulls no further
   const double press_m = mesh::rounded_m(kPress_ratio * place.working_depth_m);
   using fmt::arg;
-  return fmt::format(fmt::runtime(kScene), arg("organ", quoted(values.source)),
-                     arg("name", quoted(values.name)), arg("law", quoted(values.law)),
-                     arg("map", quoted(values.map)), arg("tool", quoted(values.tool)),
-                     arg("mesh", quoted(values.mesh)), arg("mesh_unit_m", values.mesh_unit_m),
-                     arg("vertex_colors", values.has_colors),
-                     arg("position_m", mesh::toml_of(place.position_m)), arg("vertex", place.top),
-                     arg("fixed_min_m", mesh::toml_of(place.held.min_m)),
-                     arg("fixed_max_m", mesh::toml_of(place.held.max_m)),
-                     arg("youngs_modulus_Pa", values.youngs_modulus_Pa), arg("poisson_ratio", nu),
-                     arg("working_depth_m", mesh::rounded_m(place.working_depth_m)),
-                     arg("press_m", press_m), arg("grip_m", mesh::rounded_m(press_m / 2.0)),
-                     arg("rhombus_normal_N_per_m", four_digits(1.604 * of_liver)),
-                     arg("rhombus_tangential_N_per_m", four_digits(0.8257 * of_liver)),
-                     arg("pull_N_per_m", four_digits(50.3 * of_liver)),
-                     arg("tear_force_N", four_digits(std::clamp(0.4 * of_liver, 0.01, 20.0))));
+  return fmt::format(
+      fmt::runtime(kScene), arg("organ", quoted(values.source)), arg("name", quoted(values.name)),
+      arg("law", quoted(values.law)), arg("map", quoted(values.map)),
+      arg("tool", quoted(values.tool)), arg("mesh", quoted(values.mesh)),
+      arg("mesh_unit_m", values.mesh_unit_m), arg("vertex_colors", values.has_colors),
+      arg("position_m", mesh::toml_of(place.position_m)), arg("vertex", place.top),
+      arg("fixed_min_m", mesh::toml_of(place.held.min_m)),
+      arg("fixed_max_m", mesh::toml_of(place.held.max_m)),
+      arg("youngs_modulus_Pa", values.youngs_modulus_Pa), arg("poisson_ratio", nu),
+      arg("working_depth_m", mesh::rounded_m(place.working_depth_m)), arg("press_m", press_m),
+      arg("grip_m", mesh::rounded_m(press_m / 2.0)),
+      arg("rhombus_normal_N_per_m", four_digits(1.604 * of_liver)),
+      arg("rhombus_tangential_N_per_m", four_digits(0.8257 * of_liver)),
+      arg("pull_N_per_m", four_digits(50.3 * of_liver)),
+      arg("tear_force_N", four_digits(std::clamp(0.4 * depth_ratio * of_liver, 0.01, 20.0))));
 }
 
 }  // namespace tact::tools::new_scene
