@@ -61,7 +61,7 @@ def repair(points, triangles, asked, tell):
         if nested and asked.hollow_refused:
             raise Refused(f"{asked.source}: inside of the largest part lies one of {nested[0]:.0%} of its volume: a cavity, "
                           "which would be filled, or an organ of its own; "
-                          f"a full organ: tact-mesh {asked.source} --weld --largest --out full.obj")
+                          "a full organ: tact-mesh ORGAN --weld --largest --out full.obj")
         points, triangles = largest(points, triangles)
         inside = f"; inside of it {shares}, now filled" if (shares := ", ".join(f"{ratio:.0%}" for ratio in nested)) else ""
         told("largest", parts - 1, f"{parts - 1} of {parts} parts dropped, {faces - len(triangles)} faces{inside}")
