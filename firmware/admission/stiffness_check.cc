@@ -37,18 +37,21 @@ std::string times_text(const model::scene::Scene& scene, std::string_view sectio
 
 /// What to write where the law is 1 / `ratio` times too stiff: all that its force is proportional
 /// to.
-std::string softer_text(const model::scene::Scene& scene, const model::scene::TissueLaw& law,
-                        double ratio) {
-  if (scene.pull && law.pull_is_stiffer())
+std::string softer_text(const model::scene::Scene& scene, bool is_pull, double ratio) {
+  const model::scene::LawRow& row = *model::scene::find_law(scene.law);
+  if (scene.pull && row.curve != nullptr && is_pull)
     return fmt::format("pull.stiffness_N_per_m = {:.4g}",
                        rounded_down(ratio * scene.pull->stiffness_N_per_m));
-  std::string text =
-      times_text(scene, scene.law, model::scene::find_law(scene.law)->stiffness_keys, ratio);
+  std::string text = times_text(scene, scene.law, row.stiffness_keys, ratio);
   if (scene.elastic && (text.empty() || scene.varies_by_place))
     text += fmt::format("{}elastic.youngs_modulus_Pa = {:.4g}", text.empty() ? "" : " and ",
                         rounded_down(ratio * scene.elastic->youngs_modulus_Pa));
   if (scene.elastic && !scene.elastic->inclusions.empty())
     text += fmt::format(" and {:.3g} times each elastic.inclusion.youngs_modulus_Pa", ratio);
+  // Its own pull stiffens up to there.
+  if (row.curve != nullptr && is_pull)
+    text += fmt::format(" and contact.tear_force_N = {:.4g}",
+                        rounded_down(ratio * scene.contact.tear_force_N));
   return text;
 }
 
@@ -137,9 +140,10 @@ Error too_stiff(const model::scene::Scene& scene, const model::scene::TissueLaw&
                                     : std::string("the tissue, held and pulled along its surface,");
   const double one_N_per_m = is_law ? demand.law_N_per_m : demand.sliding_N_per_m;
   const double allowed_N_per_m = demand.limit_N_per_m / demand.spheres;
-  const std::string remedy = is_law ? softer_text(scene, law, allowed_N_per_m / one_N_per_m)
-                                    : fmt::format("contact.sliding_stiffness_N_per_m = {:.4g}",
-                                                  rounded_down(allowed_N_per_m));
+  const std::string remedy =
+      is_law ? softer_text(scene, law.pull_is_stiffer(), allowed_N_per_m / one_N_per_m)
+             : fmt::format("contact.sliding_stiffness_N_per_m = {:.4g}",
+                           rounded_down(allowed_N_per_m));
   return Error{fmt::format(
       "{}: {} is too stiff: {:.4g} N/m on {} is {:.4g} N/m, this device is stable to {:.4g} N/m at "
       "{:g} Hz; {}; write {} or less{}",
@@ -224,7 +228,7 @@ model::Result<PressCheck> check_sweep(const model::scene::Scene& scene,
         "this device is stable to {:.4g} N/m at {:g} Hz; {}; write {} or less{}",
         scene.path, hand.slope_N_per_m.value, name_of(hand.place), 1e3 * hand.slope_N_per_m.depth_m,
         limit_N_per_m, scene.rate_Hz, device_text(device),
-        softer_text(scene, law, limit_N_per_m / hand.slope_N_per_m.value),
+        softer_text(scene, false, limit_N_per_m / hand.slope_N_per_m.value),
         rate_text(device, static_cast<double>(scene.tool.spheres.size()) * law.damping_Ns_per_m(),
                   hand.slope_N_per_m.value))};
   PressCheck out{.presses = sweep.results.size(), .note = note_of(scene, sweep)};

@@ -95,7 +95,6 @@ TEST(StiffnessCheck, NamesThePullWhereItIsTheStifferOne) {
 TEST(StiffnessCheck, EndsInTheNumbersToWriteWhereTheLawIsTooStiff) {
   model::scene::Scene scene = tests::make_plate_scene();
   scene.contact.sliding_stiffness_N_per_m = 1.0;
-  scene.contact.tear_force_N = 0.1;  // the softer one reaches it, too
   const auto tissue = std::move(*model::scene::make_tissue(scene));
   EXPECT_GT(tissue->law().stiffness_N_per_m(), 50.0);
   hal::DeviceInfo device = device_with(0.05);
@@ -104,20 +103,22 @@ TEST(StiffnessCheck, EndsInTheNumbersToWriteWhereTheLawIsTooStiff) {
   ASSERT_FALSE(refused);
   EXPECT_TRUE(has(refused.error(), "law rhombus is too stiff")) << refused.error().message;
   const std::string& text = refused.error().message;
-  double normal_N_per_m = 0.0, tangential_N_per_m = 0.0;
+  double normal_N_per_m = 0.0, tangential_N_per_m = 0.0, tear_N = 0.0;
   const std::size_t at = text.find("write rhombus.normal");
   ASSERT_NE(at, text.npos) << text;
   ASSERT_EQ(std::sscanf(text.c_str() + at,
                         "write rhombus.normal_stiffness_N_per_m = %lf and "
-                        "rhombus.tangential_stiffness_N_per_m = %lf or less",
-                        &normal_N_per_m, &tangential_N_per_m),
-            2)
+                        "rhombus.tangential_stiffness_N_per_m = %lf and contact.tear_force_N = "
+                        "%lf or less",
+                        &normal_N_per_m, &tangential_N_per_m, &tear_N),
+            3)
       << text;
   auto& chain = scene.laws.of<model::indent::RhombusParameters>().chain;
   EXPECT_NEAR(normal_N_per_m / chain.normal_stiffness_N_per_m,
               tangential_N_per_m / chain.tangential_stiffness_N_per_m, 1e-3);
   chain.normal_stiffness_N_per_m = normal_N_per_m;
   chain.tangential_stiffness_N_per_m = tangential_N_per_m;
+  scene.contact.tear_force_N = tear_N;
   const auto softer = std::move(*model::scene::make_tissue(scene));
   const auto fits = check_renderable(scene, *softer, device);
   ASSERT_TRUE(fits) << fits.error().message;
