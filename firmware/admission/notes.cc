@@ -36,6 +36,20 @@ std::string open_organ_note(const model::scene::Scene& scene) {
       scene.path, edges);
 }
 
+std::string parts_note(const model::scene::Scene& scene) {
+  const std::size_t parts = model::mesh::count_parts(scene.organ_mesh);
+  std::string text;
+  if (parts > 1 && scene.look.piece_color_ratio.empty())
+    text = fmt::format(
+        "the organ has {} parts that share no edge, and all are felt; is only one the organ? "
+        "tact-mesh {} --largest keeps that with most faces",
+        parts, scene.organ.mesh_path);
+  if (scene.organ.is_turned)
+    text += fmt::format("{}the normals of {} point inwards and were turned",
+                        text.empty() ? "" : "; ", scene.organ.mesh_path);
+  return text.empty() ? text : fmt::format("{}: {}", scene.path, text);
+}
+
 std::string torque_note(const model::scene::Scene& scene, const hal::DeviceInfo& device) {
   double lever_m = 0.0;
   for (const model::contact::ProbeSphere& sphere : scene.tool.spheres)

@@ -25,6 +25,10 @@ std::string inertia_note(const model::scene::Scene& scene, const model::scene::T
 /// (model/contact/triangle_tree.h).
 std::string open_organ_note(const model::scene::Scene& scene);
 
+/// What tact-mesh notes of the organ: parts that share no edge, unless [look] paints them, and
+/// normals that were turned.
+std::string parts_note(const model::scene::Scene& scene);
+
 /// The organ's size does not fit the workspace, probably by a wrong unit, or no stroke of the hand
 /// brings a sphere of the tool to the surface.
 std::string reach_note(const model::scene::Scene& scene);

@@ -8,24 +8,71 @@
 #include <vector>
 
 #include "model/law/haptic_limit.h"
+#include "model/scene/laws.h"
 
 namespace tact::firmware::admission {
 namespace {
 
 using model::Error;
 
-/// The key or section to change when the law is too stiff.
-std::string stiff_key(const model::scene::Scene& scene, const model::scene::TissueLaw& law) {
-  if (scene.law == "compliance") return "the tissue by elastic.youngs_modulus_Pa";
-  if (scene.pull && law.pull_is_stiffer()) return "pull.stiffness_N_per_m";
-  return fmt::format("[{}]", scene.law);
-}
-
 /// Rounds down, so that a printed limit is itself accepted.
 double rounded_down(double value) {
-  // Four digits, as {:.4g} prints them.
+  // Four digits, as {:.4g} prints them; what is four digits already stays, whatever its last bit.
   const double unit = std::pow(10.0, std::floor(std::log10(value)) - 3.0);
-  return value > 0.0 ? unit * std::floor(value / unit) : 0.0;
+  return value > 0.0 ? unit * std::floor(value / unit * (1.0 + 1e-12)) : 0.0;
+}
+
+/// "a = 3" with each key times `ratio`, so that a scene that says so is taken.
+std::string times_text(const model::scene::Scene& scene, std::string_view section,
+                       std::span<const std::string_view> keys, double ratio) {
+  model::scene::Scene changed = scene;  // its laws' numbers are asked by pointers
+  const model::ParameterList list =
+      model::scene::parameters_of(*model::scene::find_law(section), changed);
+  std::string text;
+  for (const std::string_view key : keys)
+    text += fmt::format("{}{}.{} = {:.4g}", text.empty() ? "" : " and ", section, key,
+                        rounded_down(ratio * list.find(key).value()));
+  return text;
+}
+
+/// What to write where the law is 1 / `ratio` times too stiff: all that its force is proportional
+/// to.
+std::string softer_text(const model::scene::Scene& scene, bool is_pull, double ratio) {
+  const model::scene::LawRow& row = *model::scene::find_law(scene.law);
+  if (scene.pull && row.curve != nullptr && is_pull)
+    return fmt::format("pull.stiffness_N_per_m = {:.4g}",
+                       rounded_down(ratio * scene.pull->stiffness_N_per_m));
+  std::string text = times_text(scene, scene.law, row.stiffness_keys, ratio);
+  if (scene.elastic && (text.empty() || scene.varies_by_place))
+    text += fmt::format("{}elastic.youngs_modulus_Pa = {:.4g}", text.empty() ? "" : " and ",
+                        rounded_down(ratio * scene.elastic->youngs_modulus_Pa));
+  if (scene.elastic && !scene.elastic->inclusions.empty())
+    text += fmt::format(" and {:.3g} times each elastic.inclusion.youngs_modulus_Pa", ratio);
+  // Its own pull stiffens up to there.
+  if (row.curve != nullptr && is_pull)
+    text += fmt::format(" and contact.tear_force_N = {:.4g}",
+                        rounded_down(ratio * scene.contact.tear_force_N));
+  return text;
+}
+
+/// HL-1: the rate from which on the device can render so much; empty where no rate is enough.
+std::string rate_text(const hal::DeviceInfo& device, double damping_Ns_per_m,
+                      double needed_N_per_m) {
+  const double period_s =
+      2.0 * ((device.at_tool->damping_Ns_per_m - damping_Ns_per_m) / needed_N_per_m -
+             device.at_tool->delay_s);
+  const double step_Hz = 100.0, rate_Hz = step_Hz * std::ceil((1.0 + 1e-9) / (period_s * step_Hz));
+  const bool is_one = period_s > 0.0 && rate_Hz <= model::scene::kRate_Hz.high;
+  return is_one ? fmt::format(", or rate_Hz = {:g}", rate_Hz) : std::string();
+}
+
+std::string device_text(const hal::DeviceInfo& device) {
+  return fmt::format(
+      "a device with more damping shows more{}, device.kind = \"sim-ideal\" shows it as no real "
+      "one "
+      "can",
+      device.damping_key.empty() ? std::string()
+                                 : fmt::format(" ({} says what this one has)", device.damping_key));
 }
 
 std::string spheres_text(std::size_t n) {
@@ -72,22 +119,17 @@ struct Demand {
 // HL-1: B <= b - K (T/2 + t_d)
 Error damps_too_much(const model::scene::Scene& scene, const Demand& demand, double own_Ns_per_m) {
   const double needed_N_per_m = demand.needed_N_per_m();
+  const double ratio = own_Ns_per_m * (1.0 - needed_N_per_m / demand.undamped_limit_N_per_m) /
+                       demand.spheres / demand.damping_Ns_per_m;
   return Error{fmt::format(
       "{}: law {} damps too much: {:.4g} N s/m on {}, where this device has {:.4g} N s/m of its "
-      "own and {:.4g} N/m to show at {:g} Hz; lower the damping of [{}] to {:.4g} N s/m or less",
+      "own and {:.4g} N/m to show at {:g} Hz; write {} or less",
       scene.path, scene.law, demand.damping_Ns_per_m, spheres_text(scene.tool.spheres.size()),
-      own_Ns_per_m, needed_N_per_m, scene.rate_Hz, scene.law,
-      rounded_down(own_Ns_per_m * (1.0 - needed_N_per_m / demand.undamped_limit_N_per_m) /
-                   demand.spheres))};
+      own_Ns_per_m, needed_N_per_m, scene.rate_Hz,
+      times_text(scene, scene.law, {{model::scene::find_law(scene.law)->damping_key}}, ratio))};
 }
 
-std::string damping_hint(const hal::DeviceInfo& device) {
-  return device.damping_key.empty()
-             ? std::string()
-             : fmt::format(" ({} says what this one has)", device.damping_key);
-}
-
-/// Names the spring that is too stiff, the key that softens it, and the value to set.
+/// Names the spring that is too stiff, and the value to write.
 Error too_stiff(const model::scene::Scene& scene, const model::scene::TissueLaw& law,
                 const Demand& demand, const hal::DeviceInfo& device) {
   const bool is_law =
@@ -96,16 +138,19 @@ Error too_stiff(const model::scene::Scene& scene, const model::scene::TissueLaw&
   const std::string what = is_law   ? fmt::format("law {}", scene.law)
                            : is_set ? std::string("contact.sliding_stiffness_N_per_m")
                                     : std::string("the tissue, held and pulled along its surface,");
-  const std::string remedy = is_law   ? "soften " + stiff_key(scene, law)
-                             : is_set ? std::string("lower it")
-                                      : std::string("set contact.sliding_stiffness_N_per_m");
   const double one_N_per_m = is_law ? demand.law_N_per_m : demand.sliding_N_per_m;
+  const double allowed_N_per_m = demand.limit_N_per_m / demand.spheres;
+  const std::string remedy =
+      is_law ? softer_text(scene, law.pull_is_stiffer(), allowed_N_per_m / one_N_per_m)
+             : fmt::format("contact.sliding_stiffness_N_per_m = {:.4g}",
+                           rounded_down(allowed_N_per_m));
   return Error{fmt::format(
       "{}: {} is too stiff: {:.4g} N/m on {} is {:.4g} N/m, this device is stable to {:.4g} N/m at "
-      "{:g} Hz; {} to {:.4g} N/m or less, raise rate_Hz, or take a device with more damping{}",
+      "{:g} Hz; {}; write {} or less{}",
       scene.path, what, one_N_per_m, spheres_text(scene.tool.spheres.size()),
-      demand.spheres * one_N_per_m, demand.limit_N_per_m, scene.rate_Hz, remedy,
-      rounded_down(demand.limit_N_per_m / demand.spheres), damping_hint(device))};
+      demand.spheres * one_N_per_m, demand.limit_N_per_m, scene.rate_Hz, device_text(device),
+      remedy,
+      rate_text(device, demand.spheres * demand.damping_Ns_per_m, demand.needed_N_per_m()))};
 }
 
 // HL-1. All spheres may be on the stiffest point and damp at once.
@@ -180,10 +225,12 @@ model::Result<PressCheck> check_sweep(const model::scene::Scene& scene,
   if (!(hand.slope_N_per_m.value <= limit_N_per_m))  // NaN counts as too stiff
     return Error{fmt::format(
         "{}: the whole tool is too stiff where the hand presses: {:.4g} N/m at {}, {:.3g} mm deep; "
-        "this device is stable to {:.4g} N/m at {:g} Hz; soften {}, raise rate_Hz, or take a "
-        "device with more damping{}",
+        "this device is stable to {:.4g} N/m at {:g} Hz; {}; write {} or less{}",
         scene.path, hand.slope_N_per_m.value, name_of(hand.place), 1e3 * hand.slope_N_per_m.depth_m,
-        limit_N_per_m, scene.rate_Hz, stiff_key(scene, law), damping_hint(device))};
+        limit_N_per_m, scene.rate_Hz, device_text(device),
+        softer_text(scene, false, limit_N_per_m / hand.slope_N_per_m.value),
+        rate_text(device, static_cast<double>(scene.tool.spheres.size()) * law.damping_Ns_per_m(),
+                  hand.slope_N_per_m.value))};
   PressCheck out{.presses = sweep.results.size(), .note = note_of(scene, sweep)};
   if (const model::scene::PressResult* stiffest = sweep.stiffest()) {
     out.slope_N_per_m = stiffest->slope_N_per_m.value;

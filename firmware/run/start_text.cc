@@ -22,6 +22,7 @@ std::vector<std::string> start_notes(const model::scene::Scene& scene, const Loo
   if (is_check) {
     notes.push_back(admission::reach_note(scene));
     notes.push_back(admission::open_organ_note(scene));
+    notes.push_back(admission::parts_note(scene));
     notes.push_back(admission::torque_note(scene, parts.device->info()));
     if (parts.presses) notes.push_back(parts.presses->note);
   }

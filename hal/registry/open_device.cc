@@ -31,12 +31,17 @@ using model::reader::Keys;
 
 using Opened = Result<std::unique_ptr<Device>>;
 
-Opened open_sim_delta(const model::scene::Scene& scene) {
-  auto device = sim::make_sim_delta(scene.device.of<sim::SimDeviceSettings>(), scene.hand,
-                                    mounting_of(scene.device));
+Opened simulated(const model::scene::Scene& scene, const sim::SimDeviceSettings& settings) {
+  auto device = sim::make_sim_delta(settings, scene.hand, mounting_of(scene.device));
   if (!device) return device.error();
   return std::unique_ptr<Device>(std::move(*device));
 }
+
+Opened open_sim_delta(const model::scene::Scene& scene) {
+  return simulated(scene, scene.device.of<sim::SimDeviceSettings>());
+}
+
+Opened open_sim_ideal(const model::scene::Scene& scene) { return simulated(scene, sim::kIdeal); }
 
 /// A device's own function.
 template <Opened (*open)(const DeviceSettings&, double)>
@@ -74,6 +79,7 @@ struct Row {
 };
 constexpr Row kRows[] = {
     {"sim-delta", open_sim_delta, visit_section<sim::SimDeviceSettings>, {}, true},
+    {"sim-ideal", open_sim_ideal, nullptr, {}, true},
     {"can-odrive", opened<odrive::open_can_odrive>, visit_can},
     {"can-cia402", opened<cia402::open_can_cia402>, visit_can},
     {"can-moteus", opened<moteus::open_can_moteus>, visit_can},
@@ -97,7 +103,7 @@ void StopAndDelete::operator()(Device* device) const {
 }
 
 void visit_device(Keys& k, DeviceSettings& out) {
-  k.text("kind", "sim-delta is the simulated device; tactd --list-devices", out.kind);
+  k.text("kind", "sim-delta and sim-ideal are simulated; tactd --list-devices", out.kind);
   k.vector("base_orientation_deg", {-360.0, 360.0},
            "turn of its base, axis times angle; 0: axis towards you", out.base_orientation_deg,
            model::Need::kOptional);

@@ -68,20 +68,29 @@ SimDelta::SimDelta(const SimDeviceSettings& device, const model::HandSettings& h
 }
 
 DeviceInfo SimDelta::info() const {
-  return {.name = "simulated delta 360 x 300 mm",
-          .max_force_N = kMaxForce_N,
-          .max_torque_Nm = kMaxTorque_Nm,
-          .workspace_radius_m = kWorkspaceRadius_m,
-          .workspace_half_length_m = kWorkspaceHalfLength_m,
-          .grip = {GripKind::kForce, kGripperForce_N},
-          .at_tool = delta_at_tool(
-              delta_,
-              {.viscous_Nms_per_rad = settings_.joint_damping_Nms_per_rad,
-               .coulomb_Nm = settings_.joint_friction_Nm,
-               .counts_per_turn = settings_.counts_per_turn,
-               .delay_s = settings_.sample_delay_s},
-              delta::workspace_samples_D(kWorkspaceRadius_m, kWorkspaceHalfLength_m, kMiddle_D_m)),
-          .damping_key = "device.sim.joint_damping_Nms_per_rad"};
+  DeviceInfo info{
+      .name = "simulated delta 360 x 300 mm",
+      .max_force_N = kMaxForce_N,
+      .max_torque_Nm = kMaxTorque_Nm,
+      .workspace_radius_m = kWorkspaceRadius_m,
+      .workspace_half_length_m = kWorkspaceHalfLength_m,
+      .grip = {GripKind::kForce, kGripperForce_N},
+      .at_tool = delta_at_tool(
+          delta_,
+          {.viscous_Nms_per_rad = settings_.joint_damping_Nms_per_rad,
+           .coulomb_Nm = settings_.joint_friction_Nm,
+           .counts_per_turn = settings_.counts_per_turn,
+           .delay_s = settings_.sample_delay_s},
+          delta::workspace_samples_D(kWorkspaceRadius_m, kWorkspaceHalfLength_m, kMiddle_D_m)),
+      .damping_key = "device.sim.joint_damping_Nms_per_rad"};
+  if (!settings_.is_ideal) return info;
+  info.name = "IDEAL simulated delta, to look at alone";
+  info.caution =
+      "device.kind \"sim-ideal\" is ideal: no friction, no delay, and damped as no real device is; "
+      "judge no stability by it";
+  info.at_tool->damping_Ns_per_m += hand_.settings().damping_Ns_per_m;
+  info.damping_key.clear();
+  return info;
 }
 
 Vec3 SimDelta::true_position_W_m() const RT_SAFE { return point_W(plant_.position_D_m()); }

@@ -43,6 +43,7 @@ struct SimDeviceSettings {
   double joint_friction_Nm = 0.0;          // Coulomb, per joint
   double joint_damping_Nms_per_rad = 0.0;  // viscous, per joint
   double observer_bandwidth_Hz = 0.0;      // of the velocity observer
+  bool is_ideal = false;                   // no device: counts on the damping of its hand, too
 
   void visit(model::ParameterVisitor& k) {
     k.number("counts_per_turn", {100.0, 1e8, model::kHard}, "encoder counts of one turn of a joint",
@@ -57,6 +58,12 @@ struct SimDeviceSettings {
              observer_bandwidth_Hz);
   }
 };
+
+/// sim-ideal, for who only wants to see: with the damping of its hand it bears 40 kN/m at 1 kHz.
+inline constexpr SimDeviceSettings kIdeal{.counts_per_turn = 1e8,
+                                          .joint_damping_Nms_per_rad = 1.0,
+                                          .observer_bandwidth_Hz = 500.0,
+                                          .is_ideal = true};
 
 class SimDelta final : public Device {
  public:

@@ -2,8 +2,9 @@
 #include "model/indent/hunt_crossley.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+
+#include "model/law/ring_taper.h"
 
 namespace tact::model::indent {
 
@@ -26,10 +27,7 @@ double HuntCrossley::damping_Ns_per_m(double depth_m) const RT_SAFE {
 }
 
 std::size_t HuntCrossley::profile(double depth_m, std::span<double> ring_m) const RT_SAFE {
-  const std::array<double, 2> u_m{std::fmax(depth_m, 0.0), 0.0};
-  const std::size_t count = std::min(u_m.size(), ring_m.size());
-  std::copy_n(u_m.begin(), count, ring_m.begin());
-  return count;
+  return law::lone_profile(depth_m, ring_m);
 }
 
 void visit(ParameterVisitor& v, HuntCrossleyParameters& p) {

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// ring_taper.h - makes the profile of an indentation end at zero with zero slope.
+// ring_taper.h - how the profile of an indentation ends: at zero, with zero slope, or at once.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <span>
 
 #include "model/rt.h"
 
@@ -15,6 +18,14 @@ inline double ring_taper(std::size_t ring, std::size_t rings) RT_SAFE {
   const double x = static_cast<double>(ring) / static_cast<double>(rings);
   const double t = std::fmax(0.0, (x - kStart) / (1.0 - kStart));
   return 1.0 - t * t * (3.0 - 2.0 * t);
+}
+
+/// The profile of a law that models the touched point alone: u_0 = d, u_1 = 0; nothing in pull.
+inline std::size_t lone_profile(double depth_m, std::span<double> ring_m) RT_SAFE {
+  const std::array<double, 2> u_m{std::fmax(depth_m, 0.0), 0.0};
+  const std::size_t count = std::min(u_m.size(), ring_m.size());
+  std::copy_n(u_m.begin(), count, ring_m.begin());
+  return count;
 }
 
 }  // namespace tact::model::law

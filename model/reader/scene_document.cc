@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <filesystem>
 #include <optional>
@@ -146,6 +148,13 @@ std::string path_beside(const std::string& document, const std::string& file) {
 
 Result<SceneDocument> load_scene_document(const std::string& path,
                                           const std::vector<std::string>& overrides) {
+  const std::string ending = std::filesystem::path(path).extension().string();
+  constexpr std::array<std::string_view, 8> kMeshes{".obj", ".stl", ".ply",  ".vtk",
+                                                    ".vtp", ".off", ".gltf", ".glb"};
+  if (std::ranges::find(kMeshes, ending) != kMeshes.end())
+    return Error{fmt::format(
+        "{}: is a mesh, no scene; make one of it: tact-lab new-scene {} --out mine.toml", path,
+        path)};
   const Result<std::string> text = io::read_file(path, remedy(), kMaxFile_bytes);
   if (!text) return text.error();
   Result<toml::table> root = io::parse_toml(*text, path);

@@ -30,7 +30,7 @@ constexpr std::size_t kHashDigits = 16;
 constexpr std::uint32_t kMaxVertices = 10'000'000;
 
 struct Header {
-  std::uint32_t version = kVersion, vertices = 0, rings = 0, spare = 0;
+  std::uint32_t version = kVersion, vertices = 0, rings = 0, inclusions = 0;
   double poisson_ratio = 0.0, patch_radius_m = 0.0, ring_pitch_m = 0.0;
   Vec3 fixed_min_m{}, fixed_max_m{};
 };
@@ -103,6 +103,7 @@ Result<tissue::ComplianceMap> read_compliance_map(const std::string& path) {
                             .rings = head.rings,
                             .fixed_min_m = head.fixed_min_m,
                             .fixed_max_m = head.fixed_max_m,
+                            .inclusions = head.inclusions,
                             .mesh_hash = std::string(bytes.substr(0, kHashDigits))};
   bytes.remove_prefix(kHashDigits);
   const std::size_t expected = floats_in(head) * sizeof(float) + sizeof(std::uint64_t);
@@ -126,6 +127,15 @@ std::string compliance_checksum(const std::string& path) {
   if (!bytes || bytes->size() < kSum_bytes) return {};
   // Not computed: it stands for the file in the hash of a scene, and read_compliance_map checks it.
   return bytes->substr(bytes->size() - kSum_bytes);
+}
+
+std::uint32_t inclusions_hash(const ElasticSettings& elastic) {
+  if (elastic.inclusions.empty()) return 0;
+  std::string text;
+  for (const Inclusion& lump : elastic.inclusions)
+    text += fmt::format("{} {} {} {} {:.6g};", lump.center_m.x, lump.center_m.y, lump.center_m.z,
+                        lump.radius_m, lump.youngs_modulus_Pa / elastic.youngs_modulus_Pa);
+  return static_cast<std::uint32_t>(fnv1a(text)) | 1U;
 }
 
 std::string surface_hash(const contact::SurfaceView& surface) {

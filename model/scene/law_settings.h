@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "model/parameters.h"
 #include "model/settings_by_type.h"
@@ -19,11 +20,18 @@ namespace tact::model::scene {
 /// The least law that meets [tolerance], by tact-lab plan.
 inline constexpr std::string_view kAutoLaw = "auto";
 
+/// A round lump of another modulus in the organ, in the frame of the box.
+struct Inclusion {
+  Vec3 center_m;
+  double radius_m = 0.0, youngs_modulus_Pa = 0.0;
+};
+
 /// The organ as a linear elastic body; the box is in the mesh's own frame, before organ.position_m.
 struct ElasticSettings {
   double youngs_modulus_Pa = 0.0;
   double poisson_ratio = 0.0;
   Vec3 fixed_min_m{}, fixed_max_m{};  // triangles with all corners in this box are held
+  std::vector<Inclusion> inclusions{};
 };
 /// Its numbers, without the box.
 void visit(ParameterVisitor& v, ElasticSettings& elastic);

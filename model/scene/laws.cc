@@ -9,7 +9,9 @@
 #include "model/indent/hex_sheet.h"
 #include "model/indent/hunt_crossley.h"
 #include "model/indent/rhombus_patch.h"
+#include "model/indent/table_law.h"
 #include "model/scene/scene.h"
+#include "model/scene/table_file.h"
 #include "model/scene/tissue_law_builder.h"
 #include "model/scene/tissue_map.h"
 #include "model/springs/spring_patch.h"
@@ -78,6 +80,23 @@ Result<Curve> hex_sheet(const Scene& scene) {
                .draws_tissue = true};
 }
 
+Result<Curve> table(const Scene& scene) {
+  const auto& p = scene.laws.of<indent::TableParameters>();
+  if (p.data.empty()) return Error{"table.data names no file; write data = \"press.csv\""};
+  const auto rows = read_table_file(p.data);
+  if (!rows) return rows.error();
+  auto law = make_table_law(*rows, p);
+  if (!law) return Error{p.data + law.error().message};
+  std::string title = fmt::format("measured table, {} rows", rows->size());
+  if (law->lost_ratio() > 0.0)
+    title += fmt::format(", without the {:.0f} % of the work that its unloading loses",
+                         100.0 * law->lost_ratio());
+  // A table of its own, denser at light touch than the loop's.
+  return Curve{.law = owned(std::move(*law)),
+               .title = std::move(title),
+               .untabled_bytes = sizeof(indent::TableLaw)};
+}
+
 void compliance_keys(ParameterVisitor& v, Scene& scene) {
   ComplianceSettings& c = scene.compliance;
   v.file("map", "file of tact-lab condense, absolute or from the scene's folder", c.map_path);
@@ -97,6 +116,7 @@ std::span<const LawRow> all_laws() {
        .meaning = "energy-consistent chain of rhombus units",
        .visit = keys_of<indent::RhombusParameters>,
        .curve = rhombus,
+       .stiffness_keys = {"normal_stiffness_N_per_m", "tangential_stiffness_N_per_m"},
        .fit_keys = {"rod_length_m", "initial_angle_rad", "normal_stiffness_N_per_m",
                     "tangential_stiffness_N_per_m", "growth"},
        // As the scene, steeper, and with the tangential springs strong or nearly away.
@@ -107,12 +127,15 @@ std::span<const LawRow> all_laws() {
        .meaning = "coned discs that go flat one after the other",
        .visit = keys_of<indent::DiscStackParameters>,
        .curve = disc_stack,
+       .stiffness_keys = {"youngs_modulus_Pa"},
        .fit_keys = {"youngs_modulus_Pa"},
        .size_key = "layers"},
       {.name = "hex_sheet",
        .meaning = "hexagonal skin on body springs, energy form",
        .visit = keys_of<indent::HexSheetParameters>,
        .curve = hex_sheet,
+       .stiffness_keys = {"body_stiffness_N_per_m", "contact_stiffness_N_per_m",
+                          "surface_stiffness_N_per_m", "tension_N"},
        .fit_keys = {"ring_pitch_m", "body_stiffness_N_per_m", "contact_stiffness_N_per_m",
                     "surface_stiffness_N_per_m", "tension_N"},
        .fit_starts = {{1, 1, 1, 1, 1}, {2, 1, 1, 1, 3}, {1, 0.1, 1, 3, 1}, {0.5, 1, 10, 10, 0.3}},
@@ -123,6 +146,8 @@ std::span<const LawRow> all_laws() {
        .meaning = "power law that resists speed as well",
        .visit = keys_of<indent::HuntCrossleyParameters>,
        .curve = hunt_crossley,
+       .stiffness_keys = {"force_N"},
+       .damping_key = "dissipation_s_per_m",
        // The dissipation stays: data of a slow press does not determine it.
        .fit_keys = {"force_N", "exponent"},
        .fit_starts = {{1, 1}, {1, 1.3}}},
@@ -130,11 +155,17 @@ std::span<const LawRow> all_laws() {
        .meaning = "masses and springs on the organ's mesh near the contact",
        .visit = keys_of<springs::SpringPatchParameters>,
        .build = &TissueLawBuilder::add_spring_patch,
+       .stiffness_keys = {"coupling_stiffness_N_per_m"},
        .fit_keys = {"surface_stiffness_N_per_m", "body_stiffness_N_per_m",
                     "coupling_stiffness_N_per_m"},
        .size_key = "nodes",
        .sizes = {50, 100, 200, 500, 1000},
        .quick_sizes = {100}},
+      {.name = "table",
+       .meaning = "the force of a press that was measured",
+       .visit = keys_of<indent::TableParameters>,
+       .curve = table,
+       .stiffness_keys = {"force_ratio"}},
       {.name = "compliance",
        .meaning = "the elastic organ of [elastic], condensed to its surface offline",
        .visit = compliance_keys,

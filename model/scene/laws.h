@@ -45,6 +45,10 @@ struct LawRow {
   Result<Curve> (*curve)(const Scene&) = nullptr;
   /// Of a law that has no curve, as it differs from place to place.
   std::optional<Error> (TissueLawBuilder::*build)() = nullptr;
+  /// Numbers to which, all together, its force is proportional; none where that is the modulus of
+  /// [elastic]. And one to which its damping is.
+  std::vector<std::string_view> stiffness_keys{};
+  std::string_view damping_key{};
   /// What tact-lab fit turns; empty: it fits no such law.
   std::vector<std::string_view> fit_keys{};
   /// Ratios to the scene's own numbers where its search starts; empty: one start, at these.

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "model/indent/table_law.h"
+#include "model/io/input_file.h"
 #include "model/mesh/obj.h"
 #include "model/mesh/turn.h"
 #include "model/reader/scene_text.h"
@@ -35,6 +37,7 @@ std::optional<Error> load_meshes(const SceneText& text, Scene& scene) {
   if (!organ) return organ.error();
   Result<mesh::ObjMesh> tool = load_mesh(text.tool_mesh, scene.tool.mesh_path);
   if (!tool) return tool.error();
+  scene.organ.is_turned = organ->flipped;
   if (const Vec3& turn_deg = text.organ_orientation_deg; norm(turn_deg) > 0.0)
     mesh::turn(organ->mesh, mesh::turn_of(turn_deg));
   mesh::shift(organ->mesh, scene.organ.position_m);
@@ -91,6 +94,8 @@ std::string whole_hash(const std::string& text_hash, const Scene& scene) {
   }
   // law = "auto" counts as felt: tact-lab plan tries the compliance law, too.
   if (needs_compliance(scene)) hash.add(compliance_checksum(scene.compliance.map_path));
+  if (const auto table = io::read_file(scene.laws.of<indent::TableParameters>().data))
+    hash.add(*table);
   return hash.hex();
 }
 

@@ -19,6 +19,7 @@
 #include "model/limits.h"
 #include "model/mesh/mesh.h"
 #include "model/mesh/rgb.h"
+#include "model/parameters.h"
 #include "model/reader/keys_fwd.h"
 #include "model/result.h"
 #include "model/scene/law_settings.h"
@@ -26,8 +27,9 @@
 namespace tact::model::scene {
 
 struct OrganSettings {
-  std::string mesh_path;  // absolute
-  Vec3 position_m;        // of the mesh origin
+  std::string mesh_path;   // absolute
+  Vec3 position_m;         // of the mesh origin
+  bool is_turned = false;  // its normals point inwards in the file
 };
 
 struct ToolSettings {
@@ -36,6 +38,7 @@ struct ToolSettings {
   std::optional<contact::Blade> blade;
 };
 
+inline constexpr Range kRate_Hz{100.0, 10000.0};
 inline constexpr std::size_t kMaxPieces = 4;  // of the organ, with a colour each
 
 /// What the viewer paints. No force depends on it.

@@ -149,7 +149,7 @@ void visit_live(Keys& k, Scene& scene) {
 void visit_scene(Keys& k, DeviceKeys device_keys, SceneText& out) {
   Scene& scene = out.scene;
   k.text("name", "of the scene, shown by the viewer", scene.name);
-  k.number("rate_Hz", {100.0, 10000.0}, "ticks of the control loop", scene.rate_Hz);
+  k.number("rate_Hz", kRate_Hz, "ticks of the control loop", scene.rate_Hz);
   // In the order of the reference page. rate_Hz and law come first: limits and tool ask for them.
   visit_laws(k, scene);
   visit_law_options(k, scene);

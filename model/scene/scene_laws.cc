@@ -13,7 +13,7 @@ namespace {
 
 // LW-1 names 17, 33 and 65 knots; fewer were not measured.
 constexpr std::size_t kMinKnots = 17;
-constexpr std::size_t kMaxSites = 64;
+constexpr std::size_t kMaxSites = 64, kMaxInclusions = 8;
 constexpr std::size_t kMaxSiteVertex = 100'000'000;
 
 void visit_pull(Keys& k, law::LinearPullParameters& pull) { visit(k, pull); }
@@ -24,6 +24,14 @@ void visit_elastic(Keys& k, ElasticSettings& elastic) {
            elastic.fixed_min_m);
   k.vector("fixed_max_m", {-1e6, 1e6}, "high corner; both of the turned mesh, without position_m",
            elastic.fixed_max_m);
+  k.entries("inclusion", {0, kMaxInclusions}, "a round lump of another modulus, to be found",
+            [&](Keys& keys) {
+              Inclusion& lump = elastic.inclusions.emplace_back();
+              keys.vector("center_m", {-1e6, 1e6}, "deeper than its radius, as the box",
+                          lump.center_m);
+              keys.number("radius_m", {1e-4, 0.1}, "of the lump", lump.radius_m);
+              keys.number("youngs_modulus_Pa", {1.0, 1e9}, "E in it", lump.youngs_modulus_Pa);
+            });
 }
 
 void visit_tolerance(Keys& k, ToleranceSettings& tolerance) {

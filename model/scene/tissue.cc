@@ -11,10 +11,11 @@ Result<std::unique_ptr<Tissue>> make_tissue(const Scene& scene) {
   const double pull_limit_N = (*law)->pull_limit_N();
   // Else the tool would hang on the tissue, whatever the hand pulls.
   if (pull_limit_N > 0.0 && !(scene.contact.tear_force_N < pull_limit_N))
-    return Error{fmt::format(
-        "{}: contact.tear_force_N = {:g} is never reached: the law pulls with {:g} N at most; "
-        "allowed: less than that",
-        scene.path, scene.contact.tear_force_N, pull_limit_N)};
+    return Error{
+        fmt::format("{}: contact.tear_force_N = {:g} is never reached: the law pulls with {:g} N "
+                    "at most; write "
+                    "contact.tear_force_N = {:.2g} or less",
+                    scene.path, scene.contact.tear_force_N, pull_limit_N, 0.94 * pull_limit_N)};
 
   const std::vector<std::uint32_t>& fans = scene.organ_mesh.fan_start;
   for (std::size_t v = 0; v + 1 < fans.size(); ++v)

@@ -51,6 +51,12 @@ Result<tissue::ComplianceMap> read_scene_map(const Scene& scene) {
         fmt::format("{} was made for Poisson's ratio {} or another held box than [elastic] "
                     "says; make one: {}",
                     path, map->poisson_ratio, command)};
+  if (map->inclusions != inclusions_hash(e))
+    return Error{
+        fmt::format("{} was made for other [[elastic.inclusion]] than the scene's, or for other "
+                    "ratios of their "
+                    "modulus to elastic.youngs_modulus_Pa; make one: {}",
+                    path, command)};
   return map;
 }
 

@@ -36,6 +36,7 @@ struct ComplianceMap {
   double ring_pitch_m = 0.0;
   std::size_t rings = 0;                       // N, 1 .. kMaxComplianceRings
   Vec3 fixed_min_m{}, fixed_max_m{};           // held box, in the mesh's own frame
+  std::uint32_t inclusions = 0;                // inclusions_hash() of [elastic]
   std::string mesh_hash;                       // surface_hash() of the organ, 16 hex digits
   std::vector<float> regular_times_E_per_m{};  // r E, n vertices
   std::vector<SidewaysCompliance> sideways_times_E_per_m{};  // n

@@ -18,7 +18,7 @@ inline std::size_t write_compliance_map(const model::tissue::ComplianceMap& map,
     bytes.append(reinterpret_cast<const char*>(first), count * sizeof *first);
   };
   const auto vertices = static_cast<std::uint32_t>(map.vertices());
-  const std::uint32_t numbers[]{2, vertices, static_cast<std::uint32_t>(map.rings), 0};
+  const std::uint32_t numbers[]{2, vertices, static_cast<std::uint32_t>(map.rings), map.inclusions};
   const double lengths[]{map.poisson_ratio, map.patch_radius_m, map.ring_pitch_m};
   append(numbers, 4);
   append(lengths, 3);

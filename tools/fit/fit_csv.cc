@@ -5,15 +5,15 @@
 
 #include <cmath>
 
-#include "tools/report/csv.h"
+#include "model/io/csv.h"
 
 namespace tact::tools::fit {
 namespace {
 
 using model::Error;
 using model::Result;
-using report::Csv;
-using report::CsvLine;
+using model::io::Csv;
+using model::io::CsvLine;
 
 // Chosen: fewer points than that fit anything.
 constexpr std::size_t kMinRows = 3;

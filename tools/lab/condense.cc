@@ -46,8 +46,16 @@ Result<int> run(const program::Program&, Options& o) {
   if (auto error = program::check_output(o.out, "TACTCOMP", {o.scene.path})) return *error;
   const auto scene = elastic_scene(o.scene);
   if (!scene) return scene.error();
+  const model::scene::ElasticSettings& elastic = *scene->elastic;
+  nlohmann::json lumps = nlohmann::json::array();
+  for (const model::scene::Inclusion& lump : elastic.inclusions)
+    lumps.push_back({{"center_m", list_of(lump.center_m)},
+                     {"radius_m", lump.radius_m},
+                     {"modulus_ratio", lump.youngs_modulus_Pa / elastic.youngs_modulus_Pa}});
   return become("condense/condense.py",
                 {{"organ", organ_of(*scene)},
+                 {"lumps", std::move(lumps)},
+                 {"inclusions_hash", inclusions_hash(elastic)},
                  {"surface_hash", model::scene::surface_hash(scene->organ_mesh.view())},
                  {"out", o.out},
                  {"mesh_size_m", o.mesh_size_m},

@@ -28,7 +28,7 @@ struct Options {
   double unit_m = 0.0;  // 0: the likely one
   std::size_t faces = 6000;
   double youngs_modulus_Pa = 5000.0, poisson_ratio = 0.45;
-  bool smooth = false, plan = false, force = false;
+  bool smooth = false, plan = false, without_map = false, force = false;
 };
 
 void add_options(CLI::App& app, Options& o) {
@@ -55,6 +55,10 @@ void add_options(CLI::App& app, Options& o) {
       "--plan", o.plan,
       "also solve references and let tact-lab plan choose the law for this PC: minutes to an "
       "hour; needs CalculiX, which Debian 13 has not");
+  app.add_flag("--without-map", o.without_map,
+               "leave the minutes of finite elements out: the scene is felt by the tip's own law "
+               "until tact-lab condense has made its map")
+      ->excludes("--plan");
   app.add_flag("--force", o.force, "replace the files of an earlier run");
 }
 
@@ -118,6 +122,7 @@ Result<int> run(const program::Program&, Options& o) {
                                            {"poisson_ratio", o.poisson_ratio},
                                            {"smooth", o.smooth},
                                            {"plan", o.plan},
+                                           {"without_map", o.without_map},
                                            {"force", o.force}});
 }
 

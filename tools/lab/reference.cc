@@ -129,6 +129,9 @@ Result<json> job_of(const Options& o) {
   if (o.scene.path.empty()) return Error{"no scene given; see tact-lab reference --help"};
   const auto scene = elastic_scene(o.scene);
   if (!scene) return scene.error();
+  if (!scene->elastic->inclusions.empty())
+    return Error{fmt::format(
+        "{}: the reference knows no [[elastic.inclusion]]; leave them out of it", scene->path)};
   add_scene(job, *scene);
   return job;
 }

@@ -32,10 +32,11 @@ struct Step {
 };
 
 /// In the order of the work.
-constexpr std::array<Step, 5> kSteps{{
+constexpr std::array<Step, 6> kSteps{{
     {"--weld", "join vertices nearer than 1e-5 of the surface's size, not equal ones alone"},
     {"--drop-degenerate", "drop faces without area, and doubled ones"},
     {"--largest", "keep the part with most faces, drop the others"},
+    {"--hollow-refused", "refuse a part inside of that one, which would be filled"},
     {"--close-holes", "close every hole"},
     {"--smooth", "take away the steps of voxels, and keep the volume"},
 }};

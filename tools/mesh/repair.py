@@ -2,7 +2,7 @@
 """Reads a triangle surface with VTK, repairs it and writes it as OBJ. tact-mesh runs this; --help there says what it does.
 
     /usr/bin/python3 repair.py IN OUT.obj [--ending .stl] [--weld] [--drop-degenerate] [--largest] [--close-holes] [--smooth]
-                               [--decimate N]
+                               [--hollow-refused] [--decimate N]
 
 Prints one JSON object a line: {"step", "count", "text", "faces", "vertices"} as each step ends, {"step", "percent"} on the
 way, or {"error"} with status 2.
@@ -30,7 +30,7 @@ def main():
     options.add_argument("source")
     options.add_argument("target")
     options.add_argument("--ending", help="of IN, where its name has none")
-    for step in ("weld", "drop-degenerate", "largest", "close-holes", "smooth"):
+    for step in ("weld", "drop-degenerate", "largest", "close-holes", "smooth", "hollow-refused"):
         options.add_argument("--" + step, action="store_true")
     options.add_argument("--decimate", type=int, metavar="N")
     asked = options.parse_args()

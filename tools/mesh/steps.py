@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """From what a scanner gives to a surface that tact can press: the steps, in the order in which each helps the next."""
+import functools
+
 import numpy as np
 import vtk
+from vtk.util import numpy_support
 
 import sheets
 from holes import closed
@@ -11,6 +14,8 @@ NEAR_RATIO = 1e-5   # of the surface's size: vertices so near are one, with --we
 FLAT_RATIO = 1e-8   # doubled area over the square of the longest side: below it a face has no area
 FOLD_COSINE = -0.9  # between the normals of two neighbours
 MOST_UNFOLDINGS = 10
+MOST_NESTED = 20            # parts that are looked at, those with most faces
+LEAST_NESTED_RATIO = 0.002  # of the volume of the largest: less is noise of a segmentation
 LEAST_KEPT_RATIO = 0.8  # of the faces that were asked for: more loss takes the shape away
 
 
@@ -52,8 +57,14 @@ def repair(points, triangles, asked, tell):
     told("part", crowded, f"{crowded} edges with more than two faces, {faces - len(triangles)} faces dropped there")
     faces, parts = len(triangles), len(part_faces(points, triangles))
     if asked.largest:
+        nested = nested_ratios(points, triangles)
+        if nested and asked.hollow_refused:
+            raise Refused(f"{asked.source}: inside of the largest part lies one of {nested[0]:.0%} of its volume: a cavity, "
+                          "which would be filled, or an organ of its own; "
+                          "a full organ: tact-mesh ORGAN --weld --largest --out full.obj")
         points, triangles = largest(points, triangles)
-        told("largest", parts - 1, f"{parts - 1} of {parts} parts dropped, {faces - len(triangles)} faces")
+        inside = f"; inside of it {shares}, now filled" if (shares := ", ".join(f"{ratio:.0%}" for ratio in nested)) else ""
+        told("largest", parts - 1, f"{parts - 1} of {parts} parts dropped, {faces - len(triangles)} faces{inside}")
     if asked.close_holes:
         points, triangles, holes, added = closed(points, triangles)
         told("close-holes", holes, f"{holes} holes closed with {added} faces")
@@ -135,6 +146,35 @@ def largest(points, triangles):
     parts.SetExtractionModeToLargestRegion()
     parts.Update()
     return used(*to_numpy(parts.GetOutput()))
+
+
+def nested_ratios(points, triangles):
+    """Of each closed part inside of the largest, its volume over that one's, if it is more than noise."""
+    parts = connectivity(points, triangles)
+    parts.SetExtractionModeToAllRegions()
+    parts.ColorRegionsOn()
+    parts.Update()
+    points, triangles = to_numpy(parts.GetOutput())
+    region = numpy_support.vtk_to_numpy(parts.GetOutput().GetPointData().GetArray("RegionId"))[triangles[:, 0]]
+    faces = np.bincount(region)
+    outer = triangles[region == np.argmax(faces)]
+    whole = abs(volume(points, outer))
+    ratios = []
+    for part in (triangles[region == k] for k in np.argsort(-faces)[1:1 + MOST_NESTED]):
+        ratio = abs(volume(points, part)) / max(whole, 1e-300)
+        closed_one = LEAST_NESTED_RATIO < ratio < 1 and len(sheets.Edges(part).single()) == 0
+        if closed_one and is_inside(points, outer, points[part[0, 0]]):
+            ratios.append(ratio)
+    return sorted(ratios, reverse=True)
+
+
+def is_inside(points, triangles, place):
+    """By the solid angle of the surface, seen from there [van Oosterom, Strackee, IEEE T-BME 30 (1983) 125]."""
+    a, b, c = (points[triangles[:, k]] - place for k in range(3))
+    la, lb, lc = (np.linalg.norm(side, axis=1) for side in (a, b, c))
+    dot = functools.partial(np.einsum, "ij,ij->i")
+    under = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb
+    return abs(np.arctan2(dot(a, np.cross(b, c)), under).sum()) > np.pi
 
 
 def smoothing(points, triangles):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Files of triangle surfaces, all that VTK reads and OFF, as vtkPolyData and as arrays; OBJ to write."""
+import itertools
 import json
 import os
 import pathlib
@@ -17,6 +18,7 @@ MOST_BYTES = 2_000_000_000
 MOST_COORDINATE = 1e12  # file units
 AGAIN = "; export the mesh again"
 FORMATS = "OBJ, STL, PLY, VTK, VTP, OFF, glTF or GLB"
+NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|[-+]?(?:nan|inf|infinity)(?:\([^)]*\))?", re.I)
 READERS = {".obj": vtk.vtkOBJReader, ".stl": vtk.vtkSTLReader, ".ply": vtk.vtkPLYReader, ".vtk": vtk.vtkPolyDataReader,
            ".vtp": vtk.vtkXMLPolyDataReader, ".gltf": vtk.vtkGLTFReader, ".glb": vtk.vtkGLTFReader}
 
@@ -66,6 +68,7 @@ def read(path, ending=None):
     has_float_colors = ending == ".ply" and check_ply(path, size_bytes)
     if ending == ".gltf":
         check_gltf(path)
+    check_numbers(path, ending, beginning)
     if ending == ".off":
         surface = read_off(path)
     elif ending in READERS:
@@ -94,6 +97,54 @@ def read(path, ending=None):
         raise Refused(f"{path}{line_of_no_number(path, ending)}: "
                       f"vertex {np.argmin(sane) + 1} is not finite, or beyond 1e12{AGAIN}")
     return surface
+
+
+def numbers_of_text(path, ending, beginning):
+    """(line, words that must be numbers, how many of them or None) of a text of STL, PLY, VTK or VTP; nothing of other files."""
+    if ending not in (".stl", ".ply", ".vtk", ".vtp") or ending == ".stl" and b"\0" in beginning:
+        return
+    with open(path, encoding="latin-1", newline="\n") as file:
+        lines = enumerate(file, 1)
+        if ending == ".stl":
+            yield from ((number, words[1:], 3) for number, words in ((n, line.split()) for n, line in lines)
+                        if words and words[0].lower() == "vertex")
+        elif ending == ".ply":
+            head = [line.strip() for _, line in itertools.takewhile(lambda row: row[1].strip() != "end_header", lines)]
+            if any(line.startswith("format ascii") for line in head):
+                yield from ((number, line.split(), None) for number, line in lines)
+        elif ending == ".vtk":
+            if [line.strip() for _, line in itertools.islice(lines, 3)][2:] != ["ASCII"]:
+                return
+            left = 0  # of the places: what follows them is names and counts
+            for number, line in lines:
+                words = line.split()
+                if left > 0:
+                    yield number, words[:left], None
+                    left -= len(words)
+                elif words[:1] == ["POINTS"] and words[1:2] and words[1].isdecimal():
+                    left = 3 * int(words[1])
+        else:
+            for number, line in lines:
+                if (array := re.search("<DataArray[^>]*ascii", line)) is None:
+                    continue
+                line = line[array.end():].partition(">")[2]
+                while True:
+                    text, end, _ = line.partition("</")
+                    yield number, text.split(), None
+                    if end or (row := next(lines, None)) is None:
+                        break
+                    number, line = row
+
+
+def check_numbers(path, ending, beginning):
+    """A library takes 1,5 for 1, and a word for 0 or for the end, without a word of its own."""
+    for line, words, count in numbers_of_text(path, ending, beginning):
+        bad = next((word for word in words if not NUMBER.fullmatch(word)), None)
+        if bad is not None:
+            raise Refused(f"{path}:{line}: {bad[:24]!r} is no number; "
+                          f"{'write a point for its comma' if ',' in bad else 'export the mesh again'}")
+        if count is not None and len(words) != count:
+            raise Refused(f"{path}:{line}: {len(words)} numbers where {count} belong{AGAIN}")
 
 
 def check_stl(path, size_bytes, beginning):

@@ -29,6 +29,7 @@ MAX_DEPTH_M = 0.012  # as the liver's
 DEPTH_RATIO = 0.2  # of the height: small strain beyond the tip
 PRESS_RATIO = 0.8  # of the working depth
 LIVER_PA = 6270.0  # E / (1 - nu^2), of the numbers in text_of
+TIP_ALONE = ["--set", "law=rhombus", "--set", "varies_by_place=false"]  # while the map is to come, as tools/run starts it
 FILES = ("organ", "tool", "map", "reference", "tool_reference", "scene")  # the scene is the last to appear
 
 
@@ -71,8 +72,8 @@ class Maker:
         job = self.job
         words = [job["source"], "--json", *(["--unit-m", repr(job["unit_m"])] if job["unit_m"] else [])]
         if not job["is_sound"]:
-            words += ["--out", self.made["organ"], "--weld", "--drop-degenerate", "--largest", "--close-holes",
-                      *(["--smooth"] if job["smooth"] else []), f"--decimate={job['faces']}"]
+            words += ["--out", self.made["organ"], "--weld", "--drop-degenerate", "--largest", "--hollow-refused",
+                      "--close-holes", *(["--smooth"] if job["smooth"] else []), f"--decimate={job['faces']}"]
         said = json.loads("\n".join(self.ask("tact-mesh", *words)))
         for step in said.get("steps", []):
             tell(step["step"], step["text"])
@@ -114,9 +115,11 @@ class Maker:
         tell("place", f"the top comes to the tool; held below z = {1e3 * held_max_m[2]:.4g} mm, the lowest tenth")
         shutil.copy(FOLDER / "forceps.obj", self.made["tool"])
         self.write_scene(organ, "compliance")
-        tell("condense", f"{organ['vertices']} vertices, by finite elements: minutes for thousands")
-        self.ask("tact-lab", "condense", self.made["scene"], "--out", self.made["map"])
-        self.ask("tactd", self.made["scene"], "--check")  # its own message if it does not take it
+        if not self.job["without_map"]:
+            tell("condense", f"{organ['vertices']} vertices, by finite elements: minutes for thousands")
+            self.ask("tact-lab", "condense", self.made["scene"], "--out", self.made["map"])
+        # Its own message if it does not take it.
+        self.ask("tactd", self.made["scene"], "--check", *(TIP_ALONE if self.job["without_map"] else []))
         is_planned = self.job["plan"]
         if is_planned:
             self.write_scene(organ, "auto")
@@ -162,6 +165,7 @@ def text_of(job, organ, law):
         return str([rounded_m(x_m) for x_m in xs_m])
 
     nu, depth_m = job["poisson_ratio"], working_depth_m(organ)
+    depth_ratio = depth_m / MAX_DEPTH_M  # a thin organ pulls no further
     of_liver = job["youngs_modulus_Pa"] / (1.0 - nu * nu) / LIVER_PA
     press_m = rounded_m(PRESS_RATIO * depth_m)
     held_min_m, held_max_m = held_box(organ)
@@ -173,7 +177,7 @@ def text_of(job, organ, law):
             "youngs_modulus_Pa": job["youngs_modulus_Pa"], "poisson_ratio": nu, "working_depth_m": rounded_m(depth_m),
             "press_m": press_m, "grip_m": rounded_m(press_m / 2.0), "rhombus_normal_N_per_m": f"{1.604 * of_liver:.4g}",
             "rhombus_tangential_N_per_m": f"{0.8257 * of_liver:.4g}", "pull_N_per_m": f"{50.3 * of_liver:.4g}",
-            "tear_force_N": f"{min(max(0.4 * of_liver, 0.01), 20.0):.4g}"}
+            "tear_force_N": f"{min(max(0.4 * depth_ratio * of_liver, 0.01), 20.0):.4g}"}
 
 
 def write_all(files, force):
@@ -209,11 +213,20 @@ def act(job):
         with run.Scratch("tact-new-scene") as scratch:
             maker = Maker(job, scratch.path)
             try:
-                run.run_program(["gmsh", "--version"], scratch, "gmsh", 60.0)  # before the minutes of repair
+                if not job["without_map"]:
+                    run.run_program(["gmsh", "--version"], scratch, "gmsh", 60.0)  # before the minutes of repair
                 is_planned = maker.make()
             except run.Failure as failure:
                 raise run.Failure(maker.about(failure.message)) from None
+    tell_next(job, is_planned)
+
+
+def tell_next(job, is_planned):
     scene = shlex.quote(job["names"]["scene"])
+    if job["without_map"]:
+        print(f"\nFeel its tip alone:\n  tactd {scene} {' '.join(TIP_ALONE)} --free-run --seconds 5\nIts map, minutes:\n"
+              f"  tact-lab condense {scene} --out {shlex.quote(job['names']['map'])}")
+        return
     tell("law", "as tact-lab plan has chosen for this PC" if is_planned else "compliance, from the map")
     print(f"\nFeel it:\n  tactd {scene} --free-run --seconds 5")
     if is_planned:

@@ -2,6 +2,8 @@
 #include "tools/program/child_groups.h"
 
 #include <poll.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
 #include <atomic>
@@ -14,6 +16,15 @@ constexpr int kLongestStart_ms = 1000;
 
 std::array<std::atomic<pid_t>, kMaxGroups> groups{};  // 0: free
 std::atomic<int> starting{0};
+
+struct Scratch {
+  static constexpr pid_t kFree = 0, kChanging = -1;
+  std::atomic<pid_t> owner{kFree};  // a process that begins as a copy of it owns none
+  std::array<char, 512> path{};
+
+  bool take(pid_t from) { return owner.compare_exchange_strong(from, kChanging); }
+};
+std::array<Scratch, 16> scratches{};
 static_assert(std::atomic<pid_t>::is_always_lock_free && std::atomic<int>::is_always_lock_free,
               "a signal handler reads them");
 
@@ -46,11 +57,35 @@ void forget_child_group(pid_t group) {
   }
 }
 
+void remember_scratch(const std::string& path) {
+  for (Scratch& slot : scratches) {
+    if (path.size() >= slot.path.size() || !slot.take(Scratch::kFree)) continue;
+    path.copy(slot.path.data(), path.size());
+    slot.path[path.size()] = '\0';
+    slot.owner = getpid();
+    return;
+  }
+}
+
+void forget_scratch(const std::string& path) {
+  for (Scratch& slot : scratches)
+    if (slot.take(getpid())) slot.owner = path == slot.path.data() ? Scratch::kFree : getpid();
+}
+
 void end_child_groups() {
   for (int ms = 0; ms < kLongestStart_ms && starting.load() > 0; ++ms) poll(nullptr, 0, 1);
   for (const std::atomic<pid_t>& slot : groups) {
     const pid_t group = slot.load();
     if (group > 0) kill(-group, SIGKILL);
+  }
+  for (const Scratch& slot : scratches) {
+    if (slot.owner != getpid()) continue;
+    const pid_t child = _Fork();  // fork() may wait for a lock that this thread holds
+    if (child == 0) {
+      execl("/bin/rm", "rm", "-rf", "--", slot.path.data(), nullptr);
+      _exit(1);
+    }
+    if (child > 0) waitpid(child, nullptr, 0);
   }
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// child_groups.h - the programs that run for us, known to the signal handler that must end them.
+// child_groups.h - the programs that run for us and the folders they write to, known to the signal
+// handler that must end them.
 //
 // A program of run_program.h leads a process group of its own, so a signal from the terminal does
 // not reach it. The table is of atomics and fixed in size: a signal handler may read it at any
@@ -9,6 +10,7 @@
 #include <sys/types.h>
 
 #include <csignal>
+#include <string>
 
 namespace tact::tools::program {
 
@@ -32,7 +34,11 @@ class StartOfChild {
 
 void forget_child_group(pid_t group);
 
-/// Kills all of them. Safe in a signal handler.
+/// A folder that goes, too, if it still has a place in the table; a longer path has none.
+void remember_scratch(const std::string& path);
+void forget_scratch(const std::string& path);
+
+/// Kills all of them and removes the folders. Safe in a signal handler.
 void end_child_groups();
 
 }  // namespace tact::tools::program

@@ -219,12 +219,20 @@ Result<ScratchFolder> ScratchFolder::make(const std::string& name) {
     return Error{
         fmt::format("no folder {} can be made; check that TMPDIR exists and has room", path)};
   }
+  remember_scratch(path);
   return ScratchFolder(path);
 }
 
+void ScratchFolder::keep() {
+  forget_scratch(path_);
+  path_.clear();
+}
+
 ScratchFolder::~ScratchFolder() {
+  if (path_.empty()) return;
   std::error_code ignored;
-  if (!path_.empty()) fs::remove_all(path_, ignored);
+  fs::remove_all(path_, ignored);
+  forget_scratch(path_);
 }
 
 }  // namespace tact::tools::program

@@ -6,8 +6,8 @@
 // reads nothing. It is a process group of its own, and the whole group is killed when its leader
 // has ended. At its time limit, at Ctrl-C, SIGTERM or a closed terminal (interrupt.h) it is asked
 // to end first, by SIGTERM, and has 3 s for what it has started and written itself. A second
-// Ctrl-C kills it too but leaves the scratch folder; a SIGKILL of ours leaves both: the program
-// goes on to its own end, without a time limit.
+// Ctrl-C kills it at once and removes the scratch folders; a SIGKILL of ours leaves both: the
+// program goes on to its own end, without a time limit.
 #pragma once
 
 #include <functional>
@@ -74,7 +74,7 @@ class ScratchFolder {
   const std::string& path() const { return path_; }
   std::string file(const std::string& name) const { return path_ + "/" + name; }
   /// Leaves the folder where it is, for a person to look into.
-  void keep() { path_.clear(); }
+  void keep();
 
  private:
   explicit ScratchFolder(std::string path) : path_(std::move(path)) {}

@@ -32,7 +32,7 @@ class Progress {
     fmt::print(stderr, "\r\033[K{}: {} of {} ({} %) ", label_, done, jobs_, 100 * done / jobs_);
     if (done > 0) {
       const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun_;
-      fmt::print(stderr, "about {:.0f} s left ",
+      fmt::print(stderr, "{:.0f} s, about {:.0f} s left ", took.count(),
                  took.count() * static_cast<double>(jobs_ - done) / static_cast<double>(done));
     }
     std::fflush(stderr);

@@ -17,6 +17,14 @@ TIME_LIMIT_S = 1800.0
 
 
 @dataclass
+class Lump:
+    """A ball of the same material with another modulus; a Gauss point lies in it or not."""
+    center_m: np.ndarray  # (3,)
+    radius_m: float
+    modulus_ratio: float  # to the organ's
+
+
+@dataclass
 class Organ:
     """Everything that does not depend on the site."""
     vertex_m: np.ndarray  # (V, 3)
@@ -29,6 +37,7 @@ class Organ:
     mesh: str = ""  # file name
     mesh_hash: str = ""  # 16 hex digits
     size_ratio: float = 1.0  # of the edges far inside: 1 suits a body as large as a hand
+    lumps: tuple[Lump, ...] = ()  # the last that has a point counts
 
     @property
     def shear_modulus_Pa(self):

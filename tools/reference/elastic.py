@@ -30,7 +30,15 @@ def gradients(corner):
     return np.vstack([(4.0 * corner - 1.0)[:, None] * dl, 4.0 * (corner[p, None] * dl[q] + corner[q, None] * dl[p])])
 
 
-def element_stiffness(corner_m, lame_Pa, shear_Pa):
+def modulus_ratio(lumps, at_m):
+    """Of the points (n, 3)."""
+    ratio = np.ones(len(at_m))
+    for lump in lumps:
+        ratio[np.linalg.norm(at_m - lump.center_m, axis=1) <= lump.radius_m] = lump.modulus_ratio
+    return ratio
+
+
+def element_stiffness(corner_m, lame_Pa, shear_Pa, lumps=()):
     """(e, 30, 30), N/m, row 3 a + i, of elements by their corners (e, 4, 3)."""
     edge_m = corner_m[:, 1:] - corner_m[:, :1]  # dx_i / dL_j, transposed
     volume_m3 = np.linalg.det(edge_m) / 24.0  # of a Gauss point
@@ -41,7 +49,8 @@ def element_stiffness(corner_m, lame_Pa, shear_Pa):
     near = (5.0 - 5.0**0.5) / 20.0
     for point in np.full((4, 4), near) + np.eye(4) * (1.0 - 4.0 * near):
         g = np.einsum("aj,eij->eai", gradients(point), to_m)
-        both = np.einsum("e,eai,ebj->eaibj", volume_m3, g, g)
+        weight_m3 = volume_m3 * modulus_ratio(lumps, point @ corner_m) if lumps else volume_m3
+        both = np.einsum("e,eai,ebj->eaibj", weight_m3, g, g)
         k += lame_Pa * both + shear_Pa * both.transpose(0, 1, 4, 3, 2)
         dots = shear_Pa * np.einsum("eakbk->eab", both)
         for i in range(3):
@@ -59,7 +68,7 @@ def stiffness(organ, body):
         element = body.element[first:first + CHUNK]
         row = (3 * element[:, :, None] + np.arange(3)).reshape(-1, 30, 1)
         row, column = np.broadcast_arrays(row, row.transpose(0, 2, 1))
-        k = element_stiffness(body.node_m[element[:, :4]], lame_Pa, organ.shear_modulus_Pa)
+        k = element_stiffness(body.node_m[element[:, :4]], lame_Pa, organ.shear_modulus_Pa, organ.lumps)
         total += scipy.sparse.coo_matrix((k.ravel(), (row.ravel(), column.ravel())), (size, size)).tocsr()
     return total
 

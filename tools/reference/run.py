@@ -194,6 +194,18 @@ class Jobs:
             process.join()
 
 
+@contextlib.contextmanager
+def phase(name: str, expected_s: float):
+    """One step of long work, told on standard error: what it takes about, and has taken. On a terminal both are one line."""
+    begun_s, again = time.monotonic(), "\r\033[K" if sys.stderr.isatty() else ""
+    print(f"{name}: about {expected_s:.0f} s", end="" if again else "\n", file=sys.stderr, flush=True)
+    try:
+        yield
+    finally:
+        print(again, end="", file=sys.stderr, flush=True)
+    print(f"{name}: {time.monotonic() - begun_s:.0f} s", file=sys.stderr, flush=True)
+
+
 def show_progress(label: str, done: int, count: int, begun_s: float):
     """One line that is written over itself, on a terminal and with a label."""
     left = f"about {(time.monotonic() - begun_s) * (count - done) / done:.0f} s left " if done else ""

@@ -10,9 +10,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "model/io/csv.h"
 #include "model/io/file_writer.h"
 #include "model/io/json.h"
-#include "tools/report/csv.h"
 
 namespace tact::tools::report {
 namespace {
@@ -66,7 +66,7 @@ std::string Table::to_json() const {
       const std::string text = text_of(cell);
       row[column] = text;
       if (std::holds_alternative<std::string>(cell)) continue;
-      const double number = *number_in(text);  // of the text: CSV and JSON agree
+      const double number = *model::io::number_in(text);  // of the text: CSV and JSON agree
       if (std::isfinite(number)) row[column] = number;
     }
     rows.push_back(std::move(row));

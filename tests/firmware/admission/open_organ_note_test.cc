@@ -31,4 +31,30 @@ TEST(OpenOrganNote, NoShippedSceneNeedsOne) {
   }
 }
 
+TEST(PartsNote, RepeatsWhatTactMeshNotes) {
+  model::scene::Scene scene = tests::make_plate_scene();
+  EXPECT_EQ(parts_note(scene), "");
+  scene.organ.mesh_path = "bladder.obj";
+  scene.organ.is_turned = true;
+  EXPECT_EQ(parts_note(scene),
+            "plate.toml: the normals of bladder.obj point inwards and were turned");
+  scene.organ.is_turned = false;
+  // the same cavity, in the organ and drawn once
+  const model::mesh::SurfaceMesh inner = tests::make_ball(0.03, 1);
+  std::vector<model::Vec3> vertex_m = tests::make_ball(0.05, 1).vertex_m;
+  auto triangle = tests::make_ball(0.05, 1).triangle;
+  const auto first = static_cast<std::uint32_t>(vertex_m.size());
+  vertex_m.insert(vertex_m.end(), inner.vertex_m.begin(), inner.vertex_m.end());
+  for (const auto& t : inner.triangle)
+    triangle.push_back({t[0] + first, t[2] + first, t[1] + first});
+  scene.organ_mesh = *model::mesh::make_surface_mesh(vertex_m, triangle);
+  scene.look.piece_color_ratio.clear();
+  EXPECT_TRUE(parts_note(scene).starts_with(
+      "plate.toml: the organ has 2 parts that share no edge, and all are felt; is only one the "
+      "organ? tact-mesh bladder.obj --largest"))
+      << parts_note(scene);
+  scene.look.piece_color_ratio = {{1.0, 1.0, 0.5}};
+  EXPECT_EQ(parts_note(scene), "") << "its pieces have colours: they are meant";
+}
+
 }  // namespace tact::firmware::admission::open_organ_note_test

@@ -56,10 +56,13 @@ std::map<std::string, GripKind> grip_of_each_kind() {
   simulated.device.of<sim::SimDeviceSettings>() = {.counts_per_turn = 100'000.0,
                                                    .observer_bandwidth_Hz = 40.0};
   simulated.hand.path = {{}};
+  model::scene::Scene ideal = simulated;
+  ideal.device.kind = "sim-ideal";
   const tests::StubDhd dhd;
   const tests::StubHd hd;
   return {
       {"sim-delta", grip_of_opened(simulated)},
+      {"sim-ideal", grip_of_opened(ideal)},
       {"can-odrive", grip_of_bench(OdriveBench())},
       {"can-cia402", grip_of_bench(emulated::Cia402Bench())},
       {"can-moteus", grip_of_bench(tests::MoteusBench())},
@@ -71,10 +74,10 @@ std::map<std::string, GripKind> grip_of_each_kind() {
 
 TEST(DeviceGrip, EveryBackEndOfTheRegistrySaysHowItGrips) {
   const std::map<std::string, GripKind> expected{
-      {"sim-delta", GripKind::kForce}, {"can-odrive", GripKind::kNone},
-      {"can-cia402", GripKind::kNone}, {"can-moteus", GripKind::kNone},
-      {"falcon", GripKind::kButton},   {"force-dimension", GripKind::kButton},
-      {"phantom", GripKind::kButton}};
+      {"sim-delta", GripKind::kForce},        {"sim-ideal", GripKind::kForce},
+      {"can-odrive", GripKind::kNone},        {"can-cia402", GripKind::kNone},
+      {"can-moteus", GripKind::kNone},        {"falcon", GripKind::kButton},
+      {"force-dimension", GripKind::kButton}, {"phantom", GripKind::kButton}};
   const auto reported = grip_of_each_kind();
   for (const std::string& kind : device_kinds()) {
     model::scene::Scene by_name;

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "hal/sim/sim_delta.h"
+#include "model/law/haptic_limit.h"
 
 namespace tact::hal::registry::open_device_test {
 
@@ -37,6 +38,17 @@ TEST(OpenDevice, OpensTheSimulatedDelta) {
   ASSERT_TRUE(device) << device.error().message;
   EXPECT_EQ((*device)->info().name, "simulated delta 360 x 300 mm");
   EXPECT_TRUE(is_simulated(**device));
+}
+
+TEST(OpenDevice, TheIdealOneSaysSoAndBearsWhatNoRealOneDoes) {
+  model::scene::Scene ideal = scene("sim-ideal");
+  ideal.hand.damping_Ns_per_m = 15.0;
+  const auto device = open_device(ideal);
+  ASSERT_TRUE(device) << device.error().message;
+  EXPECT_TRUE(is_simulated(**device));
+  EXPECT_TRUE((*device)->info().name.starts_with("IDEAL simulated delta"));
+  const auto at_tool = (*device)->info().at_tool;
+  EXPECT_GT(model::law::haptic_limit(*at_tool, 1000.0).grow_N_per_m, 40e3);
 }
 
 TEST(OpenDevice, ABaseThatHangsIsTurnedBetweenLoopAndDevice) {

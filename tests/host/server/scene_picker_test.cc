@@ -79,8 +79,7 @@ TEST_F(Picker, SetsNumbersOfTheSceneThatRunsWithoutAnotherStart) {
   EXPECT_EQ(reported()["note"], "elastic.youngs_modulus_Pa=4000: set");
   EXPECT_EQ(reported()["set"]["elastic.youngs_modulus_Pa"], 4000);
   ask(R"({"scene":"liver","set":{}})");
-  EXPECT_EQ(lines_.back(), "set liver elastic.youngs_modulus_Pa=5000")
-      << "as shipped again";
+  EXPECT_EQ(lines_.back(), "set liver elastic.youngs_modulus_Pa=5000") << "as shipped again";
   picker_.answer("not set: too stiff");
   EXPECT_EQ(answer(), "not set: too stiff");
   EXPECT_EQ(reported()["set"]["elastic.youngs_modulus_Pa"], 4000) << "what runs";

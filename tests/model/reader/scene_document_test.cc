@@ -146,6 +146,16 @@ TEST(Override, OfTheWrongKindIsToldBeforeWhatIsWrongInTheFile) {
             "--set limits.force_N=99: limits.force_N = 99 is out of range; allowed: 0 .. 20 N");
 }
 
+TEST(SceneDocument, AMeshIsToldWhatMakesASceneOfIt) {
+  for (const char* mesh : {"kidney.stl", "kidney.obj", "kidney.glb"}) {
+    const Result<SceneDocument> document = load_scene_document(mesh, {});
+    ASSERT_FALSE(document);
+    EXPECT_EQ(document.error().message,
+              std::string(mesh) + ": is a mesh, no scene; make one of it: tact-lab new-scene " +
+                  mesh + " --out mine.toml");
+  }
+}
+
 TEST(SceneDocument, KnowsTheLineOfEveryNode) {
   const Result<SceneDocument> document = load_scene_document(kPlain, {"rhombus.units=8"});
   ASSERT_TRUE(document) << document.error().message;

@@ -24,6 +24,7 @@ tissue::ComplianceMap small_map() {
           .rings = 3,
           .fixed_min_m = {-1.0, -2.0, -3.0},
           .fixed_max_m = {1.0, 2.0, 3.0},
+          .inclusions = 9,
           .mesh_hash = "0123456789abcdef",
           .regular_times_E_per_m = {-1.5F, 40.0F},
           .sideways_times_E_per_m = {{1.0F, 2.0F, 3.0F, 4.0F, {0.0F, 0.0F, 1.0F}},
@@ -68,6 +69,7 @@ TEST_F(ComplianceFile, GivesBackWhatWasWritten) {
   EXPECT_EQ(back->rings, map.rings);
   EXPECT_EQ(back->fixed_min_m, map.fixed_min_m);
   EXPECT_EQ(back->fixed_max_m, map.fixed_max_m);
+  EXPECT_EQ(back->inclusions, map.inclusions);
   EXPECT_EQ(back->mesh_hash, map.mesh_hash);
   EXPECT_EQ(back->regular_times_E_per_m, map.regular_times_E_per_m);
   EXPECT_EQ(back->ring_times_E_per_m, map.ring_times_E_per_m);

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "model/scene/compliance_file.h"
+
 namespace tact::model::scene::tissue_map_test {
 
 Scene liver(const std::vector<std::string>& overrides = {}) {
@@ -47,6 +49,23 @@ TEST(TissueMap, AMissingMapOfItsOwnIsMadeUnderItsName) {
   EXPECT_TRUE(said.ends_with("make it: tact-lab condense " + scene.path + " --out " +
                              scene.compliance.map_path))
       << said;
+}
+
+TEST(TissueMap, BelongsToTheLumpsInItsOrgan) {
+  Scene scene = liver();
+  scene.elastic->inclusions = {
+      {.center_m = {0.0, 0.0, 0.01}, .radius_m = 0.005, .youngs_modulus_Pa = 5e4}};
+  EXPECT_NE(refusal(scene).find("was made for other [[elastic.inclusion]]"), std::string::npos);
+  EXPECT_TRUE(ends_with_command(refusal(scene), scene));
+  const std::uint32_t hash = inclusions_hash(*scene.elastic);
+  scene.elastic->youngs_modulus_Pa *= 2.0;
+  EXPECT_NE(inclusions_hash(*scene.elastic), hash) << "the ratio counts";
+  scene.elastic->inclusions[0].youngs_modulus_Pa *= 2.0;
+  EXPECT_EQ(inclusions_hash(*scene.elastic), hash);
+  scene.elastic->inclusions[0].radius_m = 0.006;
+  EXPECT_NE(inclusions_hash(*scene.elastic), hash);
+  scene.elastic->inclusions.clear();
+  EXPECT_EQ(refusal(scene), "");
 }
 
 TEST(TissueMap, RefusesTheMapOfAnotherOrgan) {

@@ -23,8 +23,11 @@ from support import BUILD, LIVER, ROOT, Solves, ball  # noqa: E402
 import numpy as np  # noqa: E402
 
 from compliance_test import cushion  # noqa: E402
+import body  # noqa: E402
+import compliance  # noqa: E402
 import condense  # noqa: E402
 import run  # noqa: E402
+import surface  # noqa: E402
 
 PLAIN = ROOT / "tests/data/scenes/plain.toml"
 BALL_HELD = ["elastic.youngs_modulus_Pa=5000", "elastic.poisson_ratio=0.45", "elastic.fixed_min_m=[-1,-1,-1]",
@@ -80,7 +83,8 @@ class Program(Solves):
 
     def test_says_what_to_install(self):
         status, text = condense_program(LIVER, "--out", self.folder / "map", env={**os.environ, "PATH": "/nowhere"})
-        self.assertEqual((status, text), (2, "tact-lab condense: gmsh is not installed; apt install gmsh\n"))
+        self.assertEqual((status, text), (2, "filling with elements: about 3 s\ntact-lab condense: gmsh is not installed; apt "
+                                          "install gmsh\n"))
 
     def test_makes_the_map_that_another_solver_made(self):
         # ball.compliance: by MUMPS and C++, the same command.
@@ -102,6 +106,21 @@ class Program(Solves):
         np.testing.assert_allclose(found[:4, apart], np.array([n1, n2, s1, s2])[:, apart], atol=10 * scale)
         np.testing.assert_allclose(found[4:, apart], np.array(axis)[:, apart], atol=1e-3)
 
+    def test_puts_the_lumps_of_the_scene_into_the_map(self):
+        scene, out = self.folder / "lump.toml", self.folder / "map"
+        words = ["--rings", 1, "--out", out, *self.ball_scene()[1:]]
+        hashes = []
+        for modulus_Pa in (50000, 5000):
+            scene.write_text(PLAIN.read_text().replace('"box.obj"', f'"{PLAIN.parent}/box.obj"') + "[[elastic.inclusion]]\n"
+                             f"center_m = [0.0, 0.0, 0.015]\nradius_m = 0.012\nyoungs_modulus_Pa = {modulus_Pa}\n")
+            status, text = condense_program(scene, *words)
+            self.assertEqual(status, 0, text)
+            self.assertIn("elements of 12 mm", text, "as its radius, if that is less")
+            self.assertRegex(text, r"\Afilling with elements: about \d+ s\nfilling with elements: \d+ s\nfactoring: about \d+ s\n"
+                             r"factoring: \d+ s\nsolving: about \d+ s\nsolving: \d+ s\n")
+            hashes.append(struct.unpack_from("<I", out.read_bytes(), 20)[0])
+        self.assertEqual(len({0, *hashes}), 3, "the head says of which")
+
     def test_ctrl_c_ends_it_at_once_and_leaves_nothing(self):
         out = self.folder / "map"
         words = [BUILD / "tact-lab", "condense", *self.ball_scene(), "--mesh-size-m=0.0025", f"--out={out}"]
@@ -112,20 +131,55 @@ class Program(Solves):
         while not list(self.folder.glob("tact-reference-*")) and time.monotonic() < until_s:
             time.sleep(0.02)
         asked.send_signal(signal.SIGINT)
-        self.assertEqual(asked.communicate(timeout=10)[0], "tact-lab condense: interrupted; nothing was written\n")
+        self.assertRegex(asked.communicate(timeout=10)[0],
+                         r"\Afilling with elements: about \d+ s\ntact-lab condense: interrupted; nothing was written\n\Z")
         self.assertEqual(asked.returncode, 1)
         self.assertEqual({path.name for path in self.folder.iterdir()}, {"ball.obj"})
         self.assertEqual(set(pathlib.Path("/tmp").glob("tact-gmsh*")) - before, set())
 
 
+class Lumps(Solves):
+    @staticmethod
+    def organ(*lumps):
+        """A ball of 30 mm, held below z = -15 mm."""
+        point, triangle = ball(0.03, 3)
+        return body.Organ(point, triangle, surface.unit(point), np.full(3, -1.0), np.array([1.0, 1.0, -0.015]), 1.0, 0.45,
+                          lumps=lumps)
+
+    def test_one_is_felt_over_it_and_not_beside_it(self):
+        at_m, size_m = np.array([0.0, 0.0, 0.02]), 0.005
+        made = body.make_body(self.organ(), surface.EdgeLengths(np.zeros((1, 3)), 0.0, 1e3, 0.0, size_m))
+
+        def gives(*lumps):
+            """C_nn E over it and beside it, 1/m, for a patch of 8 mm."""
+            organ = self.organ(*lumps)
+            vertices = np.array([organ.vertex_m[:, 2].argmax(), organ.vertex_m[:, 0].argmax()])
+            rows = compliance.Condensation(organ, made, 0.008, 0.002, 1).of_vertices(vertices)
+            return rows[:, 0] + compliance.half_space_normal_m_per_N(organ, 0.008)
+
+        plain = gives()
+        hard = body.Lump(at_m, 0.008, 10.0)
+        over, beside = gives(hard) / plain
+        self.assertLess(over, 0.95)
+        self.assertAlmostEqual(beside, 1.0, delta=0.01)
+        np.testing.assert_array_equal(gives(hard, body.Lump(at_m, 0.008, 1.0)), plain, "the later one counts")
+
+    def test_one_lies_deeper_than_its_radius(self):
+        condense.check_lumps(self.organ(body.Lump(np.array([0.0, 0.0, 0.02]), 0.0095, 10.0)))
+        for z_m, radius_m, said in ((0.02, 0.011, "below the surface at vertex 2 and a radius of 11 mm"),
+                                    (0.04, 0.003, "outside the surface at vertex 2 and a radius of 3 mm")):
+            with self.assertRaisesRegex(run.Failure, f"elastic.inclusion 1 of 1 has its centre 10 mm {said}; move"):
+                condense.check_lumps(self.organ(body.Lump(np.array([0.0, 0.0, z_m]), radius_m, 10.0)))
+
+
 class MapFile(Solves):
-    JOB = {"out": "x.map", "ring_pitch_m": 0.002, "surface_hash": "0123456789abcdef"}
+    JOB = {"out": "x.map", "ring_pitch_m": 0.002, "surface_hash": "0123456789abcdef", "inclusions_hash": 7}
 
     def test_is_laid_out_as_its_reader_has_it(self):
         organ = cushion()[0]
         rows = np.arange(22.0).reshape(2, 11)
         data = condense.map_bytes(self.JOB, organ, 0.008, rows)
-        self.assertEqual(struct.unpack("<8s4I9d16s", data[:112]), (b"TACTCOMP", 2, 2, 3, 0, 0.45, 0.008, 0.002, -1.0, -1.0, -1.0,
+        self.assertEqual(struct.unpack("<8s4I9d16s", data[:112]), (b"TACTCOMP", 2, 2, 3, 7, 0.45, 0.008, 0.002, -1.0, -1.0, -1.0,
                                                                    1.0, 1.0, 1e-6, b"0123456789abcdef"))
         self.assertEqual(struct.unpack("<22f", data[112:200]),
                          (0.0, 11.0, *range(1, 8), *range(12, 19), 8.0, 9.0, 10.0, 19.0, 20.0, 21.0))

@@ -227,6 +227,27 @@ TEST_F(MeshFormats, ABrokenFileGetsOneSentenceWithItsLineWhereThatIsKnown) {
   expect_refused("nan.stl", spoilt, "nan.stl:6: vertex ");
 }
 
+TEST_F(MeshFormats, ADecimalCommaOrAWordIsNoNumberInAnyText) {
+  const std::string obj = kCubeVertices + kCubeFaces;
+  for (const auto& [name, text] :
+       std::vector<std::pair<std::string, std::string>>{{"a.stl", ascii_stl()},
+                                                        {"a.ply", ply()},
+                                                        {"a.vtk", vtk()},
+                                                        {"a.vtp", vtp()},
+                                                        {"a.off", "OFF\n8 12 0\n" + lines("3 ")},
+                                                        {"a.obj", obj}})
+    for (const std::string bad : {"10,5", "ten"}) {
+      std::string spoilt = text;
+      const std::size_t at = spoilt.find("10 10 0");
+      ASSERT_NE(at, spoilt.npos) << name;
+      spoilt.replace(at, 2, bad);
+      const auto line =
+          std::count(spoilt.begin(), spoilt.begin() + static_cast<long>(at), '\n') + 1;
+      expect_refused(name, spoilt, fmt::format("{}:{}: ", name, line));
+      expect_refused(name, spoilt, bad);
+    }
+}
+
 TEST_F(MeshFormats, WhatAGltfFileLacksIsNamed) {
   json file = gltf();
   file["buffers"][0]["uri"] = "gone.bin";

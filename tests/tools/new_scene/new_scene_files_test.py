@@ -75,6 +75,12 @@ class Placement(unittest.TestCase):
         self.assertTrue(text["mesh"].endswith('/an \\"organ\\".obj"'))
         self.assertEqual(new_scene.text_of(self.JOB | {"is_sound": False}, self.ORGAN, "auto")["mesh"], '"mine.obj"')
 
+    def test_gives_a_thin_organ_a_tear_that_its_press_reaches(self):
+        # An organ of a tenth of the height presses to a tenth of the depth, and pulls to a tenth of the force.
+        thick, thin = (new_scene.text_of(self.JOB, self.ORGAN | {"high_m": [0.05, 0.04, 0.98 + height_m]}, "auto")
+                       for height_m in (0.06, 0.006))
+        self.assertEqual((thick["tear_force_N"], thin["tear_force_N"]), ("0.4", "0.04"))
+
 
 if __name__ == "__main__":
     unittest.main()

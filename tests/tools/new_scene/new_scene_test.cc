@@ -11,69 +11,11 @@
 #include "model/scene/compliance_file.h"
 #include "model/scene/scene.h"
 #include "tests/support/extent.h"
-#include "tests/support/mesh_files.h"
-#include "tests/support/shapes.h"
+#include "tests/tools/new_scene/new_scene_fixture.h"
 
 namespace tact::tools::new_scene::new_scene_test {
 
-namespace fs = std::filesystem;
-
-using model::Vec3;
-using model::mesh::SurfaceMesh;
 using nlohmann::json;
-using tests::Ran;
-
-/// 100 x 80 x 60 mm, far from the origin, as a scanner has it.
-SurfaceMesh ellipsoid_mm(int levels) {
-  SurfaceMesh mesh = tests::make_ball(1.0, levels);
-  for (Vec3& p : mesh.vertex_m) p = {50.0 * p.x + 12.0, 40.0 * p.y - 205.0, 30.0 * p.z + 1310.0};
-  return mesh;
-}
-
-std::string as_stl(const SurfaceMesh& mesh) {
-  std::string text = "solid organ\n";
-  const auto add = [&text](const Vec3& p) {
-    text += "vertex " + std::to_string(p.x) + " " + std::to_string(p.y) + " " +
-            std::to_string(p.z) + "\n";
-  };
-  for (const auto& t : mesh.triangle) {
-    text += "facet normal 0 0 0\nouter loop\n";
-    for (const std::uint32_t v : t) add(mesh.vertex_m[v]);
-    text += "endloop\nendfacet\n";
-  }
-  return text + "endsolid organ\n";
-}
-
-std::string as_obj(const SurfaceMesh& mesh) {
-  std::string text;
-  for (const Vec3& p : mesh.vertex_m)
-    text +=
-        "v " + std::to_string(p.x) + " " + std::to_string(p.y) + " " + std::to_string(p.z) + "\n";
-  for (const auto& t : mesh.triangle)
-    text += "f " + std::to_string(t[0] + 1) + " " + std::to_string(t[1] + 1) + " " +
-            std::to_string(t[2] + 1) + "\n";
-  return text;
-}
-
-class NewScene : public testing::Test {
- protected:
-  Ran run(const std::string& arguments) const {
-    return tests::run_apart(temp_, "tact-lab new-scene", arguments);
-  }
-  std::string path(const std::string& name) const { return temp_.path() + "/" + name; }
-  /// Names in the folder that begin with "mine", in order.
-  std::vector<std::string> made() const {
-    std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(temp_.path()))
-      if (entry.path().filename().string().starts_with("mine"))
-        names.push_back(entry.path().filename().string());
-    std::sort(names.begin(), names.end());
-    return names;
-  }
-
-  tests::TempDirectory temp_;
-  const std::string out_ = path("mine.toml");
-};
 
 TEST_F(NewScene, AScanBecomesASceneThatIsFelt) {
   const std::string organ = temp_.write("organ.stl", as_stl(ellipsoid_mm(3)));
@@ -197,12 +139,30 @@ TEST_F(NewScene, CtrlCLeavesNothing) {
   EXPECT_EQ(made(), std::vector<std::string>{});
 }
 
-TEST_F(NewScene, WhatTactdRefusesIsNotWritten) {
+TEST_F(NewScene, WhatTactdRefusesIsNotWrittenAndTheModulusThatItTakesIsNamed) {
   const std::string organ = temp_.write("organ.obj", as_obj(ellipsoid_mm(2)));
-  const Ran ran = run(organ + " --out " + out_ + " --youngs-modulus-Pa 100000");
+  Ran ran = run(organ + " --out " + out_ + " --youngs-modulus-Pa 100000");
   EXPECT_EQ(ran.status, 2);
   EXPECT_NE(ran.err.find("mine.toml: law compliance is too stiff"), ran.err.npos) << ran.err;
   EXPECT_EQ(made(), std::vector<std::string>{});
+  const std::string words = "write elastic.youngs_modulus_Pa = ";
+  const std::size_t at = ran.err.find(words);
+  ASSERT_NE(at, ran.err.npos) << ran.err;
+  const double modulus_Pa = std::stod(ran.err.substr(at + words.size()));
+  ran = run(organ + " --out " + out_ + fmt::format(" --youngs-modulus-Pa {}", modulus_Pa));
+  EXPECT_EQ(ran.status, 0) << ran.err;
+  EXPECT_EQ(tests::run_program("tactd", out_ + fmt::format(" --check --set "
+                                                           "elastic.youngs_modulus_Pa={}",
+                                                           1.01 * modulus_Pa))
+                .status,
+            2)
+      << "and no softer than needed";
+  EXPECT_EQ(tests::run_program("tactd", out_ + " --free-run --seconds 1 --no-telemetry "
+                                               "--no-black-box --set elastic.youngs_modulus_Pa=1e6 "
+                                               "--set 'device.kind=\"sim-ideal\"'")
+                .status,
+            0)
+      << "to look at, on the ideal one";
 }
 
 TEST_F(NewScene, PlansTheLawForThisPcWithReferencesThatAnotherCanUse) {

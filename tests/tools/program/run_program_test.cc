@@ -188,11 +188,14 @@ TEST(RunProgram, AsksAProgramToEndSoThatItCanEndWhatItHasStarted) {
   EXPECT_TRUE(goes_away(child)) << "process " << child << " goes on";
 }
 
-TEST(RunProgram, ASecondCtrlCLeavesNoProgramBehind) {
+TEST(RunProgram, ASecondCtrlCLeavesNoProgramAndNoFolder) {
   const auto where = folder();
   const pid_t ours = fork();
   if (ours == 0) {  // a program of ours, that a person ends with two quick presses
     const InterruptFlag watch;
+    const auto scratch = ScratchFolder::make("tact-run-program-test");
+    std::ofstream(where.file("scratch")) << scratch->path() << '\n';
+    std::ofstream(scratch->file("log")) << "not empty\n";
     const std::jthread hand([&] {
       if (written_number(where.file("log")) == 0) _exit(1);
       std::raise(SIGINT);
@@ -206,6 +209,10 @@ TEST(RunProgram, ASecondCtrlCLeavesNoProgramBehind) {
   waitpid(ours, &status, 0);
   ASSERT_TRUE(WIFEXITED(status));
   EXPECT_EQ(WEXITSTATUS(status), 130);
+  std::string scratch;
+  std::getline(std::ifstream(where.file("scratch")), scratch);
+  ASSERT_FALSE(scratch.empty());
+  EXPECT_FALSE(fs::exists(scratch)) << scratch;
   const pid_t grandchild = written_number(where.file("log"));
   ASSERT_GT(grandchild, 1);
   EXPECT_TRUE(goes_away(grandchild)) << "process " << grandchild << " goes on";

@@ -8,7 +8,7 @@
 
 #include "model/result.h"
 
-namespace tact::tools::report {
+namespace tact::model::io {
 
 /// All of the cell; nan and inf too.
 std::optional<double> number_in(const std::string& cell);
@@ -22,15 +22,15 @@ struct CsvLine {
 /// begin with # and a byte order mark are passed over.
 class Csv {
  public:
-  static model::Result<Csv> read(const std::string& path);
+  static Result<Csv> read(const std::string& path);
 
   std::optional<std::size_t> find(const std::string& name) const;
   /// Error: no such column; `option` is what names it.
-  model::Result<std::size_t> need(const std::string& name, const std::string& option) const;
+  Result<std::size_t> need(const std::string& name, const std::string& option) const;
   /// Error: no number, or not finite.
-  model::Result<double> number(const CsvLine& line, std::size_t column) const;
+  Result<double> number(const CsvLine& line, std::size_t column) const;
   /// "file:line: what".
-  model::Error blame(int line, const std::string& what) const;
+  Error blame(int line, const std::string& what) const;
   const std::vector<CsvLine>& rows() const { return rows_; }
   int header_line() const { return header_.number; }
 
@@ -40,4 +40,4 @@ class Csv {
   std::vector<CsvLine> rows_;
 };
 
-}  // namespace tact::tools::report
+}  // namespace tact::model::io

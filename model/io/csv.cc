@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/report/csv.h"
+#include "model/io/csv.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,10 +11,7 @@
 
 #include "model/io/input_file.h"
 
-namespace tact::tools::report {
-
-using model::Error;
-using model::Result;
+namespace tact::model::io {
 
 namespace {
 
@@ -53,7 +50,7 @@ Error Csv::blame(int line, const std::string& what) const {
 }
 
 Result<Csv> Csv::read(const std::string& path) {
-  const auto content = model::io::read_file(path);
+  const auto content = read_file(path);
   if (!content) return content.error();
   std::istringstream file(*content);
   Csv csv;
@@ -91,4 +88,4 @@ Result<double> Csv::number(const CsvLine& line, std::size_t column) const {
   return blame(line.number, fmt::format("{}: \"{}\" is no number", header_.cells[column], cell));
 }
 
-}  // namespace tact::tools::report
+}  // namespace tact::model::io
