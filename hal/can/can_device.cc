@@ -269,7 +269,6 @@ class CanDevice final : public Device {
   std::uint64_t cut_reads_ = 0;       // the kernel may have had more than one call takes
   std::uint64_t unknown_frames_ = 0;  // frames of nodes or kinds that are not ours
   ForeignCommands foreign_commands_;
-};  // of the first one, little endian
 };
 
 }  // namespace
