@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <sstream>
 
 #include "hal/registry/open_device.h"
 #include "model/reader/scene_text.h"
@@ -45,11 +46,27 @@ void collect(const toml::table& table, const std::string& path, std::set<std::st
   }
 }
 
+/// The liver's, with the sections that no shipped scene has.
+std::string liver_with_the_rest() {
+  std::ostringstream text;
+  text << std::ifstream(kLiver).rdbuf() << R"(
+[[live]]
+key = "elastic.youngs_modulus_Pa"
+[[elastic.inclusion]]
+center_m = [0.01, 0.02, 0.03]
+radius_m = 0.005
+youngs_modulus_Pa = 5e4
+)";
+  const std::string path = testing::TempDir() + "liver_with_the_rest.toml";
+  std::ofstream(path) << text.str();
+  return path;
+}
+
 std::set<std::string> keys_of_shipped_scenes() {
   std::set<std::string> keys;
-  for (const std::string& path :
-       {kLiver, kScenes + "heart.toml", kScenes + "skin.toml", kScenes + "gum.toml",
-        kScenes + "maintenance.toml", kScenes + "liver_twist.toml", kDevices}) {
+  for (const std::string& path : {kLiver, kScenes + "heart.toml", kScenes + "skin.toml",
+                                  kScenes + "gum.toml", kScenes + "maintenance.toml",
+                                  kScenes + "liver_twist.toml", liver_with_the_rest(), kDevices}) {
     const Result<reader::SceneDocument> document = reader::load_scene_document(path, {});
     EXPECT_TRUE(document) << document.error().message;
     if (document) collect(document->root, "", keys);
@@ -65,13 +82,22 @@ TEST(SceneReference, HasEveryKeyOfTheShippedScenesAndTheyHaveEveryKey) {
     // laws_test.cc reads the section of a law that no shipped scene describes.
     const auto first = shipped.lower_bound(section);
     const bool is_shipped = first != shipped.end() && first->starts_with(section);
-    // condense_test.py reads the lumps, as no shipped organ has one.
-    const bool is_elsewhere = find_law(row.section) || row.section == "elastic.inclusion";
-    if (!row.key.empty() && (is_shipped || !is_elsewhere))
+    if (!row.key.empty() && (is_shipped || !find_law(row.section)))
       reference.insert(section + row.key);
   }
   EXPECT_EQ(reference, shipped);
   EXPECT_GT(reference.size(), 45u);
+}
+
+TEST(SceneReference, ASectionThatNoShippedSceneHasIsRead) {
+  const auto scene =
+      load_scene(liver_with_the_rest(), {"organ.mesh=" + kScenes + "meshes/liver_3116.obj",
+                                         "tool.mesh=" + kScenes + "meshes/forceps_174.obj"});
+  ASSERT_TRUE(scene) << scene.error().message;
+  EXPECT_EQ(scene->live, std::vector<std::string>{"elastic.youngs_modulus_Pa"});
+  const Inclusion& lump = scene->elastic->inclusions.at(0);
+  EXPECT_EQ(norm(lump.center_m - Vec3{0.01, 0.02, 0.03}) + lump.radius_m, 0.005);
+  EXPECT_EQ(lump.youngs_modulus_Pa, 5e4);
 }
 
 TEST(SceneReference, SaysOfEveryKeyWhatIsAllowedAndWhatItMeans) {

@@ -196,10 +196,11 @@ TEST(RunProgram, ASecondCtrlCLeavesNoProgramAndNoFolder) {
     const auto scratch = ScratchFolder::make("tact-run-program-test");
     std::ofstream(where.file("scratch")) << scratch->path() << '\n';
     std::ofstream(scratch->file("log")) << "not empty\n";
-    const std::jthread hand([&] {
+    const std::jthread hand([&, main = pthread_self()] {  // workers take no signal
       if (written_number(where.file("log")) == 0) _exit(1);
-      std::raise(SIGINT);
-      std::raise(SIGINT);
+      pthread_kill(main, SIGINT);
+      while (!is_interrupted()) std::this_thread::yield();
+      pthread_kill(main, SIGINT);
     });
     // Deaf to the first press, so that the second comes before its end.
     (void)run(where, "sh", {"-c", "trap '' TERM; sleep 60 & echo $!; wait"}, 20.0);
