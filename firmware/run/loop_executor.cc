@@ -42,7 +42,8 @@ LoopExecutor::LoopExecutor(const GuardedLoop& guarded)
 }
 
 LoopExecutor::~LoopExecutor() {
-  guarded_.requests.stop.store(true);  // nobody serves the loop any more
+  // Nobody serves the loop any more; one that has ended keeps its state for the report.
+  if (!ended_.load()) guarded_.requests.stop.store(true);
   join();
   hung_.release();
 }

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "firmware/console/operator_view.h"
 #include "firmware/console/say.h"
 #include "firmware/console/service_manager.h"
 #include "firmware/run/loop_executor.h"

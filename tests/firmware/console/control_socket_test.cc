@@ -86,7 +86,7 @@ TEST_F(Control, AnEmptyOrLongWordIsNoneThatIsKnown) {
   EXPECT_FALSE(ask(""));
   const auto request = ask(std::string(5000, 'x').c_str());
   ASSERT_TRUE(request);
-  EXPECT_LE(request->word().size(), 64u);
+  EXPECT_LE(request->word().size(), kLongestControlMessage);
 }
 
 // In a process of its own, whose limit stays low.
