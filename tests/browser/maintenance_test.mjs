@@ -122,7 +122,7 @@ async function follow_the_recording(browser) {
   }
   check(
     "presses the gasket",
-    most(samples, (sample) => sample.force_N) > 0.5,
+    most(samples, (sample) => sample.force_N) > 0.3,
     `${most(samples, (sample) => sample.force_N).toFixed(2)} N`,
   );
   const words = new Set(samples.map((sample) => sample.words));
@@ -242,7 +242,7 @@ async function look_from_outside(browser) {
       window.tact.figure_m !== null &&
       window.tact.tracking_words === "" &&
       window.tact.tick > 10000 &&
-      Math.hypot(...(window.tact.force_N ?? [0])) > 0.9,
+      Math.hypot(...(window.tact.force_N ?? [0])) > 0.3,
     null,
     60000,
   );

@@ -23,7 +23,7 @@ const kPictures = {
       window.tact.figure_m !== null &&
       window.tact.tracking_words === "" &&
       window.tact.tick > 10000 &&
-      Math.hypot(...(window.tact.force_N ?? [0])) > 0.9,
+      Math.hypot(...(window.tact.force_N ?? [0])) > 0.3,
   },
 };
 
