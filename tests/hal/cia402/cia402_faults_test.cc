@@ -2,6 +2,9 @@
 // Every fault of a CiA 402 delta: seen, named, latched, and no torque after it.
 #include <gtest/gtest.h>
 
+#include <vector>
+
+#include "hal/cia402/cia402_cst.h"
 #include "hal/cia402/cia402_delta.h"
 #include "tests/hal/cia402/cia402_bench.h"
 
