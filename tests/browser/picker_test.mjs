@@ -121,11 +121,12 @@ async function check_refusals(page) {
   check("no number is none", await says(page, "has no number"), await words(page));
   await page.locator(`[id="${kSoft}"]`).fill("1,5");
   await page.click("#apply");
-  check("... a decimal comma is told", await says(page, "normal_stiffness_N_per_m: 1,5 is no number: write 1.5"), await words(page));
   check(
-    "... where it stands",
-    (await page.evaluate(() => document.activeElement.id)) === kSoft && (await in_sight(page, kSoft)),
+    "... a decimal comma is told",
+    await says(page, "normal_stiffness_N_per_m: 1,5 is no number: write 1.5"),
+    await words(page),
   );
+  check("... where it stands", (await page.evaluate(() => document.activeElement.id)) === kSoft && (await in_sight(page, kSoft)));
   check(
     "... and the scene before has gone on",
     await waits(
