@@ -44,7 +44,7 @@ LoopExecutor::LoopExecutor(const GuardedLoop& guarded)
 LoopExecutor::~LoopExecutor() {
   // Nobody serves the loop any more; one that has ended keeps its state for the report.
   if (!ended_.load()) guarded_.requests.stop.store(true);
-  join();
+  static_cast<void>(join());  // its error was returned before
   hung_.release();
 }
 
