@@ -5,7 +5,7 @@
 //     auto haptics = tact::Haptics::make("liver.toml");
 //     haptics->arm();                                      // on the request of a person
 //     const auto out = haptics->tick(sample);              // once a period, out.written
-//     haptics->set({"elastic.youngs_modulus_Pa=4000"});    // used when the tool touches nothing
+//     haptics->set({"elastic.youngs_modulus_Pa=4000"});    // used when the tool is out of contact
 #pragma once
 
 #include <atomic>
@@ -56,8 +56,8 @@ class Haptics {
   void reset() RT_SAFE { commands_.reset = true; }
 
   /// Prepares other numbers of the law; takes some tenths of a second, so not in the loop. The tick
-  /// uses them as soon as the tool touches nothing. Keys that are not named keep what they are. One
-  /// thread at a time.
+  /// uses them as soon as the tool is out of contact. Other keys keep their values. One thread at a
+  /// time.
   std::optional<model::Error> set(const std::vector<std::string>& numbers);
   /// All numbers that were set are in use.
   bool is_set() const { return !contacts_.is_pending(); }

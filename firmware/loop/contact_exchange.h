@@ -25,7 +25,7 @@ class ContactExchange {
   /// True until the loop has taken the newest offer.
   bool is_pending() const { return offered_.load(std::memory_order_acquire) != nullptr; }
 
-  /// Loop side: uses the offer, if there is one and the tool touches nothing. If another thread
+  /// Loop side: uses the offer, if there is one and the tool is out of contact. If another thread
   /// replaces the offer in between, a later tick takes that one.
   void take(Controller& controller, TickInput& input) RT_SAFE {
     OfferedContact* offered = offered_.load(std::memory_order_acquire);

@@ -55,7 +55,7 @@ class Controller {
   Controller(const Controller&) = delete;
   Controller& operator=(const Controller&) = delete;
 
-  /// True while the tool touches nothing, so that another tissue changes no force.
+  /// True while the tool is out of contact, so that another tissue changes no force.
   bool is_clear() const RT_SAFE { return contact_->is_clear(); }
   /// Uses this contact from now on; it outlives the controller or the next call.
   void use(model::contact::Contact& contact) RT_SAFE {

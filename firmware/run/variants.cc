@@ -124,7 +124,7 @@ std::optional<std::string> Variants::poll() {
   if (!is_used && !(is_waited_for && --turns_left_ == 0)) return std::nullopt;
   is_offered_ = !is_used;
   const std::string report = fmt::format(
-      "{}{}", what_, is_used ? ": set" : ": prepared, used as soon as the tool touches nothing");
+      "{}{}", what_, is_used ? ": set" : ": prepared, used as soon as the tool is out of contact");
   if (is_waited_for) take_waiting().answer({.done = true, .message = report});
   return report;
 }

@@ -2,7 +2,7 @@
 // variants.h - changes the law's numbers while the loop runs, at the request of a person.
 //
 // An ordinary thread makes the tissue with the new numbers and checks it as at the start. The loop
-// takes it in one tick in which the tool touches nothing (contact_exchange.h), so that no force
+// takes it in one tick in which the tool is out of contact (contact_exchange.h), so that no force
 // steps. On hardware only the keys of the scene's [[live]] may change.
 #pragma once
 

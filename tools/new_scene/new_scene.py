@@ -33,7 +33,7 @@ TIP_ALONE = ["--set", "law=rhombus", "--set", "varies_by_place=false"]  # while 
 FILES = ("organ", "tool", "map", "reference", "tool_reference", "scene")  # the scene is the last to appear
 
 
-def tell(step, text):
+def report(step, text):
     print(f"{step:<15}  {text}", flush=True)
 
 
@@ -76,10 +76,10 @@ class Maker:
                       "--close-holes", *(["--smooth"] if job["smooth"] else []), f"--decimate={job['faces']}"]
         said = json.loads("\n".join(self.ask("tact-mesh", *words)))
         for step in said.get("steps", []):
-            tell(step["step"], step["text"])
+            report(step["step"], step["text"])
         size_m = [high - low for low, high in zip(said["low_m"], said["high_m"])]
         unit = next((name for name, length_m in UNITS_M.items() if length_m == said["unit_m"]), f"{said['unit_m']:g} m")
-        tell("unit", {"named": f"{unit}, as named", "format": f"{unit}, as glTF is in metres; --unit sets another",
+        report("unit", {"named": f"{unit}, as named", "format": f"{unit}, as glTF is in metres; --unit sets another",
                       "size": f"taken as {unit}: {1e3 * max(size_m):.4g} mm across; --unit sets another"}[said["unit_from"]])
         if said["boundary_edges"] > 0:
             raise run.Failure(f"{job['source']}: {said['boundary_edges']} edges stay open after the repair, so it has no inside; "
@@ -87,7 +87,7 @@ class Maker:
         if not MIN_SIZE_M <= max(size_m) <= MAX_SIZE_M:
             raise run.Failure(f"{job['source']}: {max(size_m):.3g} m long, and an organ is {MIN_SIZE_M:g} to {MAX_SIZE_M:g} m; "
                               "name its --unit")
-        tell("organ", f"{said['vertices']} vertices, {said['triangles']} faces, closed, " +
+        report("organ", f"{said['vertices']} vertices, {said['triangles']} faces, closed, " +
              " x ".join(f"{1e3 * length_m:.3g}" for length_m in size_m) + " mm" + (", taken as it is" if job["is_sound"] else ""))
         return said
 
@@ -98,25 +98,25 @@ class Maker:
     def choose_law(self):
         """By tact-lab plan, which leaves its choice in this user's cache for this PC; minutes to an hour."""
         made = self.made
-        tell("reference", "one sphere, by CalculiX: minutes for thousands of vertices")
+        report("reference", "one sphere, by CalculiX: minutes for thousands of vertices")
         self.ask("tact-lab", "reference", made["scene"], "--out", made["reference"])
-        tell("reference", "the whole tool, by finite elements: as long again")
+        report("reference", "the whole tool, by finite elements: as long again")
         # Level 1: the places are nine, and a finer mesh changes their force by 2 %.
         self.ask("tact-lab", "reference", made["scene"], "--tool", "--level", "1", "--out", made["tool_reference"])
         for line in self.ask("tact-lab", "plan", made["scene"], "--reference", made["reference"], "--tool-reference",
                              made["tool_reference"]):
-            tell("plan", self.about(line))
+            report("plan", self.about(line))
         self.ask("tactd", made["scene"], "--check")
 
     def make(self):
         """True if tact-lab plan has chosen the law."""
         organ = self.organ()
         held_max_m = held_box(organ)[1]
-        tell("place", f"the top comes to the tool; held below z = {1e3 * held_max_m[2]:.4g} mm, the lowest tenth")
+        report("place", f"the top comes to the tool; held below z = {1e3 * held_max_m[2]:.4g} mm, the lowest tenth")
         shutil.copy(FOLDER / "forceps.obj", self.made["tool"])
         self.write_scene(organ, "compliance")
         if not self.job["without_map"]:
-            tell("condense", f"{organ['vertices']} vertices, by finite elements: minutes for thousands")
+            report("condense", f"{organ['vertices']} vertices, by finite elements: minutes for thousands")
             self.ask("tact-lab", "condense", self.made["scene"], "--out", self.made["map"])
         # Its own message if it does not take it.
         self.ask("tactd", self.made["scene"], "--check", *(TIP_ALONE if self.job["without_map"] else []))
@@ -127,13 +127,13 @@ class Maker:
                 self.choose_law()
             except run.Failure as none:
                 is_planned = False
-                tell("plan", "none: " + self.about(none.message))
+                report("plan", "none: " + self.about(none.message))
                 self.write_scene(organ, "compliance")
-        tell("check", "tactd takes the scene")
+        report("check", "tactd takes the scene")
         made = [(self.names[name], pathlib.Path(self.made[name])) for name in FILES if os.path.exists(self.made[name])]
         write_all([(path, file.read_bytes()) for path, file in made], self.job["force"])
         for path, _ in made:
-            tell("wrote", path)
+            report("wrote", path)
         return is_planned
 
 
@@ -227,7 +227,7 @@ def tell_next(job, is_planned):
         print(f"\nFeel its tip alone:\n  tactd {scene} {' '.join(TIP_ALONE)} --free-run --seconds 5\nIts map, minutes:\n"
               f"  tact-lab condense {scene} --out {shlex.quote(job['names']['map'])}")
         return
-    tell("law", "as tact-lab plan has chosen for this PC" if is_planned else "compliance, from the map")
+    report("law", "as tact-lab plan has chosen for this PC" if is_planned else "compliance, from the map")
     print(f"\nFeel it:\n  tactd {scene} --free-run --seconds 5")
     if is_planned:
         print(f"On another PC its times differ; there, once:\n  tact-lab plan {scene} --reference "

@@ -162,7 +162,7 @@ def solve(organ, what):
     skin, patch = skin_loads(organ, body, what), make_patch(body, what)
     n = len(patch.sphere)
     if n == 0:
-        raise Failure("the tool touches nothing at its deepest")
+        raise Failure("the tool is out of contact at its deepest")
     moved = elastic.compliance(organ, body, scipy.sparse.hstack([patch.push_m2, skin]))
     cases = []
     for depth_m in what.depths_m:

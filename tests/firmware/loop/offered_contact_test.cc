@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The loop takes a tissue with other numbers while the tool touches nothing.
+// The loop takes a tissue with other numbers while the tool is out of contact.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
