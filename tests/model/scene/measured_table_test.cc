@@ -6,31 +6,16 @@
 #include <cmath>
 
 #include "model/scene/tissue_law.h"
+#include "tests/model/scene/shipped_law.h"
 #include "tests/support/mesh_files.h"
 #include "tests/support/message.h"
 
 namespace tact::model::scene::measured_table_test {
 
-using Overrides = std::vector<std::string>;
-
-Scene shipped(const std::string& name, const Overrides& overrides = {}) {
-  auto scene = load_scene(TACT_SOURCE_DIR "/model/scenes/" + name + ".toml", overrides);
-  EXPECT_TRUE(scene) << scene.error().message;
-  return scene ? std::move(*scene) : Scene{};
-}
-
-std::unique_ptr<TissueLaw> made(const Scene& scene, const std::string& kind) {
-  auto law = make_tissue_law(scene, kind);
-  EXPECT_TRUE(law) << law.error().message;
-  return law ? std::move(*law) : nullptr;
-}
-
-std::unique_ptr<TissueLaw> made(const Scene& scene) { return made(scene, scene.law); }
-
-std::string refusal(const Scene& scene, const std::string& kind) {
-  const auto law = make_tissue_law(scene, kind);
-  return law ? "" : law.error().message;
-}
+using shipped_law::made;
+using shipped_law::Overrides;
+using shipped_law::refusal;
+using shipped_law::shipped;
 
 TEST(MeasuredTable, AMeasuredTableStandsInSeriesWithTheOrganAsAnyTip) {
   const Overrides table{"law=table", "table.data=\"press.csv\""};

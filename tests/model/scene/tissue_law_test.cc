@@ -12,32 +12,18 @@
 
 #include "model/indent/rhombus_patch.h"
 #include "model/scene/tissue_map.h"
+#include "tests/model/scene/shipped_law.h"
 #include "tests/support/mesh_files.h"
 #include "tests/support/test_scene.h"
 
 namespace tact::model::scene::tissue_law_test {
 
-using Overrides = std::vector<std::string>;
+using shipped_law::made;
+using shipped_law::Overrides;
+using shipped_law::refusal;
+using shipped_law::shipped;
+
 const std::string kLinear = "compliance.large_strain=false";  // the organ stays where it was drawn
-
-Scene shipped(const std::string& name, const Overrides& overrides = {}) {
-  auto scene = load_scene(TACT_SOURCE_DIR "/model/scenes/" + name + ".toml", overrides);
-  EXPECT_TRUE(scene) << scene.error().message;
-  return scene ? std::move(*scene) : Scene{};
-}
-
-std::unique_ptr<TissueLaw> made(const Scene& scene, const std::string& kind) {
-  auto law = make_tissue_law(scene, kind);
-  EXPECT_TRUE(law) << law.error().message;
-  return law ? std::move(*law) : nullptr;
-}
-
-std::unique_ptr<TissueLaw> made(const Scene& scene) { return made(scene, scene.law); }
-
-std::string refusal(const Scene& scene, const std::string& kind) {
-  const auto law = make_tissue_law(scene, kind);
-  return law ? "" : law.error().message;
-}
 
 TEST(TissueLaw, SeesAStiffPullThatTearsWithinOneSample) {
   // 10 000 N/m reach the tear force of 0.6 N at 0.06 mm of 12 mm
