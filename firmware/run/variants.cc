@@ -123,7 +123,7 @@ std::optional<std::string> Variants::poll() {
   const bool is_waited_for = waiting_ && !is_in_work_;
   if (!is_used && !(is_waited_for && --turns_left_ == 0)) return std::nullopt;
   is_offered_ = !is_used;
-  const std::string report = fmt::format(
+  std::string report = fmt::format(
       "{}{}", what_, is_used ? ": set" : ": prepared, used as soon as the tool is out of contact");
   if (is_waited_for) take_waiting().answer({.done = true, .message = report});
   return report;

@@ -80,7 +80,7 @@ class Maker:
         size_m = [high - low for low, high in zip(said["low_m"], said["high_m"])]
         unit = next((name for name, length_m in UNITS_M.items() if length_m == said["unit_m"]), f"{said['unit_m']:g} m")
         report("unit", {"named": f"{unit}, as named", "format": f"{unit}, as glTF is in metres; --unit sets another",
-                      "size": f"taken as {unit}: {1e3 * max(size_m):.4g} mm across; --unit sets another"}[said["unit_from"]])
+                        "size": f"taken as {unit}: {1e3 * max(size_m):.4g} mm across; --unit sets another"}[said["unit_from"]])
         if said["boundary_edges"] > 0:
             raise run.Failure(f"{job['source']}: {said['boundary_edges']} edges stay open after the repair, so it has no inside; "
                               "close it in a mesh editor")
@@ -88,7 +88,8 @@ class Maker:
             raise run.Failure(f"{job['source']}: {max(size_m):.3g} m long, and an organ is {MIN_SIZE_M:g} to {MAX_SIZE_M:g} m; "
                               "name its --unit")
         report("organ", f"{said['vertices']} vertices, {said['triangles']} faces, closed, " +
-             " x ".join(f"{1e3 * length_m:.3g}" for length_m in size_m) + " mm" + (", taken as it is" if job["is_sound"] else ""))
+               " x ".join(f"{1e3 * length_m:.3g}" for length_m in size_m) + " mm" +
+               (", taken as it is" if job["is_sound"] else ""))
         return said
 
     def write_scene(self, organ, law):

@@ -3,6 +3,7 @@
 #include "model/scene/scene_keys.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -57,7 +58,8 @@ center_m = [0.01, 0.02, 0.03]
 radius_m = 0.005
 youngs_modulus_Pa = 5e4
 )";
-  const std::string path = testing::TempDir() + "liver_with_the_rest.toml";
+  const std::string path =
+      testing::TempDir() + "liver_with_the_rest_" + std::to_string(getpid()) + ".toml";
   std::ofstream(path) << text.str();
   return path;
 }
