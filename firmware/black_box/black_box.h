@@ -16,7 +16,7 @@
 #include "firmware/black_box/black_box_file.h"
 #include "firmware/black_box/newest_ones.h"
 #include "firmware/telemetry/telemetry.h"
-#include "hal/thread.h"
+#include "hal/threads/thread.h"
 
 namespace tact::firmware::black_box {
 
@@ -67,7 +67,7 @@ class BlackBox final : public telemetry::Recorder {
   std::atomic<bool> ending_{false};
   mutable std::mutex reported_mutex_;  // the loop never takes it
   std::vector<std::string> news_, files_;
-  hal::Thread writer_;  // last: it uses the others
+  hal::threads::Thread writer_;  // last: it uses the others
 };
 
 }  // namespace tact::firmware::black_box

@@ -31,7 +31,7 @@ model::Result<std::unique_ptr<Variants>> Variants::make(const model::scene::Scen
                                                         loop::ContactExchange& contacts,
                                                         telemetry::Telemetry& telemetry) {
   std::unique_ptr<Variants> made(new Variants(scene, parts, requests, contacts, telemetry));
-  auto thread = hal::start_thread("tact-law", [&variants = *made] { variants.run(); });
+  auto thread = hal::threads::start_thread("tact-law", [&variants = *made] { variants.run(); });
   if (!thread) return thread.error();
   made->thread_ = std::move(*thread);
   return made;

@@ -19,7 +19,7 @@
 #include "firmware/loop/requests.h"
 #include "firmware/run/loop_parts.h"
 #include "firmware/telemetry/telemetry.h"
-#include "hal/thread.h"
+#include "hal/threads/thread.h"
 #include "model/scene/variant.h"
 
 namespace tact::firmware::run {
@@ -90,7 +90,7 @@ class Variants {
   std::optional<std::vector<std::string>> job_;
   std::optional<Outcome> outcome_;
   bool ends_ = false;
-  hal::Thread thread_;  // last: it uses the others
+  hal::threads::Thread thread_;  // last: it uses the others
 };
 
 }  // namespace tact::firmware::run

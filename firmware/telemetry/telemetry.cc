@@ -26,7 +26,7 @@ Telemetry::Telemetry(loop::TickRing& ring, FrameBuilder builder, const FramePace
 Telemetry::~Telemetry() { static_cast<void>(stop()); }
 
 std::optional<model::Error> Telemetry::start() {
-  auto thread = hal::start_thread("tact-telemetry", [this] { run(); });
+  auto thread = hal::threads::start_thread("tact-telemetry", [this] { run(); });
   if (!thread) return thread.error();
   thread_ = std::move(*thread);
   return std::nullopt;

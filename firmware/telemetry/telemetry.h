@@ -12,7 +12,7 @@
 #include "firmware/protocol/run_file.h"
 #include "firmware/telemetry/frame_builder.h"
 #include "firmware/telemetry/telemetry_socket.h"
-#include "hal/thread.h"
+#include "hal/threads/thread.h"
 
 namespace tact::firmware::telemetry {
 
@@ -105,7 +105,7 @@ class Telemetry {
   std::atomic<std::uint32_t> variant_{0};
   loop::TickRecord record_;
   std::uint64_t force_hash_;
-  hal::Thread thread_;
+  hal::threads::Thread thread_;
 };
 
 }  // namespace tact::firmware::telemetry

@@ -20,7 +20,7 @@
 #include "firmware/pc/rt_setup.h"
 #include "firmware/watch/stall_detector.h"
 #include "firmware/watch/suspend_detector.h"
-#include "hal/thread.h"
+#include "hal/threads/thread.h"
 
 namespace tact::firmware::watch {
 
@@ -66,7 +66,7 @@ class LoopMonitor {
   SuspendDetector suspend_;
   loop::MonotonicClock clock_;
   std::atomic<bool> ending_{false};
-  hal::Thread thread_;
+  hal::threads::Thread thread_;
 };
 
 }  // namespace tact::firmware::watch

@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "hal/monotonic.h"
-#include "hal/thread.h"
+#include "hal/threads/thread.h"
 #include "hal/vendor_sdk/rotation.h"
 #include "model/time_ns.h"
 
@@ -81,7 +81,7 @@ model::Result<std::shared_ptr<SdkWorker>> SdkWorker::start(const SdkSession& ses
   for (const Part part :
        {Part{"tact-fd", &SdkWorker::run}, Part{"tact-fd-status", &SdkWorker::watch}}) {
     // Each thread keeps the worker alive: one that hangs in the library outlives its device.
-    auto thread = start_thread(part.name, [worker, part] {
+    auto thread = threads::start_thread(part.name, [worker, part] {
       (worker.get()->*part.body)();
       worker->thread_ends();
     });

@@ -21,7 +21,7 @@
 #include <string>
 
 #include "hal/fault_latch.h"
-#include "hal/latest_slot.h"
+#include "hal/threads/latest_slot.h"
 #include "model/types.h"
 
 namespace tact::hal::vendor_sdk {
@@ -58,8 +58,8 @@ class LibraryWorker {
   LibraryWorker& operator=(const LibraryWorker&) = delete;
   virtual ~LibraryWorker() = default;
 
-  LatestSlot<LibraryPose>& poses() RT_SAFE { return poses_; }
-  LatestSlot<LibraryCommand>& commands() RT_SAFE { return commands_; }
+  threads::LatestSlot<LibraryPose>& poses() RT_SAFE { return poses_; }
+  threads::LatestSlot<LibraryCommand>& commands() RT_SAFE { return commands_; }
   /// Its kind is that of the device's folder, its code the library's.
   FaultCause first_trouble() const RT_SAFE { return trouble_.cause(); }
   /// For a person: the first trouble, and a library that has fallen silent; empty without either.
@@ -110,8 +110,8 @@ class LibraryWorker {
   bool follow_power(bool wanted);
 
   std::int64_t cycle_ns_, command_life_ns_;
-  LatestSlot<LibraryPose> poses_;
-  LatestSlot<LibraryCommand> commands_;
+  threads::LatestSlot<LibraryPose> poses_;
+  threads::LatestSlot<LibraryCommand> commands_;
   LibraryCommand command_;  // the thread of the cycle, as the next three
   std::uint64_t sequence_ = 0;
   std::int64_t zero_cycles_ = 0;

@@ -50,7 +50,7 @@ OF_THE_GATE = re.compile(r"\b(limits_in_use|brake_energy_J|slew_beside_ramp_N\w*
                          r"|limit_magnitude|approach|given_energy_J)\(|\bEnergyTank\b|\bThermalLimit\b")
 # Threads start in one place, which returns an Error where the system refuses one and lets no exception out.
 BY_THREAD = re.compile(r"\bstd::j?thread\b(?!::hardware_concurrency)|\bpthread_create\(|\bstd::async\b|\bthread_pool\b")
-THREAD = ("hal/thread.h", "hal/thread.cc")
+THREAD = ("hal/threads/thread.h", "hal/threads/thread.cc")
 # What carries bytes is no business of what reads them.
 TRANSPORT = re.compile(r"\s*#include <((?:sys|linux|libusb[^/>]*)/[^>]+|(?:libusb|gpiod)[^>]*)>")
 MAX_LINES, MAX_COLUMNS = 300, 100
