@@ -42,7 +42,7 @@ LoopExecutor::LoopExecutor(const GuardedLoop& guarded)
 }
 
 LoopExecutor::~LoopExecutor() {
-  // Nobody serves the loop any more; one that has ended keeps its state for the report.
+  // No thread serves the loop any more; one that has ended keeps its state for the report.
   if (!ended_.load()) guarded_.requests.stop.store(true);
   static_cast<void>(join());  // its error was returned before
   hung_.release();

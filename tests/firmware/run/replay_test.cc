@@ -117,7 +117,7 @@ TEST_F(ReplayTest, AnotherSampleGivesAnotherForceAndIsNamed) {
   EXPECT_LE(outcome->first_different, 1801u) << "the gate hides one tick at most";
 }
 
-TEST_F(ReplayTest, EveryDamageIsToldWithHowMuchIsGood) {
+TEST_F(ReplayTest, EveryDamageIsReportedWithHowMuchIsGood) {
   std::remove(path.c_str());
   record(200);
   tests::expect_all_damage_is_reported(path, [&](const std::string& damaged) {
