@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdlib>
 
 #include "model/io/input_file.h"
 
@@ -40,8 +39,7 @@ Refusal why_refused(const std::string& node, const char* rule, std::optional<gid
   if (!given)
     return {fmt::format("{} may not be opened; its udev rule is missing: {}", node, rule),
             kRuleRemedy};
-  return {fmt::format("{} may not be opened: it is of the group haptics, and whoever runs this is "
-                      "not in it",
+  return {fmt::format("{} may not be opened: it is of the group haptics, and its user is not in it",
                       node),
           "sudo adduser $USER haptics, and log in again"};
 }

@@ -24,7 +24,7 @@ as_root() {
 # release_lacks PACKAGE: by the lists of apt, which are fetched where there are none
 release_lacks() {
   apt-cache show dpkg 2>/dev/null | grep -q '^Filename' || as_root apt-get update >/dev/null 2>&1
-  # Of a name that others only refer to, apt-cache tells nothing, and says that all is well.
+  # Of a name that others only refer to, apt-cache prints nothing, and says that all is well.
   [ -z "$(apt-cache show "$1" 2>/dev/null)" ]
 }
 
@@ -65,7 +65,7 @@ need_packages() {
 BUILD_PACKAGES=(g++ cmake ninja-build ca-certificates libfmt-dev libcli11-dev
   nlohmann-json3-dev libtomlplusplus-dev libboost-dev libssl-dev libusb-1.0-0-dev libgpiod-dev libseccomp-dev
   libeigen3-dev libopencv-core-dev libopencv-calib3d-dev)
-# What the measuring tools call or link besides: those that judge a PC and a device, and all of them.
+# What the measuring tools call or link besides: those that check a PC and a device, and all of them.
 LIGHT_TOOL_PACKAGES=(gnuplot-nox libkainjow-mustache-dev rt-tests=cyclictest stress-ng=stress-ng)
 TOOL_PACKAGES=("${LIGHT_TOOL_PACKAGES[@]}" gmsh optional:calculix-ccx libopenblas0 libbenchmark-dev
   python3-vtk9 python3-numpy python3-scipy)
@@ -76,7 +76,7 @@ TEST_PACKAGES=(libgtest-dev libopenigtlink-dev python3-jsonschema python3-numpy 
 RIG_PACKAGES=(qemu-system-x86=qemu-system-x86_64 cpio kmod zstd xz-utils mmdebstrap make g++
   linux-headers-rt-amd64 linux-source)
 PAGE_PACKAGES=(nodejs=node npm=npm)
-# What makes and judges Debian packages (tools/package).
+# What makes and checks Debian packages (tools/package).
 DEB_PACKAGES=(debhelper dpkg-dev fakeroot help2man lintian git=git)
 # What makes a disk image (tools/image), and what boots it (tests/image).
 IMAGE_PACKAGES=(mmdebstrap fdisk=sfdisk e2fsprogs dosfstools=mkfs.fat mtools=mcopy)

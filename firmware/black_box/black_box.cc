@@ -48,7 +48,7 @@ void BlackBox::add(const loop::TickRecord& record) {
   before_ = fault;
 }
 
-void BlackBox::stands(model::Fault fault) {
+void BlackBox::report_fault(model::Fault fault) {
   if (fault == model::Fault::kNone || before_ != model::Fault::kNone) return;
   // The loop no longer ticks, so the file does not wait. before_: each fault is recorded once.
   before_ = waiting_ = fault;

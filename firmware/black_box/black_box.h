@@ -34,7 +34,7 @@ class BlackBox final : public telemetry::Recorder {
   void add(const loop::TickRecord& record) override;
   void add(const protocol::Frame& frame) override { frames_.add(frame); }
   void add_variant(const std::string& chunk) override { variants_ += chunk; }
-  void stands(model::Fault fault) override;
+  void report_fault(model::Fault fault) override;
   /// Starts to write the pending file, once its 0.25 s have passed.
   void work() override;
   /// Writes the pending file, if any.

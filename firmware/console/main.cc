@@ -56,7 +56,7 @@ int main(int argc, char** argv) {
                  "arm: force, after the words \"ready, force is off\"; disarm: no force, and ready "
                  "to be armed again; reset: leave a stop whose cause is gone; stop: force to zero, "
                  "then end; status: how it is; set: other numbers of the law, used as soon as the "
-                 "tool touches nothing")
+                 "tool is out of contact")
       ->required()
       ->check(CLI::IsMember({"arm", "disarm", "reset", "stop", "status", "set"}));
   std::vector<std::string> numbers;

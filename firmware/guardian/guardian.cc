@@ -35,7 +35,7 @@ std::string beside_this_program() {
 
 model::Error refused(const std::string& program, const std::string& why) {
   return model::Error{
-      fmt::format("{} cannot be started ({}), and nobody would zero the device if this program "
+      fmt::format("{} cannot be started ({}), and nothing would zero the device if this program "
                   "died: build or install it again, both together",
                   program, why)};
 }

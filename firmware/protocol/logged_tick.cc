@@ -3,8 +3,6 @@
 // in frame W.
 #include "firmware/protocol/logged_tick.h"
 
-#include <cstddef>
-
 #include "firmware/protocol/labels.h"
 
 namespace tact::firmware::protocol {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/telemetry/telemetry.h"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -39,7 +38,7 @@ std::optional<model::Error> Telemetry::stop() {
   drain();
   publish();
   if (sinks_.recorder) {
-    sinks_.recorder->stands(watch_fault());  // a fault after the loop's last tick
+    sinks_.recorder->report_fault(watch_fault());  // a fault after the loop's last tick
     sinks_.recorder->finish();
   }
   return sinks_.log ? sinks_.log->close() : std::nullopt;
@@ -111,7 +110,7 @@ std::optional<Frame> Telemetry::next_frame() {
   if (builder_.has_news()) {
     frame = builder_.take(ring_.dropped());
   } else {
-    if (sinks_.recorder) sinks_.recorder->stands(found);
+    if (sinks_.recorder) sinks_.recorder->report_fault(found);
     // Only this thread writes newest_, so it reads it without the lock.
     if (found != model::Fault::kNone && newest_.fault == 0) frame = newest_;
   }

@@ -28,7 +28,7 @@ namespace tact::firmware::watch {
 struct GuardianLink {
   const std::atomic<bool>* is_lost = nullptr;  // it has ended; null: there is no guardian
   std::atomic<std::uint64_t>* own_count =
-      nullptr;  // it acts when this stands still; 0: not watched
+      nullptr;  // it acts when this stops counting; 0: not watched
   const std::atomic<std::uint64_t>* its_count = nullptr;
 };
 

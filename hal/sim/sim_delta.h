@@ -68,8 +68,8 @@ inline constexpr SimDeviceSettings kIdeal{.counts_per_turn = 1e8,
 class SimDelta final : public Device {
  public:
   /// Settings as checked by make_sim_delta().
-  /// The hand is led in W. Its base stands as mounted, and MountedDevice turns what it tells; how
-  /// the handle is turned stays as the scene says.
+  /// The hand is led in W. Its base is posed as mounted, and MountedDevice turns what it reports;
+  /// how the handle is turned stays as the scene says.
   SimDelta(const SimDeviceSettings& device, const model::HandSettings& hand,
            const Mounting& mounting = {});
 

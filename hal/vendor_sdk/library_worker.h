@@ -10,7 +10,7 @@
 //   they come back through 2 ms of zero force, so that no step goes into the hand.
 //
 // The first trouble is kept. After it: zero force, then forces off, then not one call more. A
-// library that does not return can be helped by nobody here: the last force may stay in the motors,
+// library that does not return cannot be ended from here: the last force may stay in the motors,
 // and all that is left is to say so.
 #pragma once
 
@@ -79,7 +79,7 @@ class LibraryWorker {
   static void enter_fifo(const char* name);
 
   // The thread of the cycle.
-  /// Passes on what the library told in this cycle.
+  /// Passes on what the library reported in this cycle.
   void publish(LibraryPose pose);
   /// Switches the forces as the loop wants them; the force of this cycle, or nothing when the
   /// forces did not switch.

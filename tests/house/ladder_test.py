@@ -3,7 +3,7 @@
 """The patches of .github/ladder/, which CONTRIBUTING.md walks through, apply to this tree.
 
 Prints every breach as file: sentence. Exit status 0 or 1. With --compile, g++ also reads each source
-that a patch touches, in a copy of the tree.
+that a patch changes, in a copy of the tree.
 """
 import pathlib
 import re
@@ -18,9 +18,9 @@ NAMES = ("hello_law.patch", "hello_device.patch")
 
 def refusal(patch):
     """What git says to a patch that does not apply; nothing when it does."""
-    told = subprocess.run(["git", "-c", "safe.directory=*", "apply", "--check", "--whitespace=error", str(patch)],
-                          cwd=ROOT, capture_output=True, text=True)
-    return told.stderr.strip() if told.returncode else ""
+    output = subprocess.run(["git", "-c", "safe.directory=*", "apply", "--check", "--whitespace=error", str(patch)],
+                            cwd=ROOT, capture_output=True, text=True)
+    return output.stderr.strip() if output.returncode else ""
 
 
 def breaches():
@@ -47,10 +47,10 @@ def not_compiled():
             patch = ROOT / ".github/ladder" / name
             subprocess.run(["git", "apply", "--include=*/*", str(patch)], cwd=copy, check=True, capture_output=True)
             for source in re.findall(r"^\+\+\+ b/(\S+\.cc)$", patch.read_text(), re.M):
-                told = subprocess.run(["g++", "-std=c++20", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "-I.", source],
-                                      cwd=copy, capture_output=True, text=True)
-                if told.returncode:
-                    yield f".github/ladder/{name}: {told.stderr.strip()}"
+                output = subprocess.run(["g++", "-std=c++20", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "-I.", source],
+                                        cwd=copy, capture_output=True, text=True)
+                if output.returncode:
+                    yield f".github/ladder/{name}: {output.stderr.strip()}"
 
 
 def is_blind():

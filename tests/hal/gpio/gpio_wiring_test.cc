@@ -189,7 +189,7 @@ TEST_F(GpioWiring, WhatIsNotWiredIsLeftAlone) {
   EXPECT_FALSE((*opened)->clutch());
 }
 
-TEST_F(GpioWiring, ALineInUseIsToldWithItsUserAndTheOthersAreFreeAgain) {
+TEST_F(GpioWiring, ALineInUseIsReportedWithItsUserAndTheOthersAreFreeAgain) {
   played().user = {{kHeartbeat, "lamp"}};
   const auto opened = open();
   ASSERT_FALSE(opened);

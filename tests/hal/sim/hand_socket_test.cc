@@ -106,7 +106,7 @@ TEST(HandSocket, IgnoresGarbage) {
   EXPECT_EQ(seen.position_m[0], 0.07);
 }
 
-TEST(HandSocket, ReplacesASocketThatNobodyListensTo) {
+TEST(HandSocket, ReplacesASocketWithoutAListener) {
   const std::string path = fresh_path("stale");
   const int dead = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   const sockaddr_un address = address_of(path);

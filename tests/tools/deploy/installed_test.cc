@@ -59,7 +59,7 @@ TEST_F(Installed, TheGuardianLiesBesideTactd) {
   EXPECT_NE(outcome.output.find("tactd starts this program"), std::string::npos) << outcome.output;
 }
 
-TEST_F(Installed, WhoNamesNoSceneIsToldWhereTheyLie) {
+TEST_F(Installed, NamesTheScenesWhereNoneIsGiven) {
   install("tact");
   const Outcome outcome = run("tactd /none.toml");
   EXPECT_EQ(outcome.status, 2);

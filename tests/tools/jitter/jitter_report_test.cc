@@ -59,7 +59,7 @@ JitterResult small_result(std::uint64_t ticks) {
   return result;
 }
 
-TEST(Report, APercentileWithNoSampleBeyondItIsNotTold) {
+TEST(Report, APercentileWithNoSampleBeyondItIsNotReported) {
   const JitterResult result = small_result(1000);
   const auto& wake = result.sink->phase(firmware::loop::Phase::kWake).histogram;
   EXPECT_EQ(percentile_ns(wake, 0.999), wake.percentile_ns(0.999));
@@ -157,7 +157,7 @@ TEST(Compare, FailsOnWhatGrewByMoreThanTheGate) {
   EXPECT_FALSE(compare_results(result_with(22'100), before, 0.1)->is_worse()) << "better is good";
   EXPECT_FALSE(compare_results(before, result_with(90'000), std::nullopt)->is_worse()) << "no gate";
   EXPECT_FALSE(compare_results(result_with(2'000), result_with(2'900), 0.1)->is_worse())
-      << "below a microsecond nothing is told apart";
+      << "below a microsecond nothing is distinguished";
 }
 
 TEST(Compare, JudgesNeitherTheLargestNorAPercentileOfTooFewSamples) {
@@ -176,7 +176,7 @@ TEST(Compare, ReadsResultsOfTheFirstVersion) {
   EXPECT_FALSE(compare_results(old, result_with(20'000), 0.1));
 }
 
-TEST(Compare, TellsWhichConditionsDiffer) {
+TEST(Compare, ReportsWhichConditionsDiffer) {
   json other = result_with(20'000);
   other["rate_Hz"] = 2000;
   other["environment"]["kernel_release"] = "6.1.0-rt";
@@ -240,12 +240,12 @@ TEST_F(JitterProgram, MeasuresUnderLoadInTurnsWithCyclictest) {
   const json result = json::parse(run.output);
   EXPECT_EQ(result["load"], "cpu");
   EXPECT_EQ(result["fault"], "") << "the pause between two slices is none";
-  // At most 400: what a busy PC skips after the last tick of a slice stands in no tick.
+  // At most 400: what a busy PC skips after the last tick of a slice is in no tick.
   EXPECT_NEAR(result["ticks"].get<int>() + result["skipped"].get<int>(), 300, 100);
   EXPECT_NEAR(result["series"]["peer_wake"]["samples"].get<int>(), 300, 100);
 }
 
-TEST_F(JitterProgram, ABareLoopFeelsNothing) {
+TEST_F(JitterProgram, ABareLoopHasNoForce) {
   const auto run = run_program("tact-jitter", "--bare --duration 0.2 --json -");
   ASSERT_EQ(run.status, 0) << run.output;
   const json result = json::parse(run.output);
@@ -277,7 +277,7 @@ TEST_F(JitterProgram, RefusesBadUsageWithARemedy) {
   }
 }
 
-TEST_F(Folder, DoctorTellsItsRowsAsTextAndJsonWithAnExitStatus) {
+TEST_F(Folder, DoctorReportsItsRowsAsTextAndJsonWithAnExitStatus) {
   const auto text = run_program("tact-doctor", "");
   const auto machine = run_program("tact-doctor", "--json");
   const json checks = json::parse(machine.output)["checks"];

@@ -75,7 +75,7 @@ Result<Comparison> compare_results(const json& before, const json& after,
   if (!is_result(before) || !is_result(after))
     return Error{"not a result of tact-jitter; give two jitter.json of its --out folders"};
   Comparison out;
-  // Told, not refused: one may want to see what another kernel gives.
+  // Reported, not refused: one may want to see what another kernel gives.
   for (const char* key : {"subject", "rate_Hz", "load", "armed", "core", "priority", "non_rt"})
     note_unlike(before, after, key, out.unlike);
   for (const char* key : {"kernel_release", "boot_parameters", "cpu", "microcode", "clock_source",

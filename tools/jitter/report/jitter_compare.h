@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // jitter_compare.h - two measurements side by side, and a gate: is the second one worse?
 //
-// Judged are p50, p99 and p99.9 of wake-up, tick and deadline to force. Worse is what grew by more
-// than the gate and by more than 1 us: below that lie the clock's own steps and the cache. The
-// largest of a run is shown, and never judged: two runs of the same loop differ there by chance.
+// Evaluated are p50, p99 and p99.9 of wake-up, tick and deadline to force. Worse is what grew by
+// more than the gate and by more than 1 us: below that lie the clock's own steps and the cache. The
+// largest of a run is shown, and never evaluated: two runs of the same loop differ there by chance.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -186,7 +186,7 @@ std::optional<Error> Run::measure() {
   result_.interrupted = program::is_interrupted();
   result_.measured_s =
       static_cast<double>(sink.ticks() + sink.skipped() + sink.unseen()) / result_.rate_Hz;
-  // A load that died in between would make the numbers better than they are told.
+  // A load that died in between would make the numbers better than they are.
   if (load && !load->is_running()) return Error{"stress-ng ended before the loop; nothing counts"};
   return std::nullopt;
 }

@@ -106,7 +106,7 @@ json case_data(const CaseVerdict& v, const LimitsReport& report) {
   return {{"name", v.subject.name},
           {"what", v.subject.what},
           {"tightened", tightened(v.limits, report.limits)},
-          {"told", is_reported(report, v) ? kReportedInSoftware : ""},
+          {"injected", is_reported(report, v) ? kReportedInSoftware : ""},
           {"has_broken", !broken.empty()},
           {"broken", broken},
           {"commanded", plain(v.worst.commanded_N) + " N"},
@@ -128,7 +128,7 @@ json wall_data(const WallVerdict& wall, const std::string& plot) {
           {"picture", plot}};
 }
 
-/// What the page fills in as it is: words, numbers, and what is there to be told.
+/// What the page fills in as it is: words, numbers, and flags.
 json text_data(const LimitsReport& report) {
   const auto failed = static_cast<std::size_t>(std::ranges::count_if(
                           report.cases, [](const auto& r) { return !r.verdict.passed(); })) +
@@ -161,7 +161,7 @@ json text_data(const LimitsReport& report) {
           {"recovery_W", fmt::format("{:g}", l.recovery_W)},
           {"has_cases", !report.cases.empty()},
           {"simulated", report.simulated},
-          {"any_told", std::ranges::any_of(report.cases, [&](const auto& r) {
+          {"any_injected", std::ranges::any_of(report.cases, [&](const auto& r) {
              return is_reported(report, r.verdict);
            })}};
 }
