@@ -42,11 +42,6 @@ Map2 invertible_offset_map(const SurfaceFrame& f, double height_m) RT_SAFE {
   return m;
 }
 
-Vec3 slope_of(const VertexCompliance& v, std::size_t k) RT_SAFE {
-  const std::array<float, 3>& s = v.slope_times_E_per_m2[k];
-  return {static_cast<double>(s[0]), static_cast<double>(s[1]), static_cast<double>(s[2])};
-}
-
 // The same surface point in the neighbour across edge `edge`.
 SurfacePoint across(const SurfaceView& mesh, const SurfacePoint& surface_point, std::size_t edge,
                     std::uint32_t next) RT_SAFE {

@@ -36,6 +36,12 @@ struct VertexCompliance {
   std::array<std::array<float, 3>, 6> slope_times_E_per_m2{};  // of each along the surface
 };
 
+/// Of the k-th component.
+inline Vec3 slope_of(const VertexCompliance& vertex, std::size_t k) RT_SAFE {
+  const std::array<float, 3>& s = vertex.slope_times_E_per_m2[k];
+  return {static_cast<double>(s[0]), static_cast<double>(s[1]), static_cast<double>(s[2])};
+}
+
 struct SmoothSurface {
   SurfaceView mesh;
   std::span<const SurfaceCorner> corner;         // of each vertex

@@ -45,10 +45,6 @@ std::vector<std::uint32_t> two_rings(const SurfaceView& mesh, std::uint32_t v) {
   return out;
 }
 
-Vec3 slope_of(const VertexCompliance& v, std::size_t k) {
-  const std::array<float, 3>& s = v.slope_times_E_per_m2[k];
-  return {static_cast<double>(s[0]), static_cast<double>(s[1]), static_cast<double>(s[2])};
-}
 void set_slope(VertexCompliance& v, std::size_t k, const Vec3& s) {
   v.slope_times_E_per_m2[k] = {static_cast<float>(s.x), static_cast<float>(s.y),
                                static_cast<float>(s.z)};
@@ -100,48 +96,69 @@ VertexCompliance first_guess(const std::vector<Six>& tensor, const SurfaceView& 
   return out;
 }
 
-struct Fit {
-  std::span<const SurfaceCorner> corner;
-  const VertexComplianceParameters& p;
-  const std::vector<VertexCompliance>& first;
-  std::vector<VertexCompliance>& now;
+// The part of the least-squares step that no sweep changes.
+struct EdgeFit {
+  std::uint32_t to = 0;
+  double length_m = 0.0;
+  Vec3 way_m,
+      derivative;  // of the residual by slope along two axes and by value over the mean edge
+};
+struct VertexFit {
+  std::array<Vec3, 2> axis;
+  double edge_m = 0.0;  // mean
+  Mat3 inverted;
+  std::vector<EdgeFit> edge;
 };
 
-// One least-squares step on the vertex v alone: slope along two axes, value over the mean edge.
-void fit_vertex(const Fit& fit, std::uint32_t v, const std::vector<std::uint32_t>& near) {
-  if (near.empty()) return;
-  const auto [e1, e2] = contact::axes_across(fit.corner[v].normal);
-  double edge_m = 0.0;
-  for (const std::uint32_t w : near) edge_m += norm(fit.corner[w].point_m - fit.corner[v].point_m);
-  edge_m /= static_cast<double>(near.size());
-  const double by_slope = fit.p.slope_weight_ratio, by_value = fit.p.value_weight_ratio;
-  Mat3 a{{Vec3{by_slope, 0, 0}, Vec3{0, by_slope, 0}, Vec3{0, 0, by_value}}};
-  std::array<Vec3, 6> b;
-  VertexCompliance& now = fit.now[v];
-  const VertexCompliance& first = fit.first[v];
-  for (std::size_t k = 0; k < 6; ++k) {
-    const Vec3 change = slope_of(now, k) - slope_of(first, k);
-    const auto value = static_cast<double>(now.times_E_per_m[k] - first.times_E_per_m[k]);
-    b[k] = {-by_slope * dot(change, e1), -by_slope * dot(change, e2), -by_value * value / edge_m};
+VertexFit vertex_fit(const SurfaceView& mesh, std::span<const SurfaceCorner> corner,
+                     const VertexComplianceParameters& p, std::uint32_t v) {
+  VertexFit fit{
+      .axis = contact::axes_across(corner[v].normal), .edge_m = 0.0, .inverted = {}, .edge = {}};
+  for (const std::uint32_t w : contact::neighbours_of(mesh, v)) {
+    const Vec3 way_m = corner[w].point_m - corner[v].point_m;
+    fit.edge.push_back({.to = w, .length_m = norm(way_m), .way_m = way_m, .derivative = {}});
+    fit.edge_m += fit.edge.back().length_m;
   }
-  for (const std::uint32_t w : near) {
-    const Vec3 way_m = fit.corner[w].point_m - fit.corner[v].point_m;
-    const double length_m = norm(way_m);
-    const VertexCompliance& other = fit.now[w];
-    const Vec3 d{0.5 * dot(e1, way_m) / length_m, 0.5 * dot(e2, way_m) / length_m,
-                 edge_m / length_m};
+  if (fit.edge.empty()) return fit;
+  fit.edge_m /= static_cast<double>(fit.edge.size());
+  const auto [e1, e2] = fit.axis;
+  Mat3 a{{Vec3{p.slope_weight_ratio, 0, 0}, Vec3{0, p.slope_weight_ratio, 0},
+          Vec3{0, 0, p.value_weight_ratio}}};
+  for (EdgeFit& edge : fit.edge) {
+    const Vec3 d{0.5 * dot(e1, edge.way_m) / edge.length_m,
+                 0.5 * dot(e2, edge.way_m) / edge.length_m, fit.edge_m / edge.length_m};
     a = a + Mat3{{d.x * d, d.y * d, d.z * d}};
+    edge.derivative = d;
+  }
+  fit.inverted = inverse(a);
+  return fit;
+}
+
+// One least-squares step on one vertex alone: slope along two axes, value over the mean edge.
+void fit_vertex(const VertexFit& fit, const VertexComplianceParameters& p,
+                const VertexCompliance& first, std::span<const VertexCompliance> all,
+                VertexCompliance& now) {
+  const auto [e1, e2] = fit.axis;
+  std::array<Vec3, 6> b, slope;
+  for (std::size_t k = 0; k < 6; ++k) {
+    slope[k] = slope_of(now, k);
+    const Vec3 change = slope[k] - slope_of(first, k);
+    const auto value = static_cast<double>(now.times_E_per_m[k] - first.times_E_per_m[k]);
+    b[k] = {-p.slope_weight_ratio * dot(change, e1), -p.slope_weight_ratio * dot(change, e2),
+            -p.value_weight_ratio * value / fit.edge_m};
+  }
+  for (const EdgeFit& edge : fit.edge) {
+    const VertexCompliance& other = all[edge.to];
     for (std::size_t k = 0; k < 6; ++k) {
       const auto value = static_cast<double>(now.times_E_per_m[k] - other.times_E_per_m[k]);
-      const double by_slopes = 0.5 * dot(slope_of(now, k) + slope_of(other, k), way_m);
-      b[k] -= ((value + by_slopes) / length_m) * d;
+      const double by_slopes = 0.5 * dot(slope[k] + slope_of(other, k), edge.way_m);
+      b[k] -= ((value + by_slopes) / edge.length_m) * edge.derivative;
     }
   }
-  const Mat3 inverted = inverse(a);
   for (std::size_t k = 0; k < 6; ++k) {
-    const Vec3 step = inverted * b[k];
-    set_slope(now, k, slope_of(now, k) + step.x * e1 + step.y * e2);
-    now.times_E_per_m[k] += static_cast<float>(step.z * edge_m);
+    const Vec3 step = fit.inverted * b[k];
+    set_slope(now, k, slope[k] + step.x * e1 + step.y * e2);
+    now.times_E_per_m[k] += static_cast<float>(step.z * fit.edge_m);
   }
 }
 
@@ -154,15 +171,15 @@ std::vector<VertexCompliance> vertex_compliance(const ComplianceMap& map, const 
   std::vector<Six> tensor(count);
   for (std::size_t v = 0; v < count; ++v) tensor[v] = tensor_of(map, mesh.vertex_normal[v], v, p);
   std::vector<VertexCompliance> out(count);
-  std::vector<std::vector<std::uint32_t>> near(count);
+  std::vector<VertexFit> fit(count);
   for (std::uint32_t v = 0; v < count; ++v) {
     out[v] = first_guess(tensor, mesh, v, p.reach_m);
-    near[v] = contact::neighbours_of(mesh, v);
+    fit[v] = vertex_fit(mesh, corner, p, v);
   }
   const std::vector<VertexCompliance> first = out;
-  const Fit fit{corner, p, first, out};
   for (int sweep = 0; sweep < p.sweeps; ++sweep)
-    for (std::uint32_t v = 0; v < count; ++v) fit_vertex(fit, v, near[v]);
+    for (std::uint32_t v = 0; v < count; ++v)
+      if (!fit[v].edge.empty()) fit_vertex(fit[v], p, first[v], out, out[v]);
   return out;
 }
 
