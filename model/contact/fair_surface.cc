@@ -32,6 +32,10 @@ std::vector<double> mean_heights_m(const SurfaceView& mesh) {
   return sum;
 }
 
+struct Corner {
+  Vec3 point_m, normal;
+};
+
 // What no sweep changes at a corner.
 struct CornerFit {
   std::array<Vec3, 2> axis;
@@ -48,8 +52,8 @@ CornerFit corner_fit(const SurfaceView& mesh, std::uint32_t v) {
 
 // One Gauss-Newton step on one corner alone: its normal along two axes, its height over the mean
 // edge.
-void fit_corner(const CornerFit& fit, const FairParameters& p, const SurfaceCorner& first,
-                std::span<const SurfaceCorner> all, SurfaceCorner& corner) {
+void fit_corner(const CornerFit& fit, const FairParameters& p, const Corner& first,
+                std::span<const Corner> all, Corner& corner) {
   const auto [e1, e2] = fit.axis;
   const double turn = p.turn_weight_ratio, height = p.height_weight_ratio;
   const Vec3 turned = corner.normal - first.normal, moved_m = corner.point_m - first.point_m;
@@ -90,17 +94,20 @@ std::array<Vec3, 2> axes_across(const Vec3& normal) {
 std::vector<SurfaceCorner> fair_corners(const SurfaceView& mesh, const FairParameters& p) {
   const std::size_t count = mesh.vertex_m.size();
   const std::vector<double> height_m = mean_heights_m(mesh);
-  std::vector<SurfaceCorner> out(count);
+  std::vector<Corner> now(count);
   std::vector<CornerFit> fit(count);
   for (std::uint32_t v = 0; v < count; ++v) {
     const Vec3& n = mesh.vertex_normal[v];
-    out[v] = {mesh.vertex_m[v] - height_m[v] * n, n};
+    now[v] = {mesh.vertex_m[v] - height_m[v] * n, n};
     fit[v] = corner_fit(mesh, v);
   }
-  const std::vector<SurfaceCorner> first = out;
+  const std::vector<Corner> first = now;
   for (int sweep = 0; sweep < p.sweeps; ++sweep)
     for (std::uint32_t v = 0; v < count; ++v)
-      if (!fit[v].near.empty()) fit_corner(fit[v], p, first[v], out, out[v]);
+      if (!fit[v].near.empty()) fit_corner(fit[v], p, first[v], now, now[v]);
+  std::vector<SurfaceCorner> out(count);
+  for (std::size_t v = 0; v < count; ++v)
+    out[v] = {narrowed(now[v].point_m), narrowed(now[v].normal)};
   return out;
 }
 
