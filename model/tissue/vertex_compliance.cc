@@ -168,17 +168,17 @@ void fit_vertex(const VertexFit& fit, const VertexComplianceParameters& p, const
 }
 
 VertexCompliance packed(const Field& field) {
-  constexpr double kMostSteps = 32767.0;
+  constexpr double kMaxSteps = 32767.0;
   double largest = 0.0;
   for (const Six& axis : field.slope)
     for (const double slope : axis) largest = std::max(largest, std::abs(slope));
   VertexCompliance out;
-  out.slope_step_times_E_per_m2 = static_cast<float>(largest / kMostSteps);
+  out.slope_step_times_E_per_m2 = static_cast<float>(largest / kMaxSteps);
   for (std::size_t k = 0; k < 6; ++k) {
     out.times_E_per_m[k] = static_cast<float>(field.value[k]);
     for (std::size_t axis = 0; axis < 3 && largest > 0.0; ++axis)
       out.slope_steps[k][axis] =
-          static_cast<std::int16_t>(std::lround(field.slope[axis][k] / largest * kMostSteps));
+          static_cast<std::int16_t>(std::lround(field.slope[axis][k] / largest * kMaxSteps));
   }
   return out;
 }
