@@ -40,7 +40,8 @@ void add_run_options(CLI::App& app, Options& o) {
   app.add_option("--set", o.run.scene.overrides, "one key of the scene, as KEY=VALUE; repeatable")
       ->take_all()
       ->allow_extra_args(false);
-  app.add_flag("--bare", o.run.bare, "no scene: an empty loop, what the kernel alone gives");
+  app.add_flag("--bare", o.run.bare,
+               "no scene: an empty loop, what the kernel alone gives; so it is without SCENE");
   app.add_option("--duration", o.run.duration_s, "of the loop, s")
       ->check(tact::model::io::within(0.1, 1e7))
       ->capture_default_str();
@@ -113,10 +114,10 @@ std::optional<Error> write_folder(const JitterResult& result, const Options& o,
   if (auto error = write_json(to_json(result, command), o.out + "/jitter.json")) return error;
   std::string svg;
   if (!o.no_plots && !result.interrupted) {  // after Ctrl-C no program is started any more
-    if (auto drawn = draw_histogram(result, o.out); !drawn) return drawn.error();
-    auto plot = tact::model::io::read_file(o.out + "/histogram.svg");
-    if (!plot) return plot.error();
-    svg = std::move(*plot);
+    if (auto drawn = draw_histogram(result, o.out); !drawn)
+      fmt::print(stderr, "tact-jitter: no picture: {}\n", drawn.error().message);
+    else if (auto plot = tact::model::io::read_file(o.out + "/histogram.svg"))
+      svg = std::move(*plot);
   }
   const std::pair<const char*, std::string> files[] = {
       {"report.html", make_page(result, command, svg)},
@@ -142,9 +143,9 @@ int compare(const program::Program& program, const Options& o) {
 }
 
 int measure(const program::Program& program, Options& o) {
-  // Both or neither.
-  if (o.run.bare != o.run.scene.path.empty())
+  if (o.run.bare && !o.run.scene.path.empty())
     return program.fail(Error{"name one SCENE, or --bare for an empty loop; see --help"});
+  o.run.bare = o.run.scene.path.empty();
   if (!o.out.empty())
     // Outputs are checked before a measurement that may take hours.
     if (auto error = program::prepare_folder(o.out)) return program.fail(*error);
@@ -186,8 +187,10 @@ int measure(const program::Program& program, Options& o) {
 int main(int argc, char** argv) {
   program::Program program(
       "tact-jitter",
-      "Latency and jitter of the loop that a person runs: the scene's law on its device, at its "
-      "rate, phase by\nphase. `tact-jitter compare A B` puts two results side by side.",
+      "Is this PC good enough for the rate? Latency and jitter of the loop that a person runs: the "
+      "scene's law\non its device, phase by phase; without SCENE an empty loop at 1 kHz. "
+      "`tact-jitter "
+      "compare A B` puts two results\nside by side.",
       "Times are us on screen and ns in files. \"largest\" is that of the run and bounds nothing.");
   Options options;
   CLI::App& app = program.options();

@@ -268,7 +268,7 @@ TEST_F(JitterProgram, CtrlCEndsItAtOnceAndKeepsWhatWasMeasured) {
 }
 
 TEST_F(JitterProgram, RefusesBadUsageWithARemedy) {
-  for (const char* arguments : {"", "--bare x.toml", "--bare --load noise", "--bare --rate 5",
+  for (const char* arguments : {"--bare x.toml", "--bare --load noise", "--bare --rate 5",
                                 "compare a.json", "nosuch.toml", "--bare --out /proc/x"}) {
     const auto run = run_program("tact-jitter", arguments);
     EXPECT_EQ(run.status, 2) << arguments << ": " << run.output;
