@@ -105,29 +105,30 @@ std::string plain(double value) {
 }
 
 json case_data(const CaseVerdict& v, const LimitsReport& report) {
-  json broken = json::array(), criteria = json::array();
+  json broken = json::array();
+  std::string criteria;
   for (const Check& c : v.checks) {
     if (!c.holds) broken.push_back(c.message);
     // What the case asks besides the limits, which are the same for all: from its stage on.
-    if (!criteria.empty() || c.message.starts_with("the stage ")) criteria.push_back(c.message);
+    if (!criteria.empty() || c.message.starts_with("the stage "))
+      criteria += (criteria.empty() ? "" : "; ") + c.message;
   }
   const auto& allowed = v.subject.expected.zero_within_s;
-  return {
-      {"name", v.subject.name},
-      {"what", v.subject.what},
-      {"tightened", tightened(v.limits, report.limits)},
-      {"told", is_reported(report, v) ? kReportedInSoftware : ""},
-      {"has_broken", !broken.empty()},
-      {"criteria", fmt::format("{}", fmt::join(criteria.get<std::vector<std::string>>(), "; "))},
-      {"broken", broken},
-      {"commanded", plain(v.worst.commanded_N) + " N"},
-      {"written", fmt::format("{:.4g} N", v.worst.force_N)},
-      {"overshoot", fmt::format("{:.3g} N", v.overshoot_N)},
-      {"zero", v.worst.zero_s ? fmt::format("{:.4g} ms", 1e3 * *v.worst.zero_s) : "-"},
-      {"allowed", allowed ? fmt::format("{:.4g} ms", 1e3 * *allowed) : "-"},
-      {"stages", v.acted_text()},
-      {"fault", v.fault == Fault::kNone ? "" : model::describe(v.fault).name},
-      {"holds", v.passed()}};
+  return {{"name", v.subject.name},
+          {"what", v.subject.what},
+          {"tightened", tightened(v.limits, report.limits)},
+          {"told", is_reported(report, v) ? kReportedInSoftware : ""},
+          {"has_broken", !broken.empty()},
+          {"criteria", criteria},
+          {"broken", broken},
+          {"commanded", plain(v.worst.commanded_N) + " N"},
+          {"written", fmt::format("{:.4g} N", v.worst.force_N)},
+          {"overshoot", fmt::format("{:.3g} N", v.overshoot_N)},
+          {"zero", v.worst.zero_s ? fmt::format("{:.4g} ms", 1e3 * *v.worst.zero_s) : "-"},
+          {"allowed", allowed ? fmt::format("{:.4g} ms", 1e3 * *allowed) : "-"},
+          {"stages", v.acted_text()},
+          {"fault", v.fault == Fault::kNone ? "" : model::describe(v.fault).name},
+          {"holds", v.passed()}};
 }
 
 json wall_data(const WallVerdict& wall, const std::string& plot) {
