@@ -44,7 +44,7 @@ def __getattr__(name):
         import tact_sim
     except ImportError as missing:
         sources = pathlib.Path(__file__).resolve().parent.parent / "python"
-        how = (f"cmake -S {sources} -B build/python -G Ninja && ninja -C build/python, then PYTHONPATH=build/python"
+        how = (f"cmake -S {sources} -B tact_sim -G Ninja && ninja -C tact_sim, then PYTHONPATH=tact_sim"
                if sources.is_dir() else "it is built from the sources of tact")
         raise ImportError(f"tact.Sim needs the module tact_sim ({missing}): {how}") from None
     return tact_sim.Sim

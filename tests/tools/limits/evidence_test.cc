@@ -115,7 +115,8 @@ TEST(HazardMatrix, EachTestHasAResultWithDateAndRevisionWhereOneIsKnown) {
   const auto report = run_plan(tests::make_plate_scene(), {.cases = *choose_cases("ramp,step")});
   ASSERT_TRUE(report);
   std::map<std::string, json> of;
-  for (const json& row : hazards_json(*report).at("tests")) of[row.at("id")] = row;
+  const json table = hazards_json(*report);
+  for (const json& row : table.at("tests")) of[row.at("id")] = row;
   const std::string page = page_html(*report, {});
   std::filesystem::remove(path);
   EXPECT_EQ(of.at("TEST-01").at("result"), "pass");
