@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // tactctl: arms, disarms, resets, stops or asks the tactd that runs a scene.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 
 #include "firmware/console/control_client.h"
 #include "firmware/console/control_name.h"
@@ -21,7 +23,10 @@ tact::model::Result<std::string> folder_of(const std::string& scene_path) {
   using tact::firmware::console::find_controls;
   auto own = tact::model::io::runtime_directory();
   const bool is_own = own && !find_controls(*own, scene_path).empty();
-  if (!is_own && !find_controls(kServices, scene_path).empty()) return std::string(kServices);
+  // One that may not be read has its reason told (control_client.h).
+  const bool closed = access(kServices, R_OK) != 0 && errno == EACCES;
+  if (!is_own && (closed || !find_controls(kServices, scene_path).empty()))
+    return std::string(kServices);
   return own;
 }
 

@@ -159,6 +159,14 @@ int run(int argc, char** argv) {
   if (options.parameters) return print_parameters(*scene, options);
   // Only from the command line, so that no scene can name a library and declare it trusted.
   scene->device.trust_library = options.trust_library;
+  if (options.no_device && !hal::registry::is_simulated(scene->device)) {
+    say(stderr,
+        "tactd: {} and lines are not opened, a simulated delta stands for them: check again "
+        "where they are plugged in\n",
+        scene->device.kind);
+    scene->device.kind = "sim-delta";
+    scene->device.of<hal::LinesSettings>() = {};
+  }
   if (!scene->note.empty()) say(stderr, "tactd: {}\n", scene->note);
   if (!options.replay_path.empty()) return run_replay(*scene, options.replay_path);
   if (const auto refused =

@@ -79,7 +79,10 @@ void add_telemetry(CLI::App& app, Options& o) {
 
 // Options that print something and start no run.
 void add_answers(CLI::App& app, Options& o) {
-  app.add_flag("--check", o.check, "check scene, meshes, law and device, then leave");
+  auto* check = app.add_flag("--check", o.check, "check scene, meshes, law and device, then leave");
+  app.add_flag("--no-device", o.no_device,
+               "with --check: hardware is not opened, a simulated delta stands for it")
+      ->needs(check);
   app.add_flag("--faults", o.faults, "print every fault with its cause and remedy, then leave");
   app.add_flag("--list-devices", o.list_devices,
                "print what is plugged in, what it lacks and the remedy, then leave");

@@ -18,6 +18,7 @@ struct Options {
   std::string socket_path;  // empty: in the runtime directory
   std::string viewers;      // group that may read telemetry; empty: only the same user and root
   bool check = false;       // load everything, then exit
+  bool no_device = false;   // check without the hardware of the scene
   bool arm = false;         // hardware: force as soon as the device is ready
   bool strict = false;      // refuse to run without hard real time
   bool free_run = false;    // simulated time, as fast as the CPU allows

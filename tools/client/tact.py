@@ -37,14 +37,16 @@ TYPES = {"bool": "?", "u8": "u1", "u16": "<u2", "u32": "<u4", "u64": "<u8", "i16
 
 
 def __getattr__(name):
-    """Sim: a scene as a function from poses to forces, of the module tact_sim (tools/python)."""
+    """Sim: a scene as a function from poses to forces, of the module tact_sim."""
     if name != "Sim":
         raise AttributeError(f"module tact has no attribute {name}")
     try:
         import tact_sim
     except ImportError as missing:
-        raise ImportError(f"tact.Sim needs the module tact_sim ({missing}): cmake -S tools/python -B build/python -G Ninja && "
-                          "ninja -C build/python, then PYTHONPATH=build/python") from None
+        sources = pathlib.Path(__file__).resolve().parent.parent / "python"
+        how = (f"cmake -S {sources} -B tact_sim -G Ninja && ninja -C tact_sim, then PYTHONPATH=tact_sim"
+               if sources.is_dir() else "it is built from the sources of tact")
+        raise ImportError(f"tact.Sim needs the module tact_sim ({missing}): {how}") from None
     return tact_sim.Sim
 
 
