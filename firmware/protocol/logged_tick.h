@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// logged_tick.h - a tick in a log: all that went into the controller and came out. A log from the
-// first tick on is enough to compute every force again, bit for bit (replay.h).
+// logged_tick.h - a tick in a log: all that went into the controller and came out, its contacts and
+// both clocks. A log from the first tick on is enough to compute every force again, bit for bit
+// (replay.h).
 #pragma once
 
 #include <array>
@@ -8,9 +9,19 @@
 
 #include "firmware/loop/tick_record.h"
 #include "firmware/protocol/chunks.h"
+#include "firmware/protocol/contacts.h"
 #include "firmware/protocol/record_fields.h"
+#include "firmware/protocol/utc_offset.h"
 
 namespace tact::firmware::protocol {
+
+struct LoggedContact {
+  float surface_point_m[3] = {};
+  float depth_m = 0.0f;
+  ContactState state = ContactState::kFree;
+
+  static FieldTable fields();
+};
 
 struct LoggedTick {
   static constexpr ChunkKind kKind = ChunkKind::kTick;
@@ -23,9 +34,14 @@ struct LoggedTick {
   std::array<std::int32_t, loop::kPhaseCount> phase_ns{};
   loop::TickInput input;
   loop::TickOutput output;
+  UtcOffset utc;
+  std::uint8_t event = 0, event_word = 0;
+  bool sync = false;
+  LoggedContact contact[kMaxContacts] = {};
 
-  static LoggedTick of(const loop::TickRecord& record, bool non_rt);
-  static FieldTable fields();
+  static LoggedTick of(const loop::TickRecord& record, bool non_rt, const UtcOffset& utc = {});
+  /// Of a run whose tool has that many spheres.
+  static FieldTable fields(std::size_t spheres = kMaxContacts);
 };
 
 }  // namespace tact::firmware::protocol

@@ -133,6 +133,8 @@ Frame frame_of_tick(const Frame& picture, const LoggedTick& tick, std::int64_t t
   Frame frame = picture;
   frame.tick = tick.tick;
   frame.time_ns = time_ns;
+  frame.due_ns = tick.due_ns;
+  frame.utc = tick.utc;
   put(frame, tick.input, tick.output);
   // The extremes of this one tick.
   frame.peak_force_N = static_cast<float>(norm(tick.output.written.force_N));
@@ -147,6 +149,8 @@ Frame FrameBuilder::take(std::uint64_t dropped_records) {
   Frame frame;
   frame.tick = r.tick;
   frame.time_ns = r.due_ns - first_due_ns_;
+  frame.due_ns = r.due_ns;
+  frame.utc = utc_;
   frame.late_ticks = r.late_ticks;
   frame.skipped_ticks = r.skipped_ticks;
   frame.dropped_records = dropped_records;

@@ -9,13 +9,13 @@ namespace tact::firmware::telemetry {
 using protocol::LoggedTick;
 
 std::string tick_csv_head(const protocol::RunHeader& header) {
-  return protocol::csv_facts("tact ticks", header) + protocol::csv_columns(LoggedTick::fields()) +
-         '\n';
+  return protocol::csv_facts("tact ticks", header) +
+         protocol::csv_columns(LoggedTick::fields(header.spheres.size())) + '\n';
 }
 
-std::string tick_csv_row(const LoggedTick& tick) {
+std::string tick_csv_row(const LoggedTick& tick, std::size_t spheres) {
   std::string out;
-  protocol::append_csv(out, LoggedTick::fields(), &tick);
+  protocol::append_csv(out, LoggedTick::fields(spheres), &tick);
   return out + '\n';
 }
 
@@ -30,7 +30,7 @@ model::Result<std::string> write_tick_csv(const std::string& log_path,
   if (auto error = out->put(head)) return *error;
   // Damaged ticks are left out, so their numbers are missing in the first column.
   for (LoggedTick tick; log->next(tick);)
-    if (auto error = out->put(tick_csv_row(tick))) return *error;
+    if (auto error = out->put(tick_csv_row(tick, log->header().spheres.size()))) return *error;
   if (auto error = out->finish()) return *error;
   return log->damage();
 }
