@@ -7,11 +7,13 @@
     run = tact.read_recording("run.tactview")       # run.frames["force_N"] is (n, 3), N
     log = tact.read_ticks("run.tactlog")           # log.ticks["force_N"], every tick
     print(log.fields["force_N"]["meaning"])        # unit and meaning stand in the file, too
+    print(tact.utc_ns(log.ticks))                  # since 1970; utc_max_error_us says how true
 
 Fields and units are those of host/PROTOCOL.md. Errors are tact.Error with a sentence. Reads alone: nothing here can move a
 device. Needs numpy.
 """
 import array
+import calendar
 import dataclasses
 import hashlib
 import json
@@ -21,6 +23,7 @@ import select
 import socket
 import stat
 import struct
+import time
 import zlib
 
 try:
@@ -185,6 +188,23 @@ def read_ticks(path):
     except Error as error:  # of a black box that lost its meshes
         damage = "; ".join(filter(None, (damage, str(error).removeprefix(f"{path}: "))))
     return TickLog(file.header, file.rows("tick"), recording, file.fields("tick"), damage)
+
+
+def epoch_ns(header):
+    """ns since 1970 at which CLOCK_MONOTONIC was 0, as it was when the run began: UTC is due_ns plus this."""
+    if "began_monotonic_ns" not in header:
+        raise Error("it was written before files of tact had both clocks; record it again")
+    second, _, rest = header["began_utc"].removesuffix("Z").partition(".")
+    began_ns = 10**9 * calendar.timegm(time.strptime(second, "%Y-%m-%dT%H:%M:%S")) + int(rest.ljust(9, "0"))
+    return began_ns - header["began_monotonic_ns"]
+
+
+def utc_ns(rows):
+    """(n,) ns since 1970, of ticks or frames, by the pair of clocks in each of them; utc_max_error_us says how true it is.
+    Runs of two computers lie over each other by it; those of one by due_ns, exactly."""
+    if "utc_offset_ns" not in (rows.dtype.names or ()):
+        raise Error("its records have no UTC: it was written before; record it again")
+    return rows["due_ns"] + rows["utc_offset_ns"]
 
 
 def _dtype(fields):
