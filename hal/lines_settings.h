@@ -19,12 +19,10 @@ struct LinesSettings {
   std::string chip;  // label or path; empty: no lines
   int estop_a = -1, estop_b = -1;
   int dead_man = -1;
-  int enable = -1, heartbeat = -1, led = -1, scope = -1;
+  int enable = -1, heartbeat = -1, led = -1, scope = -1, sync = -1;
   int grip = -1;                 // foot or hand switch that closes the jaws
   bool grip_closes_low = false;  // at the low level; else at the high one
   int clutch = -1;               // switch that parts tool and handle
-  int sync = -1;
-  // Bit 0 to 7 of a word that other equipment sets
   std::array<int, kEventKeys.size()> event{-1, -1, -1, -1, -1, -1, -1, -1};
   bool wired() const { return !chip.empty(); }
 

@@ -29,8 +29,6 @@ Answer unpack_answer(const std::string& message);
 inline constexpr std::size_t kLongestControlMessage = 1024;
 /// Begins a request for other numbers of the law: KEY=VALUE, with spaces between several.
 inline constexpr std::string_view kSetWord = "set ";
-/// Begins an event for the record of one tick: a number from 1 to 255.
-inline constexpr std::string_view kEventWord = "event ";
 
 /// A client waits for the answer; the destructor closes its connection.
 class ControlRequest {

@@ -28,19 +28,15 @@ tact::model::Result<std::string> folder_of(const std::string& scene_path) {
 /// Appends KEY=VALUE to the word "set", "KEY VALUE" as well; the number of an event.
 std::optional<tact::model::Error> add_numbers(std::string& word,
                                               const std::vector<std::string>& numbers) {
-  if ((word == "event" || word == "set") == numbers.empty())
+  const bool is_event = word == "event";
+  if ((is_event || word == "set") == numbers.empty())
     return tact::model::Error{!numbers.empty() ? word + " takes no numbers"
-                              : word == "set"  ? "set needs KEY=VALUE, or KEY VALUE"
-                                               : "event needs a number from 1 to 255"};
-  if (word == "event") {
-    if (numbers.size() > 1) return tact::model::Error{"event takes one number"};
-    word += ' ' + numbers.front();
-    return std::nullopt;
-  }
+                              : is_event       ? "event needs a number from 1 to 255"
+                                               : "set needs KEY=VALUE, or KEY VALUE"};
   bool is_value = false;
   for (const std::string& number : numbers) {
     word += (is_value ? '=' : ' ') + number;
-    is_value = !is_value && number.find('=') == std::string::npos;
+    is_value = !is_event && !is_value && number.find('=') == std::string::npos;
   }
   if (is_value) return tact::model::Error{numbers.back() + " has no value"};
   return std::nullopt;

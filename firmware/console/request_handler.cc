@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstring>
 #include <ctime>
 #include <iterator>
 #include <limits>
@@ -88,7 +89,7 @@ Answer RequestHandler::do_word(const std::string& word, bool too_early) {
   if (word == "disarm") return disarm();
   if (word == "stop") return stop();
   if (word == "status") return status();
-  if (word.starts_with(kEventWord)) return event(word.substr(kEventWord.size()));
+  if (word.starts_with("event ")) return event(word.substr(strlen("event ")));
   return {.done = false,
           .message = "arm, disarm, reset, stop, status, set and event are known, nothing else"};
 }

@@ -3,7 +3,7 @@
 // and signal handlers.
 //
 // A person's request has a number. The loop executes or refuses it in one tick and echoes the
-// number with the result. An event goes into the record of one tick.
+// number with the result.
 #pragma once
 
 #include <atomic>

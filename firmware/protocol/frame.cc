@@ -4,8 +4,6 @@
 
 #include <cstddef>
 
-#include "firmware/protocol/labels.h"
-
 namespace tact::firmware::protocol {
 namespace {
 

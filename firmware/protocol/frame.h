@@ -7,9 +7,8 @@
 
 #include "firmware/loop/state.h"
 #include "firmware/protocol/chunks.h"
-#include "firmware/protocol/contacts.h"
 #include "firmware/protocol/record_fields.h"
-#include "firmware/protocol/utc_offset.h"
+#include "firmware/protocol/record_parts.h"
 
 namespace tact::firmware::protocol {
 

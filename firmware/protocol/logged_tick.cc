@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "firmware/protocol/labels.h"
-
 namespace tact::firmware::protocol {
 namespace {
 

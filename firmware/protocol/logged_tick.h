@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// logged_tick.h - a tick in a log: all that went into the controller and came out, its contacts and
-// both clocks. A log from the first tick on is enough to compute every force again, bit for bit
-// (replay.h).
+// logged_tick.h - a tick in a log: all that went into the controller and came out. A log from the
+// first tick on is enough to compute every force again, bit for bit (replay.h).
 #pragma once
 
 #include <array>
@@ -9,9 +8,8 @@
 
 #include "firmware/loop/tick_record.h"
 #include "firmware/protocol/chunks.h"
-#include "firmware/protocol/contacts.h"
 #include "firmware/protocol/record_fields.h"
-#include "firmware/protocol/utc_offset.h"
+#include "firmware/protocol/record_parts.h"
 
 namespace tact::firmware::protocol {
 

@@ -26,9 +26,8 @@ void put(Frame& frame, const loop::TickInput& input, const loop::TickOutput& out
   const hal::Tool& tool = input.sample.tool;
   put(frame.tool_position_m, tool.position_m);
   const model::Quat& q = tool.orientation;
-  const double wxyz[4] = {q.w, q.x, q.y, q.z};
-  std::transform(wxyz, wxyz + 4, frame.tool_orientation,
-                 [](double v) { return static_cast<float>(v); });
+  float* wxyz = frame.tool_orientation;
+  for (const double part : {q.w, q.x, q.y, q.z}) *wxyz++ = static_cast<float>(part);
   put(frame.tool_velocity_mps, tool.velocity_mps);
   frame.grip_ratio = static_cast<float>(tool.grip_ratio);
   put(frame.force_N, output.written.force_N);

@@ -34,7 +34,6 @@ class Recorder {
 /// Sinks of ticks and frames; absent ones are skipped.
 struct Sinks {
   std::optional<TelemetrySocket> socket{};
-  // As the socket's memory file and the head of the log have them
   protocol::FieldTable frame_fields = Frame::fields();
   protocol::FieldTable tick_fields = LoggedTick::fields();
   std::optional<protocol::RunWriter> log{};

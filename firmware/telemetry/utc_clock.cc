@@ -28,13 +28,9 @@ protocol::UtcOffset read_utc_offset() {
   }
   timex kernel{};  // asks, changes nothing
   if (adjtimex(&kernel) < 0 || (kernel.status & STA_UNSYNC) != 0) return out;
-  const auto add = [fastest_ns](long error_us) {
-    const std::int64_t sum_us = error_us + fastest_ns / 2000 + 1;
-    return static_cast<std::uint32_t>(
-        std::clamp<std::int64_t>(sum_us, 0, protocol::kMaxUtcError_us));
-  };
-  out.max_error_us = add(kernel.maxerror);
-  out.error_us = add(kernel.esterror);
+  const long took_us = fastest_ns / 2000 + 1, most_us = protocol::kMaxUtcError_us;
+  out.max_error_us = static_cast<std::uint32_t>(std::min(kernel.maxerror + took_us, most_us));
+  out.error_us = static_cast<std::uint32_t>(std::min(kernel.esterror + took_us, most_us));
   return out;
 }
 

@@ -4,12 +4,11 @@
 
 #include <string>
 
-#include "firmware/protocol/utc_offset.h"
+#include "firmware/protocol/record_parts.h"
 
 namespace tact::firmware::telemetry {
 
 protocol::UtcOffset read_utc_offset();
-
 /// 2026-01-31T12:00:00.123456789Z
 std::string date_of(std::int64_t utc_ns);
 
