@@ -242,7 +242,7 @@ class Mcap(unittest.TestCase):
         self.assertEqual(list(self.folder.glob("*.part")), [])
 
     def test_is_of_this_version(self):
-        version = re.search(r"project\(tact VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text())[1]
+        version = re.search(r"set\(TACT_VERSION (\S+)\)", (ROOT / "CMakeLists.txt").read_text())[1]
         done = subprocess.run([BUILD / "tact-mcap", "--version"], capture_output=True, text=True, check=True)
         self.assertEqual(done.stdout, f"tact-mcap {version}\n")
 
