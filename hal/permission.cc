@@ -9,6 +9,7 @@
 #include <algorithm>
 
 #include "model/io/input_file.h"
+#include "model/io/program/remedy.h"
 
 namespace tact::hal {
 
@@ -38,7 +39,10 @@ Refusal why_refused(const std::string& node, const char* rule, std::optional<gid
                      (facts.st_mode & kOfGroup) == kOfGroup;
   if (!given)
     return {fmt::format("{} may not be opened; its udev rule is missing: {}", node, rule),
-            kRuleRemedy};
+            model::io::container_of() == nullptr
+                ? model::io::group_remedy() +
+                      " installs it; then sudo adduser $USER haptics, and log in again"
+                : fmt::format("start the container with --device {}", node)};
   return {fmt::format("{} may not be opened: it is of the group haptics, and its user is not in it",
                       node),
           "sudo adduser $USER haptics, and log in again"};

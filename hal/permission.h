@@ -43,9 +43,6 @@ struct Refusal {
 
 /// The group of the udev rules; none where it does not exist.
 std::optional<gid_t> haptics_group();
-/// The remedy of every missing permission, to follow the rule that is missing.
-inline constexpr const char* kRuleRemedy =
-    "sudo apt install ./tact_*.deb installs it; then sudo adduser $USER haptics, and log in again";
 /// Of a node that was refused; `rule` is that of its device.
 Refusal why_refused(const std::string& node, const char* rule,
                     std::optional<gid_t> group = haptics_group());

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# The packages of tools/package on a machine that has only this release's base system: installed, run,
-# installed again over an edited scene, removed and purged, after which nothing of them is left.
+# The packages of tools/package on a machine that has only this release's base system: installed as the page "From bare
+# PC to first force" says, run, installed again over an edited scene, removed and purged, after which nothing of them is
+# left.
 #
 #   tests/debian_packages.sh [FOLDER]    needs root and mmdebstrap; FOLDER keeps the base system
 set -euo pipefail
@@ -17,7 +18,7 @@ ls "$packages"/tact_*.deb >/dev/null || { echo "debian_packages.sh: run tools/pa
 if [ -n "$cache" ] && [ -e "$cache" ]; then
   tar xf "$cache" -C "$base"
 else
-  mmdebstrap --quiet --variant=apt --include=systemd,udev,man-db,bash-completion "$name" "$base" \
+  mmdebstrap --quiet --variant=apt --include=systemd,udev,man-db,bash-completion,adduser "$name" "$base" \
     "deb http://deb.debian.org/debian $name main" \
     "deb http://deb.debian.org/debian-security $name-security main"
   if [ -n "$cache" ]; then mkdir -p "$1" && tar cf "$cache" --one-file-system -C "$base" .; fi
@@ -50,12 +51,40 @@ for file in /etc/default/grub.d/*.cfg; do [ ! -e "$file" ] || . "$file"; done
 echo "$GRUB_CMDLINE_LINUX" >/boot/grub/grub.cfg
 END
 chmod 755 "$base/usr/sbin/update-grub"
+step "tact-tools, with all that it needs, takes 60 MB at most, and no OpenCV, gnuplot or X11"
+inside 'apt-get -qq update
+apt-get -s -qq --no-install-recommends install /root/tact_*.deb /root/tact-tools_*.deb | sed -n "s/^Inst \([^ ]*\) .*/\1/p" >/root/wanted
+! grep -E "opencv|gnuplot|libx11" /root/wanted || exit 1
+{ apt-cache show --no-all-versions $(grep -v ^tact /root/wanted); dpkg-deb -f /root/tact_*.deb; dpkg-deb -f /root/tact-tools_*.deb; } |
+  awk "/^Installed-Size:/ {kB += \$2} END {print kB, \"kB\"; exit kB > 60000}"'
+step "the page From bare PC to first force does what it says"
+python3 "$root/tests/tools/deploy/first_force.py" "$root/tools/deploy/FIRST_FORCE.md" "$base"
+inside 'tact-mcap --version && tact-doctor --version
+! tact-mcap a b 2>/root/said || exit 1
+grep "apt install python3-numpy" /root/said
+gpasswd -d root haptics >/dev/null && rm -r /etc/tact/mine.toml /run/tact'
 step install
-inside 'apt-get -qq update && apt-get -qq install -y --no-install-recommends /root/*.deb' >"$base/root/log" 2>&1 ||
+inside 'apt-get -qq install -y --no-install-recommends /root/*.deb' >"$base/root/log" 2>&1 ||
   { tail -n 30 "$base/root/log"; exit 1; }
 step "every program prints its version and has a manual page"
 inside 'for program in $(dpkg -L tact tact-view tact-tools tact-lab | grep ^/usr/bin/); do
   $program --version && man -w ${program##*/} >/dev/null; done'
+step "a manual page has examples, files and what to see also, which is there"
+inside 'for page in $(dpkg -L tact tact-view tact-tools tact-lab tact-doc | grep -o "/man./.*[.][157]"); do
+  page=${page##*/}
+  man ${page##*.} ${page%.*} >/root/page
+  for part in EXAMPLES FILES "SEE ALSO"; do grep -qx "$part" /root/page || { echo "$page has no $part"; exit 1; }; done
+  for other in $(sed -n "/^SEE ALSO/,\$ s/\(tact[a-z-]*\)(\([157]\)).*/\2 \1/p" /root/page | tr " " ,); do
+    man -w ${other%,*} ${other#*,} >/dev/null || { echo "$page names $other"; exit 1; }; done; done
+grep -c youngs_modulus_Pa <(man 5 tact-scene)
+cp /usr/share/tact/scenes/liver.toml /root/mine.toml && ln -s /usr/share/tact/scenes/meshes /root/meshes
+tactd /root/mine.toml --set limits.force_N=1 --check >/dev/null && rm /root/mine.toml /root/meshes
+grep -q "<h1" /usr/share/doc/tact-doc/html/tools/deploy/FIRST_FORCE.html && test -s /usr/share/doc/tact-doc/html/index.html'
+step "a program of one's own finds tact-dev and feels a wall"
+inside 'apt-get -qq install -y --no-install-recommends cmake g++ make >/dev/null 2>&1
+cp -r /usr/share/doc/tact-dev/examples /root/own && cmake -S /root/own -B /root/own/build >/dev/null && cmake --build /root/own/build >/dev/null
+/root/own/build/wall | tail -n 1 && /root/own/build/own_loop /usr/share/tact/scenes/liver.toml
+rm -r /root/own && apt-get -qq purge -y --autoremove cmake g++ make >/dev/null 2>&1'
 step "bash completes the options of every program"
 inside 'for program in $(dpkg -L tact tact-view tact-tools tact-lab | grep ^/usr/bin/); do
   name=${program##*/}
@@ -108,10 +137,10 @@ step "the kernel's parameters go with tact-rt"
 inside 'apt-get -qq remove -y tact-rt >/dev/null 2>&1
 grep -x quiet /boot/grub/grub.cfg'
 step "removed: scenes of /etc/tact stay; purged: nothing stays"
-inside 'apt-get -qq remove -y tact tact-view tact-tools tact-lab >/dev/null 2>&1
+inside 'apt-get -qq remove -y tact tact-view tact-tools tact-lab tact-dev tact-doc >/dev/null 2>&1
 test ! -e /usr/bin/tactd && test -e /etc/tact/liver.toml
 mkdir -p /var/lib/tact/black-box
-dpkg --purge tact tact-view tact-tools tact-lab tact-rt >/dev/null 2>&1'
+dpkg --purge tact tact-view tact-tools tact-lab tact-dev tact-doc tact-rt >/dev/null 2>&1'
 after=$(left_over)
 diff <(echo "$before") <(echo "$after") || { echo "debian_packages.sh: that is left"; exit 1; }
 step "all kept"

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # The commands of the README on a machine that has only the base system of a release of Debian: a
-# chroot from debootstrap, a clone of this tree's last commit, tools/run and tools/check twice each;
-# first tools/run --tools.
+# chroot from debootstrap, a clone of this tree's last commit, tools/run, the ladders of CONTRIBUTING.md and
+# tools/check twice each; first tools/run --tools.
 #
 #   tests/fresh_debian.sh [12|13] [FOLDER]    the oldest of tools/releases by default; needs root,
 #                                             debootstrap and 6 GB; FOLDER is kept for a next time
@@ -57,7 +57,9 @@ inside() {
     NODE_EXTRA_CA_CERTS=/etc/ssl/certs/host.crt bash -c "cd /root/tact && $*"
 }
 for round in first second; do
-  for command in './tools/run --tools' './tools/run --headless --seconds 10' './tools/check'; do
+  for command in './tools/run --tools' './tools/run --headless --seconds 10' \
+    'apt-get install -qq -y git python3 >/dev/null && python3 tests/house/ladder_test.py --build' \
+    './tools/check'; do
     echo "== $round time: $command"
     start=$SECONDS
     inside "$command"

@@ -64,20 +64,20 @@ need_packages() {
 # What it takes to build the programs, and the page of the viewer.
 BUILD_PACKAGES=(g++ cmake ninja-build ca-certificates libfmt-dev libcli11-dev
   nlohmann-json3-dev libtomlplusplus-dev libboost-dev libssl-dev libusb-1.0-0-dev libgpiod-dev libseccomp-dev
-  libeigen3-dev libopencv-core-dev libopencv-calib3d-dev)
-# What the measuring tools call or link besides: those that check a PC and a device, and all of them.
+  libeigen3-dev libopencv-core-dev libopencv-calib3d-dev libgtest-dev)
+# What the measuring tools call or link besides: those that judge a PC and a device, and all of them.
 LIGHT_TOOL_PACKAGES=(gnuplot-nox libkainjow-mustache-dev rt-tests=cyclictest stress-ng=stress-ng)
 TOOL_PACKAGES=("${LIGHT_TOOL_PACKAGES[@]}" gmsh optional:calculix-ccx libopenblas0 libbenchmark-dev
   python3-vtk9 python3-numpy python3-scipy)
 # What the tests link or call besides.
-TEST_PACKAGES=(libgtest-dev libopenigtlink-dev python3-jsonschema python3-numpy python3-matplotlib strace
+TEST_PACKAGES=(libopenigtlink-dev python3-jsonschema python3-numpy python3-matplotlib strace
   pybind11-dev python3-dev systemd=systemd-analyze)
 # What the virtual bench needs on this side (tests/rig).
 RIG_PACKAGES=(qemu-system-x86=qemu-system-x86_64 cpio kmod zstd xz-utils mmdebstrap make g++
   linux-headers-rt-amd64 linux-source)
 PAGE_PACKAGES=(nodejs=node npm=npm)
-# What makes and checks Debian packages (tools/package).
-DEB_PACKAGES=(debhelper dpkg-dev fakeroot help2man lintian git=git)
+# What makes and judges Debian packages (tools/package).
+DEB_PACKAGES=(cmark-gfm debhelper dpkg-dev fakeroot help2man lintian git=git python3=python3)
 # What makes a disk image (tools/image), and what boots it (tests/image).
 IMAGE_PACKAGES=(mmdebstrap fdisk=sfdisk e2fsprogs dosfstools=mkfs.fat mtools=mcopy)
 IMAGE_TEST_PACKAGES=(qemu-system-x86=qemu-system-x86_64 ovmf)
@@ -94,15 +94,16 @@ build_programs() {
   command -v ccache >/dev/null 2>&1 && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   for target in "$@"; do  # the measuring tools need more packages than the controller
     case $target in
-      tactd | tactctl | tact-guardian | tact-view | tact-mesh | tact-rig-*) ;;
+      tact_controller | tactd | tactctl | tact-guardian | tact-view | tact-mesh | tact-rig-*) ;;
       tact-doctor | tact-jitter | tact-limits | tact-verify | tact-calibrate) tools=ON ;;
       *) tools=ON lab=ON ;;
     esac
   done
   local options=("-DTACT_TOOLS=$tools" "-DTACT_LAB=$lab")
-  if [ ! -f "$build/build.ninja" ]; then
-    options+=(-DBUILD_TESTING=OFF)
-  elif has_option "$build" TACT_TOOLS $tools && has_option "$build" TACT_LAB $lab; then
+  # Tests are declared, so that every target of CONTRIBUTING.md builds in this folder, too; none is built here.
+  options+=(-DBUILD_TESTING=ON)
+  if [ -f "$build/build.ninja" ] && has_option "$build" BUILD_TESTING ON &&
+    has_option "$build" TACT_TOOLS $tools && has_option "$build" TACT_LAB $lab; then
     options=()  # what an earlier command has asked for stays
   fi
   if [ ${#options[@]} -gt 0 ]; then
@@ -153,8 +154,8 @@ packages_of() {
     build | tests | vectors | failing) echo "${BUILD_PACKAGES[@]}" "${tests[@]}" python3=python3 ;;
     browser) echo "${BUILD_PACKAGES[@]}" "${PAGE_PACKAGES[@]}" "${tests[@]}" chromium stunnel4=stunnel openssl=openssl python3-numpy ;;
     run) echo "${BUILD_PACKAGES[@]}" ;;
-    size) echo "${BUILD_PACKAGES[@]}" libgtest-dev "${clang[@]}" llvm-22 python3=python3 ;;
-    ladder) echo "${BUILD_PACKAGES[@]}" libgtest-dev python3=python3 git=git ;;
+    size) echo "${BUILD_PACKAGES[@]}" "${clang[@]}" llvm-22 python3=python3 ;;
+    ladder) echo "${BUILD_PACKAGES[@]}" python3=python3 git=git ;;
     canaries) echo "${clang[@]}" ;;
     proof) echo clang-22 g++ gappa mmdebstrap python3=python3 ;;
     asan | bits | tsan | rtsan | fuzz | soak) echo "${BUILD_PACKAGES[@]}" "${tests[@]}" "${clang[@]}" xz-utils=xz ;;

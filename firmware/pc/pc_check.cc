@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "model/io/program/remedy.h"
+
 namespace tact::firmware::pc {
 
 const char* name_of(Verdict verdict) {
@@ -29,9 +31,14 @@ std::vector<PcRow> check_pc(const PcQuestion& question) {
   check_permissions(settled, rows);
   check_core(settled, rows);
   check_others(settled, rows);
-  // Each row is built with its remedy; a green one does not need it.
-  for (PcRow& row : rows)
+  const bool contained = model::io::container_of(question.files.root()) != nullptr;
+  for (PcRow& row : rows) {
+    // Each row is built with its remedy; a green one does not need it.
     if (row.verdict == Verdict::kGreen) row.remedy.clear();
+    // A container uses the kernel of its host: what root changes is changed there.
+    if (contained && row.remedy.find("sudo ") != std::string::npos)
+      row.remedy = "on the host: " + row.remedy;
+  }
   return rows;
 }
 

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "firmware/pc/pc_check.h"
+#include "model/io/program/remedy.h"
 
 namespace tact::firmware::pc {
 namespace {
@@ -35,7 +36,7 @@ std::string boot_parameters(const PcQuestion& q) {
   return fmt::format(
       "{1} and boot, or: add isolcpus=domain,managed_irq,{0} nohz_full={0} rcu_nocbs={0} "
       "irqaffinity={2} to GRUB_CMDLINE_LINUX in /etc/default/grub, sudo update-grub, boot",
-      q.core, kRtPackageRemedy, others);
+      q.core, model::io::packages_remedy(), others);
 }
 
 /// RT-6: a core of its own.
@@ -109,7 +110,7 @@ PcRow interrupt_row(const PcQuestion& q) {
                    : fmt::format(
                          "{}, or until the next boot: for i in {}; do echo {} | sudo tee "
                          "/proc/irq/$i/smp_affinity_list; done",
-                         kRtPackageRemedy, numbers, others);
+                         model::io::packages_remedy(), numbers, others);
   return row;
 }
 
@@ -125,7 +126,7 @@ PcRow governor_row(const PcQuestion& q) {
           .remedy = governor
                         ? fmt::format("{}, or until the next boot: echo performance | sudo tee "
                                       "{}/cpu*/cpufreq/scaling_governor",
-                                      kRtPackageRemedy, kCpus)
+                                      model::io::packages_remedy(), kCpus)
                         : "set the highest speed in the firmware (BIOS) or on the host"};
 }
 
@@ -148,8 +149,8 @@ PcRow sleep_row(const PcQuestion& q) {
                              : fmt::format("/dev/cpu_dma_latency may not be written, the deepest "
                                            "state wakes in {} us",
                                            slowest_us),
-          .why = kPowerReason.why,
-          .remedy = kPowerReason.remedy};
+          .why = kPowerReason,
+          .remedy = model::io::rights_remedy(q.files.root())};
 }
 
 /// RT-7: nothing else runs on the other hardware thread of the core.

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "firmware/pc/pc_check.h"
+#include "model/io/program/remedy.h"
 
 namespace tact::firmware::pc {
 namespace {
@@ -47,8 +48,8 @@ PcRow kernel_row(const PcFiles& files) {
                                realtime ? ", PREEMPT_RT"
                                : known  ? ", not PREEMPT_RT"
                                         : ""),
-          .why = kKernelReason.why,
-          .remedy = kKernelReason.remedy};
+          .why = kKernelReason,
+          .remedy = kKernelRemedy};
 }
 
 /// RT-9. The flag "hypervisor" is set by the machine that the kernel runs in.
@@ -56,13 +57,23 @@ PcRow machine_row(const PcFiles& files) {
   const auto cpu = files.text("/proc/cpuinfo");
   // With the leading blank: the word is one of the processor's flags.
   const bool guest = cpu && cpu->find(" hypervisor") != std::string::npos;
+  const auto maker = files.line("/sys/class/dmi/id/sys_vendor");
+  const bool wsl =
+      files.line("/proc/sys/kernel/osrelease").value_or("").find("microsoft") != std::string::npos;
+  const auto* const container = model::io::container_of(files.root());
   return {.name = "machine",
           .verdict = verdict_of(cpu.has_value(), !guest),
-          .found = !cpu    ? "unknown"
-                   : guest ? "a virtual machine"
-                           : "no hypervisor",
+          .found = !cpu ? "unknown"
+                        : fmt::format("{}{}{}",
+                                      wsl              ? "WSL, a virtual machine"
+                                      : guest && maker ? "a virtual machine of " + *maker
+                                      : guest          ? "a virtual machine"
+                                                       : "no hypervisor",
+                                      container == nullptr ? "" : ", in a container: ",
+                                      container == nullptr ? "" : container->name),
           .why = "another system can take the CPU at any time, unseen",
-          .remedy = "run tactd on the PC itself; here numbers only compare with each other"};
+          .remedy = wsl ? "boot Debian on the PC itself; Windows schedules WSL"
+                        : "run tactd on the PC itself; here numbers only compare with each other"};
 }
 
 /// RT-10. A clock on neither list stays unknown.
@@ -118,8 +129,8 @@ PcRow priority_row(const PcFiles& files) {
           .found = free            ? "any (CAP_SYS_NICE)"
                    : limit.empty() ? "unknown"
                                    : fmt::format("up to {} of {}", limit, kHighestPriority),
-          .why = kPriorityReason.why,
-          .remedy = kPriorityReason.remedy};
+          .why = kPriorityReason,
+          .remedy = model::io::rights_remedy(files.root())};
 }
 
 /// RT-2. Any limit in bytes is red, because MCL_FUTURE also counts all later memory.
@@ -132,8 +143,8 @@ PcRow memory_row(const PcFiles& files) {
                    : limit.empty()        ? "unknown"
                    : limit == "unlimited" ? limit
                                           : fmt::format("at most {} bytes", limit),
-          .why = kMemoryReason.why,
-          .remedy = kMemoryReason.remedy};
+          .why = kMemoryReason,
+          .remedy = model::io::rights_remedy(files.root())};
 }
 
 /// RT-12: an inherited limit kills the thread without a message.

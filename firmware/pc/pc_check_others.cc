@@ -83,7 +83,7 @@ PcRow slack_row(const PcFiles& files, const std::vector<Thread>& threads) {
             .verdict = Verdict::kUnknown,
             .found = "no loop runs; it asks for 1 ns when it starts",
             .why = "the kernel may wake a thread so much later than it asked",
-            .remedy = "build/tactd SCENE in another terminal, then ask again"};
+            .remedy = "tactd SCENE in another terminal, then ask again"};
   for (const Thread& t : threads) {
     if (t.name != "tact-loop") continue;
     const auto slack = files.line(fmt::format("/proc/{}/timerslack_ns", t.id));
@@ -153,7 +153,7 @@ void check_devices(const PcQuestion& q, std::vector<PcRow>& rows) {
                     .verdict = Verdict::kUnknown,
                     .found = "none is plugged in",
                     .why = "only the simulated device has a force",
-                    .remedy = "build/tactd --list-devices lists what is looked for"});
+                    .remedy = "tactd --list-devices lists what is looked for"});
 }
 
 }  // namespace

@@ -143,6 +143,10 @@ int run(int argc, char** argv) {
   firmware::run::Options& options = parsed.options;
   if (options.faults) return print_faults(options.json_path);
   if (options.list_devices) return print_devices(options.json_path);
+  if (options.cite) {
+    say(stdout, "{}", firmware::run::citation());
+    return 0;
+  }
   if (options.help_scene) {
     say(stdout, "{}", model::scene::scene_reference(hal::registry::visit_device));
     return 0;
@@ -159,6 +163,14 @@ int run(int argc, char** argv) {
   if (options.parameters) return print_parameters(*scene, options);
   // Only from the command line, so that no scene can name a library and declare it trusted.
   scene->device.trust_library = options.trust_library;
+  if (options.no_device && !hal::registry::is_simulated(scene->device)) {
+    say(stderr,
+        "tactd: {} and lines are not opened, a simulated delta replaces them: check again "
+        "where they are plugged in\n",
+        scene->device.kind);
+    scene->device.kind = "sim-delta";
+    scene->device.of<hal::LinesSettings>() = {};
+  }
   if (!scene->note.empty()) say(stderr, "tactd: {}\n", scene->note);
   if (!options.replay_path.empty()) return run_replay(*scene, options.replay_path);
   if (const auto refused =

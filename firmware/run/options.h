@@ -18,6 +18,7 @@ struct Options {
   std::string socket_path;  // empty: in the runtime directory
   std::string viewers;      // group that may read telemetry; empty: only the same user and root
   bool check = false;       // load everything, then exit
+  bool no_device = false;   // check without the hardware of the scene
   bool arm = false;         // hardware: force as soon as the device is ready
   bool strict = false;      // refuse to run without hard real time
   bool free_run = false;    // simulated time, as fast as the CPU allows
@@ -25,6 +26,7 @@ struct Options {
   bool faults = false;      // print the fault table
   bool help_scene = false;  // print every scene key
   bool list_devices = false;
+  bool cite = false;             // print how to cite this build
   bool parameters = false;       // print the numbers of the scene's law
   std::string black_box_folder;  // empty: below the user's state folder
   bool no_black_box = false;

@@ -184,7 +184,7 @@ void IgtlLink::take(const MessageHead& head, const pose::Pose& pose) {
   if (!std::exchange(reported_strange_, true))
     say_(
         fmt::format("OpenIGTLink: \"{}\" is no body of the operator; it is left out, and others "
-                    "whose name is that of no role (host/igtl/README.md)",
+                    "whose name is that of no role",
                     head.device));
 }
 

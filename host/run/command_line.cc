@@ -27,7 +27,7 @@ void add_igtl(CLI::App& app, igtl::IgtlOptions& options, CLI::Option* registrati
       app.add_option(
              "--igtl", options.port,
              "TCP port for OpenIGTLink (3D Slicer takes 18944), off without it: pose, force "
-             "and status out, trackers' poses in; 0 takes any free one (host/igtl/README.md)")
+             "and status out, trackers' poses in; 0 takes any free one")
           ->check(model::io::within(0, 65535))
           ->excludes(open)
           ->excludes(registration);
@@ -50,7 +50,7 @@ void add_page(CLI::App& app, Options& options) {
       ->capture_default_str();
   app.add_option("--url", options.viewer.public_url,
                  "address of a proxy with TLS before it, as https://name:port/, for the link that "
-                 "is printed (host/server/README.md)");
+                 "is printed");
   app.add_option(
       "--page", options.viewer.page_folder,
       "folder of the built page (default: ../share/tact/page or page/ beside this program)");
@@ -68,17 +68,16 @@ void add_source(CLI::App& app, Options& options) {
   app.add_option("--export", options.export_csv,
                  "with --open: write this CSV file (m, s, N, us, as its columns say) and leave")
       ->needs(open);
-  app.add_option("--scenes", options.scenes,
-                 "for who starts tactd and tact-view in simulation, as tools/run: folder with the "
-                 "--parameters of scenes that the page offers; a request is a line of the output "
-                 "(host/server/README.md)")
+  app.add_option(
+         "--scenes", options.scenes,
+         "for who starts tactd and tact-view in simulation: folder with the --parameters of "
+         "scenes that the page offers; a request is a line of the output")
       ->excludes(open);
 }
 
 void add_operator(CLI::App& app, Options& options) {
   CLI::Option* tracking = app.add_option(
-      "--tracking", options.tracking,
-      "description of the operator's tracker, SCENE.tracking.toml (host/tracking/README.md)");
+      "--tracking", options.tracking, "description of the operator's tracker, SCENE.tracking.toml");
   CLI::Option* registration =
       app.add_flag("--register", options.registration,
                    "with --tracking and a running tactd: find the pose of the tracker from poses "

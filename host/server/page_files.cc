@@ -52,7 +52,8 @@ std::optional<Error> PageFiles::load(const std::string& folder) {
     files_[url] = {mime_of(it->path()), std::move(*content)};
   }
   if (find("/") == nullptr)
-    return Error{fmt::format("{}: no page there; tools/run builds it; or give --page", folder)};
+    return Error{
+        fmt::format("{}: no page there; build it from the sources, or name one by --page", folder)};
   return std::nullopt;
 }
 

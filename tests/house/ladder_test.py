@@ -3,7 +3,8 @@
 """The patches of .github/ladder/, which CONTRIBUTING.md walks through, apply to this tree.
 
 Prints every breach as file: sentence. Exit status 0 or 1. With --compile, g++ also reads each source
-that a patch changes, in a copy of the tree.
+that a patch changes, in a copy of the tree, and the folder that tools/run configures there has every
+target of both. With --build, the commands of the guide are run in this tree, on top of tools/run.
 """
 import pathlib
 import re
@@ -51,6 +52,37 @@ def not_compiled():
                                         cwd=copy, capture_output=True, text=True)
                 if output.returncode:
                     yield f".github/ladder/{name}: {output.stderr.strip()}"
+        yield from not_declared(copy)
+
+
+def not_declared(copy):
+    """Targets of the guide that are not in the folder that tools/run configures; ninja itself builds nothing."""
+    for name in ("CMakeLists.txt", ".git"):
+        (copy / name).symlink_to(ROOT / name)
+    configured = subprocess.run(
+        ["bash", "-c", 'root=$PWD; . tools/packages.sh; ninja() { :; }; build_programs "$root/build" tactd'],
+        cwd=copy, capture_output=True, text=True)
+    if configured.returncode:
+        yield f"tools/packages.sh: {configured.stderr.strip()}"
+        return
+    for command in commands():
+        for words in re.findall(r"ninja -C build ([\w ]+)", command):
+            output = subprocess.run(["ninja", "-C", "build", "-n", *words.split()], cwd=copy, capture_output=True, text=True)
+            if output.returncode:
+                yield f".github/CONTRIBUTING.md: after tools/run, {(output.stdout + output.stderr).strip().splitlines()[-1]}"
+
+
+def commands():
+    """The blocks of the guide that apply a patch, build, run, and take it back."""
+    guide = (ROOT / ".github/CONTRIBUTING.md").read_text()
+    return [block for block in re.findall(r"^```\n(.*?)^```", guide, re.S | re.M) if "git apply .github/ladder/" in block]
+
+
+def not_built():
+    for block in commands():
+        output = subprocess.run(["bash", "-exc", block], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        if output.returncode:
+            yield f".github/CONTRIBUTING.md: {output.stdout[-2000:].strip()}"
 
 
 def is_blind():
@@ -65,6 +97,8 @@ def main():
     found = list(breaches())
     if sys.argv[1:] == ["--compile"] and not found:
         found += not_compiled()
+    if sys.argv[1:] == ["--build"] and not found:
+        found += not_built()
     if is_blind():
         found.append("a patch that does not apply is not seen")
     print(*(f"{breach}\n" for breach in found), sep="", end="")

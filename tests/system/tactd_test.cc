@@ -29,6 +29,20 @@ TEST_F(Tactd, ChecksAGoodSceneAndLeaves) {
     EXPECT_TRUE(has(outcome, part)) << part << " in: " << outcome.output;
 }
 
+TEST_F(Tactd, ProofReadsASceneOfHardwareAtTheDesk) {
+  const std::string falcon =
+      kLiver +
+      " --check --set 'device.kind=\"falcon\"' --set "
+      "device.lines.chip=none --set device.lines.estop_a=1 --set device.lines.estop_b=2";
+  const Outcome plugged = tactd(falcon);
+  EXPECT_EQ(plugged.status, 2) << "no Falcon and no such chip is here: " << plugged.output;
+  const Outcome desk = tactd(falcon + " --no-device");
+  EXPECT_EQ(desk.status, 0) << desk.output;
+  EXPECT_TRUE(has(desk, "falcon and lines are not opened") && has(desk, ": sound")) << desk.output;
+  EXPECT_EQ(tactd(falcon + " --no-device --set device.falcon.no_such_key=1").status, 2);
+  EXPECT_EQ(tactd(kLiver + " --no-device").status, 2) << "it would run without its device";
+}
+
 TEST_F(Tactd, RefusesALawThatNeedsMoreThanHalfAPeriod) {
   const std::string slow = TACT_SOURCE_DIR
       "/model/scenes/gum.toml --set spring_patch.integrator=implicit-euler --set "
@@ -84,6 +98,19 @@ TEST_F(Tactd, PrintsEveryFaultWithItsRemedy) {
   EXPECT_EQ(words.at("faults").size(), tact::model::fault_table().size());
   ASSERT_EQ(words.at("states").size(), 4U) << "by number, for the page";
   EXPECT_EQ(words.at("states")[2].at("name"), "armed");
+}
+
+TEST_F(Tactd, CitesItselfWithTheCommitOfItsBuild) {
+  std::ifstream file(TACT_SOURCE_DIR "/CITATION.cff");
+  const std::string citation{std::istreambuf_iterator<char>(file), {}};
+  const Outcome out = tactd("--cite");
+  EXPECT_EQ(out.status, 0);
+  ASSERT_TRUE(out.output.starts_with(citation)) << out.output;
+  const std::string commit = out.output.substr(citation.size());
+  EXPECT_TRUE(commit.starts_with("commit: \"") && commit.ends_with("\"\n")) << commit;
+  const std::string version = tactd("--version").output;
+  EXPECT_NE(version.find("(" + commit.substr(9, commit.size() - 11) + ")"), std::string::npos)
+      << version;
 }
 
 TEST_F(Tactd, AReportHoldsEveryNumberThatProvesARun) {

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """From a tick log, or from the tactd that runs, to pictures: the force in time; of a log also how long a tick takes.
 
-    build/tactd model/scenes/liver.toml --seconds 20 --record run.tactlog
-    python3 tools/client/example.py run.tactlog --out .
-    python3 tools/client/example.py --seconds 10 --out .          # while tactd runs
+    tactd SCENE --seconds 20 --record run.tactlog
+    python3 example.py run.tactlog --out .
+    python3 example.py --seconds 10 --out .          # while tactd runs
 
 Run it as a whole, or cell by cell (# %%) in an editor that knows them. Needs numpy and matplotlib.
 """

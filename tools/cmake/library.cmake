@@ -20,7 +20,7 @@ target_include_directories(tact_controller INTERFACE
   $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/tact>)
 target_link_libraries(tact_controller PRIVATE fmt::fmt OpenSSL::Crypto tomlplusplus::tomlplusplus)
 
-if(PROJECT_IS_TOP_LEVEL)  # no component of tools/package
+if(PROJECT_IS_TOP_LEVEL)  # the package tact-dev
   include(CMakePackageConfigHelpers)
   set(config ${CMAKE_INSTALL_LIBDIR}/cmake/tact)
   write_basic_package_version_file(${PROJECT_BINARY_DIR}/tactConfigVersion.cmake COMPATIBILITY SameMinorVersion)

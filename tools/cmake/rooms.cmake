@@ -57,6 +57,8 @@ function(tact_room_text folder file)
     set(source ${ARGV3})
   endif()
   file(READ ${source} text)
+  string(REPLACE "\"build/" "\"" text "${text}")  # of a command; who has installed tact has no such folder
+  string(REPLACE "\"tests/" "\"" text "${text}")
   file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/text/${folder}/${file}.h @ONLY CONTENT
     "// made from @folder@/@file@\n#pragma once\nnamespace tact::@namespace@ {\n\
 inline constexpr const char* @name@ = R\"~~(@text@)~~\";\n}\n")

@@ -11,8 +11,8 @@
 #include "model/io/file_writer.h"
 #include "model/io/input_file.h"
 #include "model/io/json.h"
+#include "model/io/program/installed.h"
 #include "model/io/program/within.h"
-#include "tools/jitter/report/jitter_compare.h"
 #include "tools/jitter/report/jitter_report.h"
 #include "tools/jitter/run/load.h"
 #include "tools/jitter/trace/tick_trace.h"
@@ -30,8 +30,6 @@ struct Options {
   JitterOptions run;
   std::string out, json_path, peer, submit;
   bool no_plots = false;
-  std::string before, after;
-  double gate_percent = 0.0;
 };
 
 // NOLINTNEXTLINE(readability-function-size): a table of options
@@ -40,7 +38,8 @@ void add_run_options(CLI::App& app, Options& o) {
   app.add_option("--set", o.run.scene.overrides, "one key of the scene, as KEY=VALUE; repeatable")
       ->take_all()
       ->allow_extra_args(false);
-  app.add_flag("--bare", o.run.bare, "no scene: an empty loop, what the kernel alone gives");
+  app.add_flag("--bare", o.run.bare,
+               "no scene: an empty loop, what the kernel alone gives; so it is without SCENE");
   app.add_option("--duration", o.run.duration_s, "of the loop, s")
       ->check(tact::model::io::within(0.1, 1e7))
       ->capture_default_str();
@@ -86,19 +85,6 @@ void add_run_options(CLI::App& app, Options& o) {
                  "there is replaced");
 }
 
-CLI::App* add_compare(CLI::App& app, Options& o) {
-  CLI::App* compare = app.add_subcommand("compare", "two results side by side; is B worse than A?");
-  compare->add_option("A", o.before, "jitter.json of the run before")->required();
-  compare->add_option("B", o.after, "jitter.json of the run after")->required();
-  compare
-      ->add_option("--gate", o.gate_percent,
-                   "%: fail if p50, p99 or p99.9 of wake-up, tick or deadline to force grew by "
-                   "more, and by more than 1 us")
-      ->check(tact::model::io::within(0.1, 1e4));
-  compare->add_option("--json", o.json_path, "write the result to this file, - for stdout alone");
-  return compare;
-}
-
 /// To the file, or to standard output; nothing without a path.
 std::optional<Error> write_json(const json& result, const std::string& path) {
   // Words of the kernel and of the machine may hold any byte: a wrong one is replaced.
@@ -113,10 +99,10 @@ std::optional<Error> write_folder(const JitterResult& result, const Options& o,
   if (auto error = write_json(to_json(result, command), o.out + "/jitter.json")) return error;
   std::string svg;
   if (!o.no_plots && !result.interrupted) {  // after Ctrl-C no program is started any more
-    if (auto drawn = draw_histogram(result, o.out); !drawn) return drawn.error();
-    auto plot = tact::model::io::read_file(o.out + "/histogram.svg");
-    if (!plot) return plot.error();
-    svg = std::move(*plot);
+    if (auto drawn = draw_histogram(result, o.out); !drawn)
+      fmt::print(stderr, "tact-jitter: no picture: {}\n", drawn.error().message);
+    else if (auto plot = tact::model::io::read_file(o.out + "/histogram.svg"))
+      svg = std::move(*plot);
   }
   const std::pair<const char*, std::string> files[] = {
       {"report.html", make_page(result, command, svg)},
@@ -126,25 +112,10 @@ std::optional<Error> write_folder(const JitterResult& result, const Options& o,
   return std::nullopt;
 }
 
-int compare(const program::Program& program, const Options& o) {
-  const auto before = load_result(o.before), after = load_result(o.after);
-  if (!before) return program.fail(before.error());
-  if (!after) return program.fail(after.error());
-  const auto gate = o.gate_percent > 0.0 ? std::optional(1e-2 * o.gate_percent) : std::nullopt;
-  const auto comparison = compare_results(*before, *after, gate);
-  if (!comparison) return program.fail(comparison.error());
-  if (o.json_path != "-") fmt::print("{}", make_comparison_text(*comparison));
-  if (auto error = write_json(to_json(*comparison), o.json_path)) return program.fail(*error);
-  // A gate that evaluated nothing must not look passed.
-  if (gate && !comparison->checked_any())
-    return program.fail(Error{"nothing could be judged: too few samples; measure for longer"});
-  return comparison->is_worse() ? 1 : 0;
-}
-
 int measure(const program::Program& program, Options& o) {
-  // Both or neither.
-  if (o.run.bare != o.run.scene.path.empty())
+  if (o.run.bare && !o.run.scene.path.empty())
     return program.fail(Error{"name one SCENE, or --bare for an empty loop; see --help"});
+  o.run.bare = o.run.scene.path.empty();
   if (!o.out.empty())
     // Outputs are checked before a measurement that may take hours.
     if (auto error = program::prepare_folder(o.out)) return program.fail(*error);
@@ -186,13 +157,16 @@ int measure(const program::Program& program, Options& o) {
 int main(int argc, char** argv) {
   program::Program program(
       "tact-jitter",
-      "Latency and jitter of the loop that a person runs: the scene's law on its device, at its "
-      "rate, phase by\nphase. `tact-jitter compare A B` puts two results side by side.",
+      "Is this PC good enough for the rate? Latency and jitter of the loop that a person runs: the "
+      "scene's law\non its device, phase by phase; without SCENE an empty loop at 1 kHz. "
+      "`tact-jitter compare A B`\nputs two results side by side.",
       "Times are us on screen and ns in files. \"largest\" is that of the run and bounds nothing.");
   Options options;
   CLI::App& app = program.options();
   add_run_options(app, options);
-  const CLI::App* comparing = add_compare(app, options);
+  // A script, beside this program or in share/tact.
+  const std::string script = tact::model::io::data_file("tact-jitter-compare");
+  if (argc > 1 && std::string_view(argv[1]) == "compare") execv(script.c_str(), argv + 1);
   if (const auto status = program.parse(argc, argv)) return *status;
-  return comparing->parsed() ? compare(program, options) : measure(program, options);
+  return measure(program, options);
 }

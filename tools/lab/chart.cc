@@ -51,7 +51,7 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option(
          "--peers", o.peers,
          "show these rows of a chart.json, measured before, beside the laws; the liver's, in "
-         "the sources: tools/results/peers.json")
+         "the sources: peers.json among its results")
       ->needs("--reference");
   app.add_flag("--no-pictures", o.no_plots, "tables alone; needs no gnuplot");
   app.add_flag("--json", o.json, "print the table as JSON");

@@ -45,7 +45,7 @@ void add_options(CLI::App& app, Options& o) {
   app.add_flag(
       "--tool", o.tool,
       "press all spheres of the tool together, at the hand's own site, along its slides and "
-      "at six places that no law is fitted on (README.md says how they are chosen)");
+      "at six places that no law is fitted on");
   app.add_flag("--away-from-edges", o.away_from_edges,
                "with --tool: none of the six where a face within three radii is turned by 30 "
                "degrees or more")

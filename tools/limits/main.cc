@@ -107,7 +107,7 @@ int test_limits(const program::Program& program, const Options& o) {
     fmt::print("{}\n", tact::model::io::text_of(to_json(*report), 2));
   else
     fmt::print("{}", to_text(*report));
-  if (!files) return program.fail(files.error(), "the tables are written, the page is not");
+  if (!files) return program.fail(files.error(), "the report is not complete");
   if (!o.json) fmt::print("{}: {}/limits.html\n", report->result_text(), o.out);
   return report->passed() ? 0 : 1;
 }

@@ -51,6 +51,7 @@ LimitsReport begin_report(const model::scene::Scene& scene, const hal::DeviceInf
   report.started = fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr)));
   report.scene_name = scene.name;
   report.scene_path = scene.path;
+  report.scene_limits = scene.limits;
   report.device_name = device.name;
   report.simulated = hal::registry::is_simulated(scene.device);
   report.period_s = 1.0 / scene.rate_Hz;
@@ -81,6 +82,7 @@ Result<LimitsReport> finished(LimitsReport report, const Runs& runs, const Limit
                               const hal::DeviceInfo& device, bool wall) {
   if (program::is_interrupted()) return program::interruption();
   report.limits = checked_limits(Case{}, bench);
+  report.pc_limits = report.limits;
   report.force_share = bench.force_share;
   report.hard_real_time = bench.hard_real_time;
   for (const auto& run : runs)
@@ -90,6 +92,13 @@ Result<LimitsReport> finished(LimitsReport report, const Runs& runs, const Limit
     if (!report.wall) return program::interruption();
   }
   return report;
+}
+
+/// As tactd decides: a PC that lacks anything gets the quarter of the force.
+bool gives_hard_real_time(std::vector<firmware::pc::Shortfall> shortfalls) {
+  for (auto& limited : firmware::watch::lift_time_limits())
+    shortfalls.push_back(std::move(limited));
+  return shortfalls.empty() && firmware::pc::probe_rt_threads({}).empty();
 }
 
 Result<LimitsReport> run_simulated(const model::scene::Scene& scene, const hal::DeviceInfo& info,
@@ -108,7 +117,15 @@ Result<LimitsReport> run_simulated(const model::scene::Scene& scene, const hal::
   for (const auto& run : runs)
     if (!run->play()) break;
   name_the_rest(report, options);
-  return finished(std::move(report), runs, bench, info, options.wall);
+  auto done = finished(std::move(report), runs, bench, info, options.wall);
+  if (!done) return done;
+  // Simulated time needs none, but the tactd of this scene will.
+  std::vector<firmware::pc::Shortfall> shortfalls;
+  firmware::pc::use_small_thread_stacks();
+  const firmware::pc::ProcessSetup setup(shortfalls);
+  const double share = gives_hard_real_time(shortfalls) ? 1.0 : firmware::gate::kNonRtForceShare;
+  done->pc_limits = model::limits_in_use(done->limits, share);
+  return done;
 }
 
 Result<LimitsReport> run_real(const model::scene::Scene& scene, hal::Device& device,
@@ -118,10 +135,7 @@ Result<LimitsReport> run_real(const model::scene::Scene& scene, hal::Device& dev
   std::vector<firmware::pc::Shortfall> shortfalls;
   firmware::pc::use_small_thread_stacks();
   const firmware::pc::ProcessSetup setup(shortfalls);
-  for (auto& limited : firmware::watch::lift_time_limits())
-    shortfalls.push_back(std::move(limited));
-  // As tactd decides: a PC that lacks anything gets the quarter of the force.
-  const bool hard = shortfalls.empty() && firmware::pc::probe_rt_threads({}).empty();
+  const bool hard = gives_hard_real_time(shortfalls);
   const hal::DeviceInfo info = device.info();
   // Before the first tick: should this program die, another process has to zero the force.
   const auto guardian = firmware::run::start_guardian(device, {.priority = 1, .program = {}});

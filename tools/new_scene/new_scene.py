@@ -29,7 +29,7 @@ MAX_DEPTH_M = 0.012  # as the liver's
 DEPTH_RATIO = 0.2  # of the height: small strain beyond the tip
 PRESS_RATIO = 0.8  # of the working depth
 LIVER_PA = 6270.0  # E / (1 - nu^2), of the numbers in text_of
-TIP_ALONE = ["--set", "law=rhombus", "--set", "varies_by_place=false"]  # while the map is to come, as tools/run starts it
+TIP_ALONE = ["--set", "law=rhombus", "--set", "varies_by_place=false"]  # while the map is to come
 FILES = ("organ", "tool", "map", "reference", "tool_reference", "scene")  # the scene is the last to appear
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Results as the files that tools/ground_truth reads (JSON, one case a line, numbers to some digits) and as tables."""
+"""Results as the files that tact-lab reads (JSON, one case a line, numbers to some digits) and as tables."""
 import json
 import re
 

@@ -127,6 +127,25 @@ TEST_F(Control, AStrangerIsRefused) {
   EXPECT_FALSE(socket->next());
 }
 
+TEST_F(Control, ARefusedUserLearnsWhoseItIs) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root can play a stranger";
+  const auto ask_as_stranger = [this](const std::string& wanted) {
+    if (setuid(65'534) != 0) _exit(9);
+    const auto reported = ask_tactd({.folder = folder, .scene_path = "liver.toml", .word = "arm"});
+    const auto says = [&](const std::string& words) {
+      return !reported && reported.error().message.find(words) != std::string::npos;
+    };
+    if (!reported) fprintf(stderr, "%s\n", reported.error().message.c_str());
+    _exit(says(wanted) && says("sudo tactctl") && !says("start one") ? 7 : 8);
+  };
+  ASSERT_EQ(chmod(folder.c_str(), 0755), 0);
+  const std::string pid = std::to_string(getpid());
+  EXPECT_EXIT(ask_as_stranger("it runs as root (pid " + pid + "); you may not ask it"),
+              testing::ExitedWithCode(7), "");
+  ASSERT_EQ(chmod(folder.c_str(), 0700), 0);
+  EXPECT_EXIT(ask_as_stranger("is closed to you"), testing::ExitedWithCode(7), "");
+}
+
 TEST_F(Control, LeavesTheFileOfAnother) {
   const std::string mine = path + ".mine";
   std::filesystem::rename(path, mine);

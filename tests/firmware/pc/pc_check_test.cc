@@ -130,6 +130,36 @@ TEST_F(PcCheck, AVirtualMachineIsRed) {
   expect_red("machine", "virtual", "the PC itself");
 }
 
+TEST_F(PcCheck, AVirtualMachineIsNamedByItsMaker) {
+  put("/proc/cpuinfo", "flags : fpu tsc hypervisor lahf_lm\n");
+  put("/sys/class/dmi/id/sys_vendor", "innotek GmbH\n");
+  expect_red("machine", "a virtual machine of innotek GmbH", "the PC itself");
+  put("/proc/sys/kernel/osrelease", "5.15.153.1-microsoft-standard-WSL2\n");
+  expect_red("machine", "WSL", "boot Debian on the PC itself");
+}
+
+TEST_F(PcCheck, AContainerGetsItsRightsFromItsEngineAndItsKernelFromTheHost) {
+  put("/proc/self/limits", limits("0", "65536", "200000"));
+  put("/proc/sys/kernel/version", "#1 SMP PREEMPT_DYNAMIC Debian\n");
+  put(cpus + "isolated", "\n");
+  expect_red("kernel", "not PREEMPT_RT", "sudo apt install linux-image-rt-amd64");
+  for (const auto& [mark, words] :
+       {std::pair{"/.dockerenv",
+                  "docker run --cap-add=SYS_NICE --ulimit rtprio=85 --ulimit memlock=-1 "
+                  "--device /dev/cpu_dma_latency"},
+        std::pair{"/run/.containerenv", "podman run --cap-add=SYS_NICE"},
+        std::pair{"/run/systemd/container", "rtprio 85, memlock unlimited"}}) {
+    put(mark, "1\n");
+    expect_red("real-time priority", "up to 0 of 85", words);
+    expect_red("locked memory", "65536 bytes", words);
+    expect_red("kernel", "not PREEMPT_RT", "on the host: sudo apt install linux-image-rt-amd64");
+    expect_red("isolated core", "not isolated", "on the host: ");
+    EXPECT_EQ(row("real-time time limit").remedy.find("host"), std::string::npos);
+    EXPECT_NE(row("machine").found.find("in a container: "), std::string::npos);
+    fs::remove(root + mark);
+  }
+}
+
 TEST_F(PcCheck, AClockBehindASystemCallIsRed) {
   const std::string path = "/sys/devices/system/clocksource/clocksource0/current_clocksource";
   put(path, "hpet\n");

@@ -64,7 +64,8 @@ TEST_F(FalconUsbTest, SeveralNeedABusPath) {
 
 TEST_F(FalconUsbTest, WithoutPermissionTheRuleAndItsRemedyAreNamed) {
   usb.open_error = LIBUSB_ERROR_ACCESS;
-  expect_refusal({falcon::kFalconParts[0].rule, kRuleRemedy, "/dev/bus/usb/001/004"});
+  expect_refusal({falcon::kFalconParts[0].rule, "/dev/bus/usb/001/004",
+                  why_refused("/dev/bus/usb/001/004", "").remedy});
 }
 
 TEST_F(FalconUsbTest, ARefusalThatUdevEndsIsNotReported) {

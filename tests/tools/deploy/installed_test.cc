@@ -89,6 +89,35 @@ TEST_F(Installed, TheFilesOfAPCLieWhereSystemdLooks) {
     EXPECT_TRUE(fs::exists(prefix_ + "/" + path)) << path;
 }
 
+/// Programs, scripts, scenes, units and the page: a person who has no sources reads them.
+TEST_F(Installed, NothingNamesAFileOfTheSourcesAlone) {
+  for (const char* component : {"tact", "tact-view", "tact-tools", "tact-lab", "tact-rt"})
+    install(component);
+  const Outcome found = run_command("cd " + prefix_ +
+                                    " && grep -raoE '(^|[^[:alnum:]_./-])(build|tools)/[a-z]+[^ "
+                                    "]{0,20}|README[.a-z]*' bin lib share"
+                                    " --exclude='*.md' --exclude-dir=__pycache__");
+  EXPECT_EQ(found.status, 1) << found.output;
+}
+
+TEST_F(Installed, WithoutThePackageTheGroupIsMadeByAScriptOfThePrefix) {
+  install("tact");
+  install("tact-tools");
+  const std::string script = prefix_ + "/share/tact/pc/make-group";
+  EXPECT_EQ(run_command("sh -n " + script).status, 0);
+  for (const char* file : {"/lib/sysusers.d/tact.conf", "/lib/udev/rules.d/60-tact.rules",
+                           "/share/tact/pc/haptics.conf"})
+    EXPECT_EQ(run_command("grep -q '\"$prefix" + std::string(file) + "\"' " + script).status, 0);
+  // A PC whose files are empty: what its rights lack is red or unknown, with the remedy.
+  fs::create_directories(prefix_ + "/pc/proc/self");
+  std::ofstream(prefix_ + "/pc/proc/self/limits") << "Max realtime priority 0 0\n";
+  const Outcome reported = run("tact-doctor --root " + prefix_ + "/pc");
+  const bool has_group = run_command("getent group haptics").status == 0;
+  EXPECT_EQ(reported.output.find("sudo '" + script + "', sudo adduser") == std::string::npos,
+            has_group)
+      << reported.output;
+}
+
 TEST_F(Installed, AMeshIsJudgedByTheToolsAndRepairedWithTheLab) {
   // Not by its programs: those of an earlier build with the lab may lie there.
   if (run_command("grep -qx TACT_LAB:BOOL=ON " TACT_BINARY_DIR "/CMakeCache.txt").status != 0)

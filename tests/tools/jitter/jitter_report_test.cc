@@ -10,7 +10,6 @@
 #include <sstream>
 
 #include "tests/support/program.h"
-#include "tools/jitter/report/jitter_compare.h"
 #include "tools/program/run_program.h"
 
 namespace tact::tools::jitter::jitter_report_test {
@@ -150,42 +149,6 @@ json result_with(std::uint64_t p99_ns) {
             {"read", {{"p99_ns", p99_ns}}}}}};
 }
 
-TEST(Compare, FailsOnWhatGrewByMoreThanTheGate) {
-  const json before = result_with(20'000);
-  EXPECT_FALSE(compare_results(before, result_with(21'900), 0.1)->is_worse());
-  EXPECT_TRUE(compare_results(before, result_with(22'100), 0.1)->is_worse());
-  EXPECT_FALSE(compare_results(result_with(22'100), before, 0.1)->is_worse()) << "better is good";
-  EXPECT_FALSE(compare_results(before, result_with(90'000), std::nullopt)->is_worse()) << "no gate";
-  EXPECT_FALSE(compare_results(result_with(2'000), result_with(2'900), 0.1)->is_worse())
-      << "below a microsecond nothing is distinguished";
-}
-
-TEST(Compare, JudgesNeitherTheLargestNorAPercentileOfTooFewSamples) {
-  const auto comparison = compare_results(result_with(20'000), result_with(90'000), 0.1);
-  for (const ComparedValue& v : comparison->values) {
-    EXPECT_EQ(v.checked, v.series == "wake" && (v.share == "p50" || v.share == "p99"))
-        << v.series << " " << v.share;
-    EXPECT_NE(v.share, "p99.9") << "there is none";
-  }
-}
-
-TEST(Compare, ReadsResultsOfTheFirstVersion) {
-  json old = {{"format", "tact-jitter 1"}, {"series", json::object()}};
-  EXPECT_TRUE(compare_results(old, result_with(20'000), 0.1));
-  old["format"] = "tact-limits";
-  EXPECT_FALSE(compare_results(old, result_with(20'000), 0.1));
-}
-
-TEST(Compare, ReportsWhichConditionsDiffer) {
-  json other = result_with(20'000);
-  other["rate_Hz"] = 2000;
-  other["environment"]["kernel_release"] = "6.1.0-rt";
-  const auto comparison = compare_results(result_with(20'000), other, 0.1);
-  ASSERT_EQ(comparison->unlike.size(), 2u);
-  EXPECT_TRUE(has(make_comparison_text(*comparison), "not alike: rate_Hz 1000 and 2000"));
-  EXPECT_FALSE(compare_results(json::object(), other, 0.1)) << "no result at all";
-}
-
 class Folder : public testing::Test {
  protected:
   program::ScratchFolder scratch = std::move(*program::ScratchFolder::make("tact-jitter-test"));
@@ -268,7 +231,7 @@ TEST_F(JitterProgram, CtrlCEndsItAtOnceAndKeepsWhatWasMeasured) {
 }
 
 TEST_F(JitterProgram, RefusesBadUsageWithARemedy) {
-  for (const char* arguments : {"", "--bare x.toml", "--bare --load noise", "--bare --rate 5",
+  for (const char* arguments : {"--bare x.toml", "--bare --load noise", "--bare --rate 5",
                                 "compare a.json", "nosuch.toml", "--bare --out /proc/x"}) {
     const auto run = run_program("tact-jitter", arguments);
     EXPECT_EQ(run.status, 2) << arguments << ": " << run.output;

@@ -109,7 +109,7 @@ TEST(PeerGate, TheReportBeginsWithWhatTheGateFound) {
     const std::string page = make_page(result, "c", "");
     return has(page, banner) && page.find(banner) < page.find("<h1>");
   };
-  EXPECT_TRUE(begins_with("<p class=\"verdict part\">NOT JUDGED: no gate"));
+  EXPECT_TRUE(begins_with("<p class=\"verdict part\">NOT JUDGED: no tick was measured"));
   result.peer_gate = 1.2;
   EXPECT_TRUE(begins_with("<p class=\"verdict part\">NOT JUDGED: --peer-gate 1.2 could not"));
   result.turn_ratios = {1.1, 1.1, 1.1};

@@ -6,10 +6,14 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "model/io/input_file.h"
 #include "model/io/limits_checksum.h"
+#include "model/io/program/installed.h"
 #include "model/io/seal.h"
 #include "tests/support/program.h"
 #include "tests/support/test_scene.h"
@@ -100,6 +104,35 @@ TEST(HazardMatrix, ShowsWhatThisRunHasShownAndNoMore) {
   EXPECT_EQ(here(0).at("ramp"), "FAIL");
   EXPECT_EQ(here(0).at("torque"), "not played");
   EXPECT_EQ(here(2).at("chatter"), "not played");
+}
+
+TEST(HazardMatrix, EachTestHasAResultWithDateAndRevisionWhereOneIsKnown) {
+  // Beside this program, as beside tact-limits where it is installed.
+  const auto path = model::io::program_folder() / "test_results.json";
+  std::ofstream(path)
+      << R"({"format": "tact-test-results", "tests": {"TEST-01": {"result": "pass",)"
+      << R"( "date": "2026-11-30", "revision": "1a2b3c"}}})";
+  const auto report = run_plan(tests::make_plate_scene(), {.cases = *choose_cases("ramp,step")});
+  ASSERT_TRUE(report);
+  std::map<std::string, json> of;
+  const json table = hazards_json(*report);
+  for (const json& row : table.at("tests")) of[row.at("id")] = row;
+  const std::string page = page_html(*report, {});
+  std::filesystem::remove(path);
+  EXPECT_EQ(of.at("TEST-01").at("result"), "pass");
+  EXPECT_EQ(of.at("TEST-01").at("date"), "2026-11-30");
+  EXPECT_EQ(of.at("TEST-01").at("revision"), "1a2b3c");
+  EXPECT_EQ(of.at("TEST-02").at("result"), "not known here");
+  EXPECT_NE(
+      page.find(
+          "<td class=keep><span class=ok>pass</span></td><td class=keep>2026-11-30<br>1a2b3c"),
+      std::string::npos);
+  std::set<std::string> own;
+  for (const auto& [id, row] : of) {
+    EXPECT_EQ(row.at("by").get<std::string>().find("build/"), std::string::npos) << id;
+    if (row.at("by") == "tact-limits") own.insert(row.at("result").get<std::string>());
+  }
+  EXPECT_EQ(own, std::set<std::string>{"not played"}) << "a row of which one case was not played";
 }
 
 TEST(HazardMatrix, EachHazardHasARequirementAndEachRequirementATest) {

@@ -71,6 +71,40 @@ TEST(LimitRows, TheFingersGetUpToTheirLimitAndNeverMore) {
   EXPECT_EQ(limit_rows(wrong).at(static_cast<std::size_t>(Bound::kGrip)).kept, Kept::kFail);
 }
 
+TEST(LimitRows, HaveTheSceneAndThisPcBesideWhatWasTested) {
+  LimitsReport report = plan("ramp");
+  EXPECT_EQ(report.scene_limits.force_N, tests::make_plate_scene().limits.force_N);
+  const double share = report.pc_limits.force_N / report.limits.force_N;
+  EXPECT_TRUE(share == 1.0 || share == 0.25) << share;
+  report.scene_limits.force_N = 3.0;
+  report.limits.force_N = 2.0;
+  report.pc_limits.force_N = 0.5;
+  const LimitRow row = limit_rows(report).at(static_cast<std::size_t>(Bound::kForce));
+  EXPECT_EQ(row.scene.limit, 3.0);
+  EXPECT_EQ(row.limit, 2.0);
+  EXPECT_EQ(row.pc.limit, 0.5);
+  const std::string page = page_html(report, {});
+  EXPECT_NE(page.find("<td class=n>3 N</td><td class=n>2 N</td><td class=n>0.5 N</td>"),
+            std::string::npos);
+}
+
+TEST(LimitRows, ThePageHasACriterionInEveryRowAndAColourOfItsOwnForSimulated) {
+  const LimitsReport report = plan("ramp,device-fault");
+  const std::string page = page_html(report, {});
+  const auto count = [&page](const std::string& words) {
+    std::size_t n = 0;
+    for (std::size_t at = page.find(words); at != std::string::npos; at = page.find(words, at + 1))
+      ++n;
+    return n;
+  };
+  EXPECT_EQ(count("Asked besides every limit: the stage "), 2u);
+  EXPECT_EQ(count("the fault &quot;device failed&quot; latched; zero "), 1u);
+  EXPECT_EQ(count("at most the limit; zero unless armed, and from a latched fault on"), 2u);
+  EXPECT_EQ(count("class=\"verdict part sim\""), 1u);
+  EXPECT_EQ(count(".verdict.sim{background:#"), 1u);
+  EXPECT_EQ(count(" at the largest speed"), 2u) << "where 20 W and 0.1 J come from";
+}
+
 TEST(LimitRows, WithoutAForceOnTheFingersTheirCaseIsNotRun) {
   model::scene::Scene scene = tests::make_plate_scene();
   scene.limits.grip_force_N = 0.0;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "firmware/run/report.h"
@@ -111,12 +112,41 @@ std::optional<PeerVerdict> check_peer(const JitterResult& result) {
   return PeerVerdict{*result.peer_gate, middle_of(result.turn_ratios)};
 }
 
+Outcome answer_of(const JitterResult& result) {
+  const TickSink& sink = *result.sink;
+  if (sink.ticks() == 0) return {"part", "NOT JUDGED: no tick was measured"};
+  // tactd refuses a law that takes more than half a period: the other half is for the wake-up.
+  const double half_us = 0.5e6 / result.rate_Hz;
+  const double latest_us = 1e-3 * static_cast<double>(sink.every_wake().histogram.max_ns());
+  const auto red =
+      std::ranges::count(result.pc, firmware::pc::Verdict::kRed, &firmware::pc::PcRow::verdict);
+  std::string why;
+  if (sink.skipped() > 0) why += fmt::format("{} deadlines were missed; ", sink.skipped());
+  if (latest_us > half_us)
+    why += fmt::format("the latest wake-up was {:.0f} us, above {:g} us, half a period; ",
+                       latest_us, half_us);
+  if (result.non_rt) why += "it gives no hard real time, so tactd caps the force to a quarter; ";
+  const auto seen = fmt::format("{:.3g} s {}", result.measured_s,
+                                result.load.empty() ? "without load" : "under load " + result.load);
+  if (!why.empty())
+    return {"fail", fmt::format("this PC is not good enough for {:g} Hz, because in {} "
+                                "{}{} red rows of tact-doctor say what to change",
+                                result.rate_Hz, seen, why, red)};
+  return {"pass",
+          fmt::format(
+              "this PC is good enough for {:g} Hz, because in {} no deadline was missed and the "
+              "latest wake-up was {:.3g} us of {:g} us, half a period{}",
+              result.rate_Hz, seen, latest_us, half_us,
+              result.measured_s < 600.0 || result.load.empty()
+                  ? "; before a person holds a device: --duration 3600 --load cpu,memory,disk,net"
+                  : "")};
+}
+
 Outcome outcome_of(const JitterResult& result) {
   const auto verdict = check_peer(result);
   if (!result.fault.empty()) return {"fail", "FAIL: the run ended with a fault: " + result.fault};
   if (result.interrupted) return {"part", "NOT JUDGED: the run was ended by Ctrl-C"};
-  if (!verdict)
-    return {"part", "NOT JUDGED: no gate was asked for (--peer-gate); the numbers stand alone"};
+  if (!verdict) return answer_of(result);
   // Too few turns is neither pass nor fail: a script must not take it for one of them.
   if (!verdict->turns) return {"part", "NOT JUDGED: " + verdict->message()};
   return {verdict->passed() ? "pass" : "fail", verdict->message()};
@@ -183,8 +213,8 @@ std::string make_summary(const JitterResult& result) {
     out += fmt::format("\n  {} us at tick {}, {:.3f} s: {}",
                        in_us(static_cast<std::uint64_t>(late[i].worst_ns)), late[i].times.tick,
                        seconds_into(result, late[i].times.due_ns), late[i].attribution);
-  if (!result.fault.empty()) out += "\nfault " + result.fault;
-  return out;
+  if (!result.fault.empty()) return out + "\nfault " + result.fault;
+  return out + "\n" + answer_of(result).message;
 }
 
 json to_json(const JitterResult& result, const std::string& command) {

@@ -51,6 +51,8 @@ struct Outcome {
   std::string message;
 };
 Outcome outcome_of(const JitterResult& result);
+/// Is this PC good enough for the rate, and why?
+Outcome answer_of(const JitterResult& result);
 /// Of the program: 0 good, 1 a fault or a gate that fails, 2 a gate that could not be judged.
 int exit_status(const JitterResult& result);
 

@@ -31,6 +31,6 @@ std::vector<Hazard> hazard_table();
 /// Every test of the table once, in its order.
 std::vector<HazardTest> hazard_tests();
 /// The command of a HazardTest whose names are cases of this program.
-inline constexpr std::string_view kOwnCommand = "build/tact-limits";
+inline constexpr std::string_view kOwnCommand = "tact-limits";
 
 }  // namespace tact::tools::limits

@@ -6,6 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "model/io/json.h"
+#include "model/io/program/installed.h"
 #include "tools/limits/evidence/hazards.h"
 
 namespace tact::tools::limits {
@@ -82,6 +84,31 @@ json requirement_json(const Requirement& requirement, const LimitsReport& report
           {"in_this_run", here}};
 }
 
+json known_results() {
+  const auto file = model::io::read_json(model::io::data_file("test_results.json"));
+  return file && file->is_object() ? file->value("tests", json::object()) : json::object();
+}
+
+/// Of one test of the table: its own cases by this run, others by the file of results that lies
+/// beside this program (tests/safety/results).
+json test_json(const HazardTest& test, const LimitsReport& report, const json& known) {
+  json out{{"result", "not known here"}, {"date", ""}, {"revision", ""}};
+  if (test.by == kOwnCommand) {
+    auto worst = Played::kPassed;
+    for (const std::string& name : test.names)
+      if (const Played one = played(report, name);
+          one != Played::kPassed && worst != Played::kFailed)
+        worst = one;
+    out = {{"result", text_of(worst)},
+           {"date", report.evidence.began_utc},
+           {"revision", report.environment.git_revision}};
+  } else if (known.contains(test.id)) {
+    out.update(known[test.id]);
+  }
+  out.update({{"id", test.id}, {"by", test.by}, {"names", test.names}});
+  return out;
+}
+
 /// The table, each requirement as `of` writes it.
 json hazards_with(const LimitsReport& report, json (*of)(const Requirement&, const LimitsReport&)) {
   json out = json::array();
@@ -101,19 +128,22 @@ json hazards_with(const LimitsReport& report, json (*of)(const Requirement&, con
 
 json matrix_data(const LimitsReport& report) { return hazards_with(report, requirement_data); }
 
-json tests_data() {
+json tests_data(const LimitsReport& report) {
   json out = json::array();
-  for (const HazardTest& test : hazard_tests())
-    out.push_back({{"id", test.id},
-                   {"by", test.by},
-                   {"names", fmt::format("{}", fmt::join(test.names, ", "))}});
+  const json known = known_results();
+  for (const HazardTest& test : hazard_tests()) {
+    out.push_back(test_json(test, report, known));
+    out.back()["names"] = fmt::format("{}", fmt::join(test.names, ", "));
+    const json& result = out.back()["result"];
+    out.back()["style"] = result == "pass" ? "ok" : result == "FAIL" ? "bad" : "part-text";
+  }
   return out;
 }
 
 json hazards_json(const LimitsReport& report) {
   json tests = json::array();
-  for (const HazardTest& test : hazard_tests())
-    tests.push_back({{"id", test.id}, {"by", test.by}, {"names", test.names}});
+  const json known = known_results();
+  for (const HazardTest& test : hazard_tests()) tests.push_back(test_json(test, report, known));
   return {{"hazards", hazards_with(report, requirement_json)}, {"tests", tests}};
 }
 

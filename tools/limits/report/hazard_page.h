@@ -12,7 +12,7 @@ namespace tact::tools::limits {
 /// For the template: strings, truth, lists and objects alone.
 nlohmann::json matrix_data(const LimitsReport& report);
 /// What shows the requirements, by name: the annex of that matrix.
-nlohmann::json tests_data();
+nlohmann::json tests_data(const LimitsReport& report);
 /// Both for limits.json.
 nlohmann::json hazards_json(const LimitsReport& report);
 

@@ -44,7 +44,13 @@ std::vector<LimitRow> limit_rows(const LimitsReport& report) {
                              {"RMS of the torque", "limits.continuous_force_N", "N m"},
                              {"Force on the fingers", "limits.grip_force_N", "N"}};
   const auto limits = bounds_of({}, report.limits, report.period_s);
-  for (std::size_t i = 0; i < rows.size(); ++i) rows[i].limit = limits[i].limit;
+  const auto scene = bounds_of({}, report.scene_limits, report.period_s);
+  const auto pc = bounds_of({}, report.pc_limits, report.period_s);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows[i].limit = limits[i].limit;
+    rows[i].scene.limit = scene[i].limit;
+    rows[i].pc.limit = pc[i].limit;
+  }
   for (const CaseResult& result : report.cases) {
     const CaseVerdict& v = result.verdict;
     const auto bounds = bounds_of(v.worst, v.limits, report.period_s);

@@ -31,6 +31,9 @@ struct LimitRow {
   const char* key;   // of the scene
   const char* unit;
   double limit = 0.0, largest = 0.0;
+  struct {
+    double limit = 0.0;
+  } scene{}, pc{};  // as written; of a tactd on this PC
   Kept kept = Kept::kNotReached;
   std::vector<std::string> reached_by{};  // names of cases
   std::vector<TighterLimit> tighter{};

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "model/io/limits_checksum.h"
 #include "tools/limits/report/hazard_page.h"
 #include "tools/limits/report/limit_rows.h"
 #include "tools/limits/report/limits.html.h"
@@ -35,7 +36,8 @@ json facts(const LimitsReport& report) {
   add("Host", fmt::format("{}: {}, Linux {}", evidence.host, e.cpu, e.kernel_release));
   add("Device", report.device_name + (report.simulated ? " (SIMULATED, on simulated time)" : ""));
   add("Scene", fmt::format("{} ({}), hash {}", report.scene_name, report.scene_path, e.scene_hash));
-  add("Rate", fmt::format("{:g} Hz", 1.0 / report.period_s));
+  add("Rate", fmt::format("{:g} Hz: times are whole ticks of {:g} ms, their resolution",
+                          1.0 / report.period_s, 1e3 * report.period_s));
   // Simulated time needs no real time: the line would frighten for nothing.
   if (!report.simulated && !report.hard_real_time)
     add("Real time", fmt::format("this PC gives no hard real time; force capped to {:g} %",
@@ -46,6 +48,7 @@ json facts(const LimitsReport& report) {
                                                  : "; no filter on the loop's system calls"));
   add("Limits checksum",
       fmt::format("{} (SHA-256 {})", evidence.limits_checksum, evidence.limits_sha256));
+  add("Limits checksum that tactd shows on this PC", model::io::limits_checksum(report.pc_limits));
   add("SHA-256 of the scene", evidence.scene_sha256);
   add("SHA-256 of tact-limits", evidence.program_sha256);
   add("SHA-256 of tactd", evidence.tactd_path.empty()
@@ -56,7 +59,7 @@ json facts(const LimitsReport& report) {
   return out;
 }
 
-json limit_data(const LimitRow& row) {
+json limit_data(const LimitRow& row, std::size_t number) {
   const auto with_unit = [&](double v) { return fmt::format("{:.4g} {}", v, row.unit); };
   const bool is_seen = row.largest > 0.0 || row.kept != Kept::kNotReached;
   json tighter = json::array();
@@ -68,6 +71,9 @@ json limit_data(const LimitRow& row) {
   return {{"name", row.name},
           {"key", row.key},
           {"limit", with_unit(row.limit)},
+          {"scene", with_unit(row.scene.limit)},
+          {"pc", with_unit(row.pc.limit)},
+          {fmt::format("is_{}", number), true},
           {"largest", is_seen ? with_unit(row.largest) : "-"},
           {"reached_by",
            row.reached_by.empty() ? "-" : fmt::format("{}", fmt::join(row.reached_by, ", "))},
@@ -100,20 +106,26 @@ std::string plain(double value) {
 
 json case_data(const CaseVerdict& v, const LimitsReport& report) {
   json broken = json::array();
-  for (const Check& c : v.checks)
+  std::string criteria;
+  for (const Check& c : v.checks) {
     if (!c.holds) broken.push_back(c.message);
+    // What the case asks besides the limits, which are the same for all: from its stage on.
+    if (!criteria.empty() || c.message.starts_with("the stage "))
+      criteria += (criteria.empty() ? "" : "; ") + c.message;
+  }
   const auto& allowed = v.subject.expected.zero_within_s;
   return {{"name", v.subject.name},
           {"what", v.subject.what},
           {"tightened", tightened(v.limits, report.limits)},
           {"injected", is_reported(report, v) ? kReportedInSoftware : ""},
           {"has_broken", !broken.empty()},
+          {"criteria", criteria},
           {"broken", broken},
           {"commanded", plain(v.worst.commanded_N) + " N"},
           {"written", fmt::format("{:.4g} N", v.worst.force_N)},
           {"overshoot", fmt::format("{:.3g} N", v.overshoot_N)},
-          {"zero", v.worst.zero_s ? fmt::format("{:.0f} ms", 1e3 * *v.worst.zero_s) : "-"},
-          {"allowed", allowed ? fmt::format("{:.0f} ms", std::floor(1e3 * *allowed)) : "-"},
+          {"zero", v.worst.zero_s ? fmt::format("{:.4g} ms", 1e3 * *v.worst.zero_s) : "-"},
+          {"allowed", allowed ? fmt::format("{:.4g} ms", 1e3 * *allowed) : "-"},
           {"stages", v.acted_text()},
           {"fault", v.fault == Fault::kNone ? "" : model::describe(v.fault).name},
           {"holds", v.passed()}};
@@ -134,7 +146,7 @@ json text_data(const LimitsReport& report) {
                           report.cases, [](const auto& r) { return !r.verdict.passed(); })) +
                       (report.wall && !report.wall->passed() ? 1 : 0);
   const bool kept = report.played() > 0 && failed == 0;
-  const model::Limits& l = report.limits;
+  const model::Limits &l = report.limits, &s = report.scene_limits;
   return {{"result", report.result_text()},
           {"played", std::to_string(report.played())},
           {"not_played", std::to_string(report.not_run.size())},
@@ -147,7 +159,7 @@ json text_data(const LimitsReport& report) {
           {"number", report.evidence.people.number},
           {"tester", report.evidence.people.tester},
           {"hazards", matrix_data(report)},
-          {"tests", tests_data()},
+          {"tests", tests_data(report)},
           {"limits_text", report.evidence.limits_text},
           {"limits_sha256", report.evidence.limits_sha256},
           {"scene_path", report.scene_path},
@@ -159,6 +171,12 @@ json text_data(const LimitsReport& report) {
           {"workspace_radius_m", fmt::format("{:g}", l.workspace_radius_m)},
           {"workspace_half_length_m", fmt::format("{:g}", l.workspace_half_length_m)},
           {"recovery_W", fmt::format("{:g}", l.recovery_W)},
+          {"force_N", fmt::format("{:g}", report.scene_limits.force_N)},
+          {"full_W", fmt::format("{:.3g}", s.force_N * s.speed_mps + s.torque_Nm * s.turn_radps)},
+          {"brake_J",
+           fmt::format("{:.3g}", model::brake_energy_J(
+                                     s.speed_mps + s.torque_Nm / s.force_N * s.turn_radps,
+                                     s.force_N, slew_beside_ramp_N_per_s(s), report.period_s))},
           {"has_cases", !report.cases.empty()},
           {"simulated", report.simulated},
           {"any_injected", std::ranges::any_of(report.cases, [&](const auto& r) {
@@ -172,7 +190,8 @@ std::string page_html(const LimitsReport& report, const std::vector<std::string>
   json data = text_data(report);
   for (const auto& [why, names] : report.left_out_by_why())
     data["left_out"].push_back({{"why", why}, {"names", names}});
-  for (const LimitRow& row : limit_rows(report)) data["limits"].push_back(limit_data(row));
+  for (const LimitRow& row : limit_rows(report))
+    data["limits"].push_back(limit_data(row, data["limits"].size()));
   for (const CaseResult& r : report.cases) data["cases"].push_back(case_data(r.verdict, report));
   const std::size_t curves = svg.size() - (report.wall && !svg.empty() ? 1 : 0);  // the wall last
   for (std::size_t i = 0; i < curves; ++i) data["curves"].push_back(report::inline_svg(svg[i], i));

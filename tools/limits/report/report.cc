@@ -10,6 +10,7 @@
 #include "model/io/file_writer.h"
 #include "model/io/input_file.h"
 #include "model/io/json.h"
+#include "tools/program/interrupt.h"
 #include "tools/report/table.h"
 
 namespace tact::tools::limits {
@@ -170,8 +171,9 @@ Result<std::vector<std::string>> write_report(const LimitsReport& report,
   // Tables first: without gnuplot the numbers are there all the same.
   if (draw_plots) {
     const auto drawn = draw_curves(report, directory);
-    if (!drawn) return drawn.error();
-    for (const std::string& path : *drawn) {
+    if (!drawn && program::is_interrupted()) return drawn.error();
+    if (!drawn) fmt::print(stderr, "tact-limits: no pictures: {}\n", drawn.error().message);
+    for (const std::string& path : drawn ? *drawn : std::vector<std::string>()) {
       files.push_back(path);
       if (fs::path(path).extension() != ".svg") continue;
       auto svg = model::io::read_file(path);

@@ -31,7 +31,9 @@ struct LimitsReport {
   std::string command, started;  // as typed; UTC
   std::string scene_name, scene_path, device_name;
   bool simulated = true;
-  model::Limits limits{};  // in use: of scene, device and PC
+  model::Limits scene_limits{};  // as the scene has them
+  model::Limits limits{};        // tested: of scene and device, on a real device also of the PC
+  model::Limits pc_limits{};     // of a tactd on this PC, which may allow a quarter of the force
   double period_s = 0.001;
   double force_share = 1.0;
   bool hard_real_time = true;  // asked of the PC; simulated time needs none

@@ -40,6 +40,8 @@ json limit_json(const LimitRow& row) {
           {"key", row.key},
           {"unit", row.unit},
           {"value", row.limit},
+          {"scene_value", row.scene.limit},
+          {"on_this_pc", row.pc.limit},
           {"largest", row.largest},
           {"kept", kept_text(row.kept)},
           {"reached_by", row.reached_by},
