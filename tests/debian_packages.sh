@@ -74,7 +74,7 @@ inside 'for page in $(dpkg -L tact tact-view tact-tools tact-lab tact-doc | grep
   page=${page##*/}
   man ${page##*.} ${page%.*} >/root/page
   for part in EXAMPLES FILES "SEE ALSO"; do grep -qx "$part" /root/page || { echo "$page has no $part"; exit 1; }; done
-  for other in $(sed -n "/^SEE ALSO/,\$ s/\(tact[a-z-]*\)(\([157]\)).*/\2 \1/p" /root/page | tr " " ,); do
+  for other in $(sed -n "/^SEE ALSO/,\$p" /root/page | grep -oE "tact[a-z-]*[(][157][)]" | sed -E "s/(.*)[(](.)[)]/\2,\1/"); do
     man -w ${other%,*} ${other#*,} >/dev/null || { echo "$page names $other"; exit 1; }; done; done
 grep -c youngs_modulus_Pa <(man 5 tact-scene)
 cp /usr/share/tact/scenes/liver.toml /root/mine.toml && ln -s /usr/share/tact/scenes/meshes /root/meshes
