@@ -62,7 +62,7 @@ python3 "$root/tests/tools/deploy/first_force.py" "$root/tools/deploy/FIRST_FORC
 inside 'tact-mcap --version && tact-doctor --version
 ! tact-mcap a b 2>/root/said || exit 1
 grep "apt install python3-numpy" /root/said
-gpasswd -d root haptics >/dev/null && rm -r /etc/tact/mine.toml /run/tact'
+gpasswd -d root haptics >/dev/null && rm -rf /etc/tact/mine.toml /run/tact /tmp/tact-0'
 step install
 inside 'apt-get -qq install -y --no-install-recommends /root/*.deb' >"$base/root/log" 2>&1 ||
   { tail -n 30 "$base/root/log"; exit 1; }
