@@ -9,6 +9,9 @@
 
 namespace tact::hal {
 
+inline constexpr std::array kEventKeys{"event_0", "event_1", "event_2", "event_3",
+                                       "event_4", "event_5", "event_6", "event_7"};
+
 /// Lines of one chip, by offset; -1: not wired.
 struct LinesSettings {
   static constexpr Section kSection{"lines", "safety lines"};
@@ -16,10 +19,11 @@ struct LinesSettings {
   std::string chip;  // label or path; empty: no lines
   int estop_a = -1, estop_b = -1;
   int dead_man = -1;
-  int enable = -1, heartbeat = -1, led = -1, scope = -1;
+  int enable = -1, heartbeat = -1, led = -1, scope = -1, sync = -1;
   int grip = -1;                 // foot or hand switch that closes the jaws
   bool grip_closes_low = false;  // at the low level; else at the high one
   int clutch = -1;               // switch that parts tool and handle
+  std::array<int, kEventKeys.size()> event{-1, -1, -1, -1, -1, -1, -1, -1};
   bool wired() const { return !chip.empty(); }
 
   void visit(model::ParameterVisitor& k) {
@@ -42,6 +46,10 @@ struct LinesSettings {
     line("heartbeat", "out, toggles after every healthy tick", heartbeat);
     line("led", "out, high = armed", led);
     line("scope", "out, high from wake to write", scope);
+    line("sync", "out, high in odd seconds of CLOCK_MONOTONIC", sync);
+    for (std::size_t i = 0; i < event.size(); ++i)
+      line(kEventKeys[i], "in, a bit of the event word in the log; event_0 is the lowest",
+           event[i]);
     // One channel could fail unseen (RT-16).
     if ((estop_a < 0) != (estop_b < 0))
       k.refuse({"estop_a", "estop_b"},

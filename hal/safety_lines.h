@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// safety_lines.h - the wires beside the device: e-stop, dead-man, grip and clutch in, enable and
-// heartbeat out.
+// safety_lines.h - the wires beside the device: e-stop, dead-man, grip, clutch and event word in;
+// enable, heartbeat and sync out.
 //
 // The PC is never the safety device: the lines watch an e-stop chain that works without them, add
 // one more permission in series, and prove that the loop is alive. Once per tick, in this order:
@@ -23,6 +23,7 @@ struct LinesTick {
   bool healthy = false;  // no fault stands and the tick was in time: the heartbeat may toggle
   bool armed = false;    // for the status light
   bool faulted = false;  // a fault stands: enable goes now, not when the heartbeat is missed
+  bool sync = false;     // level of the sync line
 };
 
 class SafetyLines {
@@ -40,6 +41,8 @@ class SafetyLines {
   virtual std::optional<bool> grip() const RT_SAFE { return std::nullopt; }
   /// Is the clutch pressed? As of the last read; nothing where none is wired.
   virtual std::optional<bool> clutch() const RT_SAFE { return std::nullopt; }
+  /// Levels of the event lines as of the last read, event_0 the lowest bit; 0 where none is wired.
+  virtual std::uint8_t event_word() const RT_SAFE { return 0; }
   /// May the drives have power?
   virtual bool enabled() const RT_SAFE = 0;
   /// The scope line; nothing where none is wired.

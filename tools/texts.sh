@@ -28,7 +28,7 @@ format() {
 }
 
 layering() {
-  local rules=(layering tree sources readme ladder units words hazards clones bench pictures)
+  local rules=(layering tree sources readme ladder units words hazards clones bench budgets pictures provenance)
   cd "$root" || return
   # what tries the check's own functions
   [ $again = yes ] && ! any_newer layering tools/{check,changed.sh,stages.sh,program_digests.py} tests/house ||

@@ -36,10 +36,10 @@ BlackBox::~BlackBox() {
   due_.release();
 }
 
-void BlackBox::add(const loop::TickRecord& record) {
-  ticks_.add(protocol::LoggedTick::of(record, run_.non_rt));
+void BlackBox::add(const protocol::LoggedTick& tick) {
+  ticks_.add(tick);
   if (to_wait_ > 0) --to_wait_;
-  const model::Fault fault = record.output.fault;
+  const model::Fault fault = tick.output.fault;
   // A fault during the 0.25 s of an earlier one goes into the same file, with its ticks.
   if (fault != before_ && fault != model::Fault::kNone && waiting_ == model::Fault::kNone) {
     waiting_ = fault;

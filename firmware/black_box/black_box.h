@@ -31,7 +31,7 @@ class BlackBox final : public telemetry::Recorder {
   BlackBox(const BlackBox&) = delete;
   BlackBox& operator=(const BlackBox&) = delete;
 
-  void add(const loop::TickRecord& record) override;
+  void add(const protocol::LoggedTick& tick) override;
   void add(const protocol::Frame& frame) override { frames_.add(frame); }
   void add_variant(const std::string& chunk) override { variants_ += chunk; }
   void stands(model::Fault fault) override;

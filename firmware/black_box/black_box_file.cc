@@ -34,16 +34,16 @@ std::string plain(std::string text) {
   return text;
 }
 
-/// SCENE-DATE-NUMBER-FAULT.tactlog with the present time, and a suffix if that name is taken.
+/// SCENE-DATE-NUMBER-FAULT.tactbox with the present time, and a suffix if that name is taken.
 std::string free_path(const BlackBoxRun& run, model::Fault fault) {
   const std::time_t now = std::time(nullptr);
   const std::string stem =
       fmt::format("{}/{}-{:%Y%m%dT%H%M%SZ}-{}-{}", run.folder, plain(run.scene_name),
                   fmt::gmtime(now), static_cast<int>(fault), plain(model::describe(fault).name));
-  std::string path = stem + ".tactlog";
+  std::string path = stem + ".tactbox";
   // Two faults in one second. If the file appears meanwhile, RunWriter::create refuses it.
   std::error_code unknown;
-  for (int n = 2; fs::exists(path, unknown); ++n) path = fmt::format("{}-{}.tactlog", stem, n);
+  for (int n = 2; fs::exists(path, unknown); ++n) path = fmt::format("{}-{}.tactbox", stem, n);
   return path;
 }
 
@@ -81,7 +81,7 @@ Result<std::string> black_box_folder(const std::string& asked) {
 
 std::size_t remove_oldest(const std::string& folder, std::uintmax_t most_bytes) {
   // Files of free_path() alone: the folder may hold others.
-  constexpr const char* kOurs = "*-????????T??????Z-[0-9][0-9]*-*.tactlog";
+  constexpr const char* kOurs = "*-????????T??????Z-[0-9][0-9]*-*.tactbox";
   std::vector<std::pair<fs::file_time_type, fs::path>> found;
   std::uintmax_t all_bytes = 0;
   std::error_code failed;
@@ -128,23 +128,23 @@ BlackBoxRun::BlackBoxRun(std::string to, const protocol::RunHeader& header,
                          std::span<const std::byte> meshes)
     : folder(std::move(to)),
       scene_name(header.scene_name),
-      non_rt(header.non_rt),
+      tick_fields(protocol::LoggedTick::fields(header.spheres.size())),
       frame_fields(protocol::Frame::fields(header.spheres.size())),
       start(protocol::start_of_run(header, meshes,
-                                   {protocol::schema_of<protocol::LoggedTick>(),
+                                   {protocol::schema_of<protocol::LoggedTick>(tick_fields),
                                     protocol::schema_of<protocol::Frame>(frame_fields)})) {}
 
 Result<std::string> write_black_box(const BlackBoxRun& run, const Kept& kept) {
   std::error_code failed;  // RunWriter::create then fails and reports it
   fs::create_directories(run.folder, failed);
   const std::string path = free_path(run, kept.fault);
-  const protocol::FieldTable& fields = run.frame_fields;
   auto file = protocol::RunWriter::create(path, run.start);
   if (!file) return file.error();
   file->add(kept.variants);
   // Ticks before frames: a truncated file then still has the ticks.
-  for (const protocol::LoggedTick& tick : kept.ticks) file->add(chunk_of(tick));
-  each_frame(kept, [&](const protocol::Frame& frame) { file->add(chunk_of(frame, fields)); });
+  for (const protocol::LoggedTick& tick : kept.ticks) file->add(chunk_of(tick, run.tick_fields));
+  each_frame(kept,
+             [&](const protocol::Frame& frame) { file->add(chunk_of(frame, run.frame_fields)); });
   if (auto error = file->close()) return std::move(*error);
   return path;
 }

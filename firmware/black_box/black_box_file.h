@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // black_box_file.h - one file for one fault: a tick log of every tick, then frames for the viewer.
 //
-//     SCENE-DATE-NUMBER-FAULT.tactlog      liver-20260131T120000Z-105-loop-late.tactlog
+//     SCENE-DATE-NUMBER-FAULT.tactbox      liver-20260131T120000Z-105-loop-late.tactbox
 //
 // Head, meshes, changes of the law's numbers, ticks and frames (firmware/protocol/run_file.h);
 // frames at the frame rate, and one per tick in the last half second. An existing file is never
@@ -32,8 +32,7 @@ struct BlackBoxRun {
   BlackBoxRun(std::string to, const protocol::RunHeader& header, std::span<const std::byte> meshes);
 
   std::string folder, scene_name;
-  bool non_rt;
-  protocol::FieldTable frame_fields;
+  protocol::FieldTable tick_fields, frame_fields;
   std::string start;  // head and meshes, as bytes
 };
 

@@ -10,7 +10,7 @@ struct ControlQuestion {
   std::string folder;      // the runtime folder of tactd's user
   std::string scene_path;  // any path to the scene file
   pid_t process = 0;       // 0: the only tactd that runs the scene
-  std::string word;        // arm, disarm, reset, stop, status, or "set KEY=VALUE ..."
+  std::string word;        // arm, disarm, reset, stop, status, "set KEY=VALUE ..." or "event N"
 };
 
 /// tactd's answer; an error if there is no such tactd, if there are several, or after 5 s.

@@ -30,16 +30,18 @@ tact::model::Result<std::string> folder_of(const std::string& scene_path) {
   return own;
 }
 
-/// Appends KEY=VALUE to the word "set"; "KEY VALUE" as well.
+/// Appends KEY=VALUE to the word "set", "KEY VALUE" as well; the number of an event.
 std::optional<tact::model::Error> add_numbers(std::string& word,
                                               const std::vector<std::string>& numbers) {
-  if ((word == "set") == numbers.empty())
-    return tact::model::Error{numbers.empty() ? "set needs KEY=VALUE, or KEY VALUE"
-                                              : word + " takes no numbers"};
+  const bool is_event = word == "event";
+  if ((is_event || word == "set") == numbers.empty())
+    return tact::model::Error{!numbers.empty() ? word + " takes no numbers"
+                              : is_event       ? "event needs a number from 1 to 255"
+                                               : "set needs KEY=VALUE, or KEY VALUE"};
   bool is_value = false;
   for (const std::string& number : numbers) {
     word += (is_value ? '=' : ' ') + number;
-    is_value = !is_value && number.find('=') == std::string::npos;
+    is_value = !is_event && !is_value && number.find('=') == std::string::npos;
   }
   if (is_value) return tact::model::Error{numbers.back() + " has no value"};
   return std::nullopt;
@@ -61,12 +63,14 @@ int main(int argc, char** argv) {
                  "arm: force, after the words \"ready, force is off\"; disarm: no force, and ready "
                  "to be armed again; reset: leave a stop whose cause is gone; stop: force to zero, "
                  "then end; status: how it is; set: other numbers of the law, used as soon as the "
-                 "tool touches nothing")
+                 "tool touches nothing; event: a number into the record of the next tick")
       ->required()
-      ->check(CLI::IsMember({"arm", "disarm", "reset", "stop", "status", "set"}));
+      ->check(CLI::IsMember({"arm", "disarm", "reset", "stop", "status", "set", "event"}));
   std::vector<std::string> numbers;
-  app.add_option("NUMBERS", numbers,
-                 "with set: KEY=VALUE, or KEY VALUE; tactd SCENE --parameters lists the keys");
+  app.add_option(
+      "NUMBERS", numbers,
+      "with set: KEY=VALUE, or KEY VALUE; tactd SCENE --parameters lists the keys; with event: "
+      "1 to 255");
   app.add_option("--pid", question.process, "of several tactds that run it, the one of this pid")
       ->check(tact::model::io::within(1, 4'194'304));
   app.add_option("--folder", question.folder,

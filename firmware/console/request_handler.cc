@@ -5,8 +5,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cstring>
 #include <ctime>
 #include <iterator>
+#include <limits>
 
 #include "firmware/console/control_name.h"
 #include "firmware/loop/clock.h"
@@ -86,8 +89,9 @@ Answer RequestHandler::do_word(const std::string& word, bool too_early) {
   if (word == "disarm") return disarm();
   if (word == "stop") return stop();
   if (word == "status") return status();
+  if (word.starts_with("event ")) return event(word.substr(strlen("event ")));
   return {.done = false,
-          .message = "arm, disarm, reset, stop, status and set are known, nothing else"};
+          .message = "arm, disarm, reset, stop, status, set and event are known, nothing else"};
 }
 
 Answer RequestHandler::arm(bool too_early) {
@@ -152,6 +156,25 @@ Answer RequestHandler::stop() {
   // A stop is never refused.
   requests_.stop.store(true);
   return {.done = true, .message = view_.device() + ": force to zero, then tactd ends"};
+}
+
+// Into the record of one tick. It changes no force, so it is never too early.
+Answer RequestHandler::event(std::string_view number_text) {
+  constexpr std::uint8_t kMax_event = std::numeric_limits<std::uint8_t>::max();
+  std::uint64_t now = 0;
+  const char* const end = number_text.data() + number_text.size();
+  const auto read = std::from_chars(number_text.data(), end, now);
+  if (read.ec != std::errc{} || read.ptr != end || now < 1 || now > kMax_event)
+    return {.done = false, .message = "event takes a number from 1 to 255"};
+  const std::uint64_t number = now;
+  requests_.event.store(number);
+  for (int i = 0; i < kMaxPauses && (now & kMax_event) != 0; ++i) {
+    pause_();
+    now = requests_.event.load();
+  }
+  if ((now & kMax_event) != 0 && requests_.event.compare_exchange_strong(now, 0))
+    return {.done = false, .message = view_.device() + ": no event: the loop gives no answer"};
+  return {.done = true, .message = fmt::format("event {} in tick {}", number, (now >> 8) - 1)};
 }
 
 Answer RequestHandler::refuse(const char* what, const std::string& why) const {

@@ -8,6 +8,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "firmware/console/control_socket.h"
@@ -55,6 +56,7 @@ class RequestHandler {
   Answer reset(bool too_early);
   Answer disarm();
   Answer stop();
+  Answer event(std::string_view number_text);
   std::optional<bool> ask_loop(loop::Request request);
   std::optional<bool> wait_for(std::uint32_t number);
   Answer not_done(const char* what, const std::optional<bool>& answer, const char* why) const;

@@ -24,6 +24,8 @@ struct Requests {
   std::atomic<bool> stop{false};          // zero force, then end the loop
   std::atomic<model::Fault> fault{model::Fault::kNone};  // first fault of the watch
   std::atomic<std::uint32_t> refused{0};  // requests refused: arm by the loop, others before it
+  // 1 to 255: an event that no tick has taken; else 256 times the number of the next tick
+  std::atomic<std::uint64_t> event{0};
 
   /// Replaces a request that is not answered yet. Returns the number; only one thread may ask.
   std::uint32_t ask(Request request) {
@@ -42,6 +44,17 @@ struct Requests {
   /// Loop side: answers the request with this value of `asked`.
   void echo(std::uint32_t request, bool done) RT_SAFE {
     echoed.store((request & ~3U) | (done ? 1U : 0U), std::memory_order_relaxed);
+  }
+
+  /// Loop side: the event of this tick, 0: none.
+  std::uint8_t take_event(std::uint64_t tick) RT_SAFE {
+    std::uint64_t asked_event = event.load(std::memory_order_relaxed);
+    const auto number = static_cast<std::uint8_t>(asked_event);
+    // Withdrawn in this moment: as if it had not come.
+    return number != 0 && event.compare_exchange_strong(asked_event, (tick + 1) << 8,
+                                                        std::memory_order_relaxed)
+               ? number
+               : 0;
   }
 
   void trip(model::Fault found) RT_SAFE {

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "firmware/loop/release_schedule.h"
+#include "model/time_ns.h"
 
 namespace tact::firmware::loop {
 
@@ -104,6 +105,7 @@ bool RtLoop::arms_at_start() const RT_SAFE {
 Fault RtLoop::read(std::int64_t now_ns) RT_SAFE {
   progress_.enter(Callee::kLines);
   const Fault lines_fault = lines_.read(now_ns);
+  record_.event_word = lines_.event_word();
   // A device without new data leaves the sample unchanged (hal/device.h): it must not stay fresh.
   hal::Sample& sample = record_.input.sample;
   sample.fresh = false;
@@ -138,7 +140,8 @@ void RtLoop::write() RT_SAFE {
   progress_.enter(Callee::kLines);
   const Fault lines_fault = lines_.write({.healthy = !stopped && record_.margin_ns > 0,
                                           .armed = output.state == State::kArmed,
-                                          .faulted = stopped});
+                                          .faulted = stopped,
+                                          .sync = record_.sync});
   progress_.enter(Callee::kDevice);
   device_.permit(lines_.enabled());
   device_.set_grip_force(output.written_grip_N);
@@ -181,6 +184,8 @@ void RtLoop::cycle(std::int64_t due_ns) RT_SAFE {
   lines_.scope(true);
   record_.tick = statistics_.ticks++;
   record_.due_ns = due_ns;
+  record_.sync = due_ns / model::kSecond_ns % 2 != 0;
+  record_.event = requests_.take_event(record_.tick);
   record_phase(Phase::kWake, wake_ns - due_ns);
 
   hear_requests();

@@ -63,7 +63,10 @@ struct TickRecord {
   TickInput input;
   TickOutput output;
   std::array<std::int32_t, kPhaseCount>
-      phase_ns{};  // of this tick up to write; publish and total of the previous tick
+      phase_ns{};               // of this tick up to write; publish and total of the previous tick
+  std::uint8_t event = 0;       // of a person or program, in this tick alone; 0: none
+  std::uint8_t event_word = 0;  // levels of the event lines
+  bool sync = false;            // level of the sync line
   SphereContacts contacts;
 };
 

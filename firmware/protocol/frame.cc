@@ -2,20 +2,10 @@
 // The one list of a frame's fields: name with unit, and meaning. Vectors are x, y, z in frame W.
 #include "firmware/protocol/frame.h"
 
-#include <algorithm>
 #include <cstddef>
-#include <string_view>
-#include <vector>
-
-#include "firmware/protocol/labels.h"
 
 namespace tact::firmware::protocol {
 namespace {
-
-const char* contact_state(std::uint64_t number) {
-  static constexpr std::array kNames{"free", "contact", "held", "inside"};
-  return number < kNames.size() ? kNames[number] : "unknown";
-}
 
 #define FIELD(member, meaning) TACT_FIELD(FrameContact, member, #member, meaning)
 constexpr std::array kContact{
@@ -26,7 +16,7 @@ constexpr std::array kContact{
     FIELD(profile_m,
           "displacement into the tissue at radius j profile_pitch_m; profile_points are in use"),
     FIELD(tilt, "m/m; added to the profile at x: tilt . (x - surface_point_m)"),
-    FIELD(state, "inside: no force until it has once been outside").labelled(contact_state)};
+    FIELD(state, "inside: no force until it has once been outside").labelled(contact_state_name)};
 #undef FIELD
 
 #define FIELD(member, meaning) TACT_FIELD(FramePatch, member, #member, meaning)
@@ -43,6 +33,10 @@ constexpr std::array kPatch{FIELD(vertex_count, "displaced vertices in this fram
 constexpr std::array kFrame{
     FIELD(tick, "number of the newest tick"),
     FIELD(time_ns, "since the loop started"),
+    FIELD(due_ns, "the deadline that woke it, CLOCK_MONOTONIC"),
+    TACT_FIELD(Frame, utc.offset_ns, "utc_offset_ns", "UTC since 1970 is due_ns plus this"),
+    TACT_FIELD(Frame, utc.max_error_us, "utc_max_error_us", "at most; 16 s: no time service"),
+    TACT_FIELD(Frame, utc.error_us, "utc_error_us", "as the time service estimates"),
     FIELD(late_ticks, "count since start"),
     FIELD(skipped_ticks, "count since start"),
     FIELD(dropped_records, "count since start"),
@@ -75,15 +69,6 @@ constexpr std::array kFrame{
 FieldTable FrameContact::fields() { return kContact; }
 FieldTable FramePatch::fields() { return kPatch; }
 
-FieldTable Frame::fields(std::size_t spheres) {
-  using Table = std::array<Field, kFrame.size()>;
-  static const std::vector<Table> of_count = [] {
-    std::vector<Table> out(kMaxContacts, kFrame);
-    for (std::size_t i = 0; i < kMaxContacts; ++i)
-      std::ranges::find(out[i], std::string_view("contact"), &Field::name)->shape[0] = i + 1;
-    return out;
-  }();
-  return of_count[std::clamp<std::size_t>(spheres, 1, kMaxContacts) - 1];
-}
+FieldTable Frame::fields(std::size_t spheres) { return with_contacts<kFrame>(spheres); }
 
 }  // namespace tact::firmware::protocol

@@ -8,17 +8,14 @@
 #include "firmware/loop/state.h"
 #include "firmware/protocol/chunks.h"
 #include "firmware/protocol/record_fields.h"
+#include "firmware/protocol/record_parts.h"
 
 namespace tact::firmware::protocol {
 
-inline constexpr std::size_t kMaxContacts = 16;        // probe spheres on the tool
 inline constexpr std::size_t kMaxProfilePoints = 32;   // of one contact
 inline constexpr std::size_t kMaxPatchVertices = 180;  // in one frame
 inline constexpr std::size_t kMaxCutsReported = 32;    // in one frame
 inline constexpr std::size_t kMaxPieces = 4;           // pieces of the organ's mesh with a colour
-
-// kInside: the sphere is inside the organ and gives no force until it has once been outside.
-enum class ContactState : std::uint8_t { kFree = 0, kTouching = 1, kHeld = 2, kInside = 3 };
 
 struct FrameContact {
   float surface_point_m[3] = {};
@@ -51,6 +48,8 @@ struct Frame {
 
   std::uint64_t tick = 0;
   std::int64_t time_ns = 0;
+  std::int64_t due_ns = 0;
+  UtcOffset utc;
   std::uint64_t late_ticks = 0, skipped_ticks = 0, dropped_records = 0;
   float tool_position_m[3] = {};
   float tool_orientation[4] = {1, 0, 0, 0};

@@ -3,9 +3,8 @@
 // in frame W.
 #include "firmware/protocol/logged_tick.h"
 
+#include <algorithm>
 #include <cstddef>
-
-#include "firmware/protocol/labels.h"
 
 namespace tact::firmware::protocol {
 namespace {
@@ -14,6 +13,13 @@ const char* clutch_name(std::uint64_t number) {
   static constexpr std::array kNames{"coupled", "yields", "open"};
   return number < kNames.size() ? kNames[number] : "unknown";
 }
+
+#define FIELD(member, meaning) TACT_FIELD(LoggedContact, member, #member, meaning)
+constexpr std::array kContact{
+    FIELD(surface_point_m, "contact point on the undeformed surface"),
+    FIELD(depth_m, "press positive, pull negative"),
+    FIELD(state, "inside: no force until it has once been outside").labelled(contact_state_name)};
+#undef FIELD
 
 #define FIELD(member, name, meaning) TACT_FIELD(LoggedTick, member, name, meaning)
 #define INPUT(member, name, meaning) FIELD(input.member, name, meaning)
@@ -60,23 +66,47 @@ constexpr std::array kTick{
     OUTPUT(contact_losses, "contact_losses",
            "count since start: contact was lost as the tool moved too far between samples"),
     OUTPUT(wanted_grip_N, "wanted_grip_force_N", "of the law on the fingers, opening positive"),
-    OUTPUT(written_grip_N, "grip_force_N", "written to the fingers, opening positive")};
+    OUTPUT(written_grip_N, "grip_force_N", "written to the fingers, opening positive"),
+    FIELD(utc.offset_ns, "utc_offset_ns", "UTC since 1970 is due_ns plus this"),
+    FIELD(utc.max_error_us, "utc_max_error_us", "at most; 16 s: no time service"),
+    FIELD(utc.error_us, "utc_error_us", "as the time service estimates"),
+    FIELD(event, "event", "of tactctl, in this tick alone; 0 none"),
+    FIELD(event_word, "event_word", "levels of the event lines, event_0 the lowest bit"),
+    FIELD(sync, "sync", "level of the sync line, written in this tick"),
+    FIELD(contact, "contact", "probe spheres of the tool")};
 #undef FIELD
 #undef INPUT
 #undef OUTPUT
 
 }  // namespace
 
-FieldTable LoggedTick::fields() { return kTick; }
+FieldTable LoggedContact::fields() { return kContact; }
 
-LoggedTick LoggedTick::of(const loop::TickRecord& record, bool non_rt) {
-  return {.tick = record.tick,
-          .non_rt = non_rt,
-          .due_ns = record.due_ns,
-          .margin_ns = record.margin_ns,
-          .phase_ns = record.phase_ns,
-          .input = record.input,
-          .output = record.output};
+FieldTable LoggedTick::fields(std::size_t spheres) { return with_contacts<kTick>(spheres); }
+
+LoggedTick LoggedTick::of(const loop::TickRecord& record, bool non_rt, const UtcOffset& utc) {
+  LoggedTick out{.tick = record.tick,
+                 .non_rt = non_rt,
+                 .due_ns = record.due_ns,
+                 .margin_ns = record.margin_ns,
+                 .phase_ns = record.phase_ns,
+                 .input = record.input,
+                 .output = record.output,
+                 .utc = utc,
+                 .event = record.event,
+                 .event_word = record.event_word,
+                 .sync = record.sync};
+  static_assert(kMaxContacts == model::contact::kMaxSpheres);
+  std::ranges::transform(
+      record.contacts.all(), out.contact, [](const model::contact::SphereContact& from) {
+        const model::Vec3& point_m = from.surface_point_m;
+        return LoggedContact{
+            .surface_point_m = {static_cast<float>(point_m.x), static_cast<float>(point_m.y),
+                                static_cast<float>(point_m.z)},
+            .depth_m = static_cast<float>(from.depth_m),
+            .state = static_cast<ContactState>(from.state)};
+      });
+  return out;
 }
 
 }  // namespace tact::firmware::protocol

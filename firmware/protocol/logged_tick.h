@@ -9,8 +9,17 @@
 #include "firmware/loop/tick_record.h"
 #include "firmware/protocol/chunks.h"
 #include "firmware/protocol/record_fields.h"
+#include "firmware/protocol/record_parts.h"
 
 namespace tact::firmware::protocol {
+
+struct LoggedContact {
+  float surface_point_m[3] = {};
+  float depth_m = 0.0f;
+  ContactState state = ContactState::kFree;
+
+  static FieldTable fields();
+};
 
 struct LoggedTick {
   static constexpr ChunkKind kKind = ChunkKind::kTick;
@@ -23,9 +32,14 @@ struct LoggedTick {
   std::array<std::int32_t, loop::kPhaseCount> phase_ns{};
   loop::TickInput input;
   loop::TickOutput output;
+  UtcOffset utc;
+  std::uint8_t event = 0, event_word = 0;
+  bool sync = false;
+  LoggedContact contact[kMaxContacts] = {};
 
-  static LoggedTick of(const loop::TickRecord& record, bool non_rt);
-  static FieldTable fields();
+  static LoggedTick of(const loop::TickRecord& record, bool non_rt, const UtcOffset& utc = {});
+  /// Of a run whose tool has that many spheres.
+  static FieldTable fields(std::size_t spheres = kMaxContacts);
 };
 
 }  // namespace tact::firmware::protocol

@@ -109,10 +109,12 @@ std::string csv_facts(std::string_view title, const RunHeader& header) {
   using model::io::on_one_line;
   return fmt::format(
       "# {}\n# scene: {}\n# scene_hash: {}\n# law: {}\n# device: {}\n# revision: {}\n# began: {}\n"
-      "# host: {}\n# rate_Hz: {:.10g}\n# frame_rate_Hz: {:.10g}\n",
+      "# began_monotonic_s: {:.9f}\n# utc_max_error_us: {}\n# utc_error_us: {}\n# host: {}\n# "
+      "rate_Hz: {:.10g}\n# frame_rate_Hz: {:.10g}\n",
       title, on_one_line(header.scene_name), on_one_line(header.scene_hash),
       on_one_line(header.law_name), on_one_line(header.device_name), on_one_line(header.revision),
-      on_one_line(header.began_utc), on_one_line(header.host_name), header.rate_Hz,
+      on_one_line(header.began_utc), 1e-9 * static_cast<double>(header.began_monotonic_ns),
+      header.utc_max_error_us, header.utc_error_us, on_one_line(header.host_name), header.rate_Hz,
       header.frame_rate_Hz);
 }
 

@@ -19,10 +19,11 @@ namespace firmware::protocol {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Sphere, radius_m, offset_m)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(
     RunHeader, scene_name, scene_hash, overrides, law_name, device_name, revision, host_name,
-    began_utc, rate_Hz, frame_rate_Hz, limits, force_share, force_limit_N, torque_limit_Nm,
-    continuous_force_N, energy_budget_J, limits_checksum, non_rt, simulated, cannot_grip,
-    hand_socket, organ_vertices, organ_triangles, tool_vertices, tool_triangles, spheres,
-    profile_points, profile_pitch_m, organ_material, tool_material, piece_color_ratio)
+    began_utc, began_monotonic_ns, utc_max_error_us, utc_error_us, rate_Hz, frame_rate_Hz, limits,
+    force_share, force_limit_N, torque_limit_Nm, continuous_force_N, energy_budget_J,
+    limits_checksum, non_rt, simulated, cannot_grip, hand_socket, organ_vertices, organ_triangles,
+    tool_vertices, tool_triangles, spheres, profile_points, profile_pitch_m, organ_material,
+    tool_material, piece_color_ratio)
 
 nlohmann::json json_of(const RunHeader& header) { return header; }
 

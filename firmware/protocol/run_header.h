@@ -23,9 +23,11 @@ struct Sphere {
 struct RunHeader {
   std::string scene_name, scene_hash;
   std::vector<std::string> overrides;  // --set KEY=VALUE of the run, its law included
-  std::string law_name;
-  std::string device_name;
-  std::string revision, host_name, began_utc;  // of tactd; 2026-01-31T12:00:00Z
+  std::string law_name, device_name;
+  std::string revision, host_name;                   // of tactd
+  std::string began_utc;                             // 2026-01-31T12:00:00.123456789Z
+  std::int64_t began_monotonic_ns{};                 // the same moment by CLOCK_MONOTONIC
+  std::uint32_t utc_max_error_us{}, utc_error_us{};  // then (record_parts.h)
   double rate_Hz = 0.0;
   double frame_rate_Hz = 0.0;
   model::Limits limits{};        // of scene and device together

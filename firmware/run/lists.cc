@@ -7,8 +7,10 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "firmware/run/CITATION.cff.h"
 #include "hal/registry/open_device.h"
 #include "model/io/json.h"
+#include "model/io/program/command_line.h"
 #include "model/reader/scene_text.h"
 #include "model/scene/variant.h"
 
@@ -78,6 +80,10 @@ std::string parameters_as_json(model::scene::Scene scene) {
                            {"simulated", hal::registry::is_simulated(scene.device)},
                            {"parameters", list}};
   return model::io::text_of(out, 2) + "\n";
+}
+
+std::string citation() {
+  return fmt::format("{}commit: \"{}\"\n", kCitation, model::io::source_revision());
 }
 
 }  // namespace tact::firmware::run

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// lists.h - the lists that tactd prints, as text and JSON: `--list-devices`, `SCENE --parameters`.
+// lists.h - the lists that tactd prints, as text and JSON: `--list-devices`, `--parameters`.
 #pragma once
 
 #include <string>
@@ -22,5 +22,8 @@ std::string parameters_as_text(model::scene::Scene scene);
 
 /// {"scene","law","simulated","parameters":[{"key","unit","value","low","high","whole","meaning"}]}
 std::string parameters_as_json(model::scene::Scene scene);
+
+/// CITATION.cff, with the commit of this build.
+std::string citation();
 
 }  // namespace tact::firmware::run

@@ -88,12 +88,14 @@ void add_answers(CLI::App& app, Options& o) {
                "print what is plugged in, what it lacks and the remedy, then leave");
   app.add_flag("--parameters", o.parameters,
                "print the numbers of the scene's law with their ranges, then leave");
+  app.add_flag("--cite", o.cite, "print CITATION.cff with the commit of this build, then leave");
   app.add_flag("--help-scene", o.help_scene, "print every scene key with its range, then leave");
 }
 
 /// Contradictions between options.
 std::optional<model::Error> contradiction(const Options& o) {
-  if (o.scene_path.empty() && !o.faults && !o.help_scene && !o.list_devices && o.csv_path.empty())
+  if (o.scene_path.empty() && !o.faults && !o.help_scene && !o.cite && !o.list_devices &&
+      o.csv_path.empty())
     return model::Error{"SCENE is required"};
   // A service starts at boot or after a crash, when nobody holds the tool.
   if (o.arm && console::is_service())

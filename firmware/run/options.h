@@ -26,6 +26,7 @@ struct Options {
   bool faults = false;      // print the fault table
   bool help_scene = false;  // print every scene key
   bool list_devices = false;
+  bool cite = false;             // print how to cite this build
   bool parameters = false;       // print the numbers of the scene's law
   std::string black_box_folder;  // empty: below the user's state folder
   bool no_black_box = false;

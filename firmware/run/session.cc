@@ -153,7 +153,7 @@ std::optional<model::Error> Session::open_telemetry() {
   if (!sinks->no_black_box.empty()) say(stderr, "tactd: {}\n", sinks->no_black_box);
   telemetry_.emplace(*parts_.ring,
                      telemetry::FrameBuilder(parts_.tissue->law().contact_law(),
-                                             parts_.controller->shapes(), non_rt_),
+                                             parts_.controller->shapes(), non_rt_, sinks->utc),
                      telemetry::FramePace{scene_.frame_rate_Hz, period_ns()},
                      std::move(sinks->sinks), &requests_.fault);
   return std::nullopt;

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/run/telemetry_setup.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <sys/utsname.h>
-
-#include <ctime>
 
 #include "firmware/admission/notes.h"
 #include "firmware/pc/environment.h"
 #include "firmware/protocol/run_file.h"
+#include "firmware/telemetry/utc_clock.h"
 #include "model/io/socket_file.h"
 
 namespace tact::firmware::run {
@@ -27,7 +25,7 @@ Result<std::string> socket_path(const RunSetup& run) {
 }
 
 /// The head of a run: scene, device, the limits in use on this PC, and date.
-protocol::RunHeader header_of(const RunSetup& run) {
+protocol::RunHeader header_of(const RunSetup& run, const protocol::UtcOffset& utc) {
   protocol::RunHeader header = telemetry::header_of(run.scene, *run.parts.tissue);
   const gate::Gate& gate = run.parts.controller->gate();
   const hal::DeviceInfo device = run.parts.device->info();
@@ -37,7 +35,11 @@ protocol::RunHeader header_of(const RunSetup& run) {
   utsname pc_name{};
   uname(&pc_name);
   header.host_name = pc_name.nodename;
-  header.began_utc = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+  // Simulated time begins at 0.
+  header.began_monotonic_ns = run.options.free_run ? 0 : loop::MonotonicClock().now_ns();
+  header.began_utc = telemetry::date_of(header.began_monotonic_ns + utc.offset_ns);
+  header.utc_max_error_us = utc.max_error_us;
+  header.utc_error_us = utc.error_us;
   header.limits = run.parts.limits;
   header.force_share = run.force_share;
   header.force_limit_N = gate.force_limit_N();
@@ -83,14 +85,18 @@ std::optional<Error> open_sockets(const RunSetup& run, protocol::RunHeader heade
 
 Result<Sinks> open_sinks(const RunSetup& run) {
   Sinks out;
-  const protocol::RunHeader header = header_of(run);
+  out.utc = telemetry::read_utc_offset();
+  if (run.options.free_run) out.utc.offset_ns += loop::MonotonicClock().now_ns();
+  const protocol::RunHeader header = header_of(run, out.utc);
   const std::vector<std::byte> meshes = telemetry::mesh_bytes(run.scene);
   if (!run.options.no_telemetry)
     if (auto failed = open_sockets(run, header, meshes, out)) return std::move(*failed);
   if (!run.options.record_path.empty()) {
+    out.sinks.tick_fields = protocol::LoggedTick::fields(header.spheres.size());
     auto log = protocol::RunWriter::create(
         run.options.record_path,
-        start_of_run(header, {}, {protocol::schema_of<protocol::LoggedTick>()}),
+        start_of_run(header, {},
+                     {protocol::schema_of<protocol::LoggedTick>(out.sinks.tick_fields)}),
         protocol::kMaxRecord_bytes);
     if (!log) return log.error();
     out.sinks.log.emplace(std::move(*log));

@@ -25,6 +25,7 @@ struct RunSetup {
 
 struct Sinks {
   telemetry::Sinks sinks;
+  protocol::UtcOffset utc;                         // at the start
   std::unique_ptr<black_box::BlackBox> black_box;  // the target of sinks.recorder
   std::unique_ptr<hal::sim::HandSocket> hand;      // of a simulated device
   std::string no_black_box;                        // the error, if the default folder is unusable

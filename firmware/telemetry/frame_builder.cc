@@ -26,9 +26,8 @@ void put(Frame& frame, const loop::TickInput& input, const loop::TickOutput& out
   const hal::Tool& tool = input.sample.tool;
   put(frame.tool_position_m, tool.position_m);
   const model::Quat& q = tool.orientation;
-  const double wxyz[4] = {q.w, q.x, q.y, q.z};
-  std::transform(wxyz, wxyz + 4, frame.tool_orientation,
-                 [](double v) { return static_cast<float>(v); });
+  float* wxyz = frame.tool_orientation;
+  for (const double part : {q.w, q.x, q.y, q.z}) *wxyz++ = static_cast<float>(part);
   put(frame.tool_velocity_mps, tool.velocity_mps);
   frame.grip_ratio = static_cast<float>(tool.grip_ratio);
   put(frame.force_N, output.written.force_N);
@@ -133,6 +132,8 @@ Frame frame_of_tick(const Frame& picture, const LoggedTick& tick, std::int64_t t
   Frame frame = picture;
   frame.tick = tick.tick;
   frame.time_ns = time_ns;
+  frame.due_ns = tick.due_ns;
+  frame.utc = tick.utc;
   put(frame, tick.input, tick.output);
   // The extremes of this one tick.
   frame.peak_force_N = static_cast<float>(norm(tick.output.written.force_N));
@@ -147,6 +148,8 @@ Frame FrameBuilder::take(std::uint64_t dropped_records) {
   Frame frame;
   frame.tick = r.tick;
   frame.time_ns = r.due_ns - first_due_ns_;
+  frame.due_ns = r.due_ns;
+  frame.utc = utc_;
   frame.late_ticks = r.late_ticks;
   frame.skipped_ticks = r.skipped_ticks;
   frame.dropped_records = dropped_records;

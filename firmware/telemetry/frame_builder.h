@@ -38,14 +38,18 @@ class FrameBuilder {
  public:
   /// `indentations` and `shapes` must outlive the builder, which solves profiles outside the loop.
   FrameBuilder(const model::contact::IndentationView& indentations, loop::ShapeSlot& shapes,
-               bool non_rt)
-      : indentations_(&indentations), shapes_(shapes), non_rt_(non_rt) {}
+               bool non_rt, const protocol::UtcOffset& utc = {})
+      : indentations_(&indentations), shapes_(shapes), non_rt_(non_rt), utc_(utc) {}
 
   /// The tissue of the records from now on.
   void use(const model::contact::IndentationView& indentations) { indentations_ = &indentations; }
   void add(const loop::TickRecord& record);
+  /// Of the records from now on.
+  void set_utc(const protocol::UtcOffset& utc) { utc_ = utc; }
+  LoggedTick log(const loop::TickRecord& record) const {
+    return LoggedTick::of(record, non_rt_, utc_);
+  }
   bool has_news() const { return !tick_us_.empty(); }
-  bool non_rt() const { return non_rt_; }
   Frame take(std::uint64_t dropped_records);
 
  private:
@@ -57,6 +61,7 @@ class FrameBuilder {
   loop::ShapeSlot& shapes_;
   model::contact::PatchShape shape_;
   bool non_rt_;
+  protocol::UtcOffset utc_;
   loop::TickRecord newest_;
   std::int64_t first_due_ns_ = -1;
   std::vector<float> tick_us_;  // since the last frame

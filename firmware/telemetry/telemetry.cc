@@ -8,6 +8,7 @@
 #include "firmware/loop/clock.h"
 #include "firmware/loop/release_schedule.h"
 #include "firmware/telemetry/force_hash.h"
+#include "firmware/telemetry/utc_clock.h"
 #include "model/io/json.h"
 #include "model/time_ns.h"
 
@@ -49,10 +50,14 @@ void Telemetry::run() {
   loop::MonotonicClock clock;
   const std::int64_t frame_ns = model::period_ns(pace_.frame_rate_Hz);
   // Absolute times, as in the loop: a slow disk delays one frame without shifting later ones.
-  std::int64_t due_ns = clock.now_ns();
+  std::int64_t due_ns = clock.now_ns(), utc_due_ns = due_ns + model::kSecond_ns;
   while (!ending_.load(std::memory_order_relaxed)) {
     drain();
     publish();
+    if (due_ns >= utc_due_ns) {
+      builder_.set_utc(read_utc_offset());
+      utc_due_ns = due_ns + model::kSecond_ns;
+    }
     due_ns += frame_ns;
     // Halfway between two deadlines: a wake-up at a deadline would disturb the same phase of every
     // tick (RT-14).
@@ -66,8 +71,10 @@ void Telemetry::drain() {
     if (record_.input.variant != variant()) change_variant();
     builder_.add(record_);
     force_hash_ = hash_wrench(force_hash_, record_.output.written);
-    if (sinks_.log) sinks_.log->add(chunk_of(LoggedTick::of(record_, builder_.non_rt())));
-    if (sinks_.recorder) sinks_.recorder->add(record_);
+    if (!sinks_.log && sinks_.recorder == nullptr) continue;
+    const LoggedTick tick = builder_.log(record_);
+    if (sinks_.log) sinks_.log->add(chunk_of(tick, sinks_.tick_fields));
+    if (sinks_.recorder) sinks_.recorder->add(tick);
   }
   auto news = sinks_.log ? sinks_.log->news() : std::nullopt;
   if (!news) return;

@@ -20,7 +20,7 @@ namespace tact::firmware::telemetry {
 class Recorder {
  public:
   virtual ~Recorder() = default;
-  virtual void add(const loop::TickRecord& record) = 0;
+  virtual void add(const LoggedTick& tick) = 0;
   virtual void add(const Frame& frame) = 0;
   /// Other numbers of the law from the next tick on, as a chunk.
   virtual void add_variant(const std::string& chunk) = 0;
@@ -34,7 +34,8 @@ class Recorder {
 /// Sinks of ticks and frames; absent ones are skipped.
 struct Sinks {
   std::optional<TelemetrySocket> socket{};
-  protocol::FieldTable frame_fields = Frame::fields();  // as the socket's memory file has it
+  protocol::FieldTable frame_fields = Frame::fields();
+  protocol::FieldTable tick_fields = LoggedTick::fields();
   std::optional<protocol::RunWriter> log{};
   Recorder* recorder = nullptr;  // outlives the telemetry
 };

@@ -12,10 +12,6 @@
 
 namespace tact::firmware::telemetry {
 
-/// Both end with a line break; the last line of the head names the columns.
-std::string tick_csv_head(const protocol::RunHeader& header);
-std::string tick_csv_row(const protocol::LoggedTick& tick);
-
 /// Writes all good ticks of a log. Returns a description of the damage, or an empty string. An
 /// error if the log cannot be read or the table cannot be written.
 model::Result<std::string> write_tick_csv(const std::string& log_path, const std::string& csv_path);

@@ -28,7 +28,8 @@ constexpr const char* kConsumer = "tactd";
 struct Groups {
   LineRequest inputs, outputs, scope;
   int estop_a = -1, estop_b = -1, dead_man = -1, grip = -1, clutch = -1;
-  int enable = -1, heartbeat = -1, led = -1;
+  int enable = -1, heartbeat = -1, led = -1, sync = -1;
+  std::array<int, kEventKeys.size()> event{};
   bool grip_closes_low = false;
 };
 
@@ -55,6 +56,9 @@ class GpioLines final : public SafetyLines {
                                          .grip = grip_pressed(values),
                                          .clutch = level(values, lines_.clutch)},
                                         now_ns);
+    event_word_ = 0;
+    for (std::size_t i = 0; i < kEventKeys.size(); ++i)
+      if (level(values, lines_.event[i])) event_word_ |= static_cast<std::uint8_t>(1U << i);
     return is_lost() ? Fault::kLinesLost : fault;
   }
 
@@ -65,12 +69,14 @@ class GpioLines final : public SafetyLines {
     set_level(values, lines_.enable, outputs.enable && !dropped());
     set_level(values, lines_.heartbeat, outputs.heartbeat && !dropped());
     set_level(values, lines_.led, outputs.led);
+    set_level(values, lines_.sync, tick.sync);
     if (!is_lost() && !lines_.outputs.empty() && !lines_.outputs.set(values)) lose();
     return is_lost() ? Fault::kLinesLost : Fault::kNone;
   }
 
   std::optional<bool> grip() const RT_SAFE override { return logic_.grip(); }
   std::optional<bool> clutch() const RT_SAFE override { return logic_.clutch(); }
+  std::uint8_t event_word() const RT_SAFE override { return event_word_; }
   bool enabled() const RT_SAFE override { return !is_lost() && !dropped() && logic_.enabled(); }
 
   // libgpiod 1.6 keeps the last level of each line in plain memory that nobody reads: two threads
@@ -125,6 +131,7 @@ class GpioLines final : public SafetyLines {
   Chip chip_;
   Groups lines_;
   SafetyLogic logic_;
+  std::uint8_t event_word_ = 0;
   std::atomic<bool> lost_{false}, dropped_{false};
 };
 
@@ -132,16 +139,13 @@ struct NamedOffset {
   const char* key;
   int offset;
 };
-std::array<NamedOffset, 9> offsets_of(const LinesSettings& s) {
-  return {{{"estop_a", s.estop_a},
-           {"estop_b", s.estop_b},
-           {"dead_man", s.dead_man},
-           {"grip", s.grip},
-           {"clutch", s.clutch},
-           {"enable", s.enable},
-           {"heartbeat", s.heartbeat},
-           {"led", s.led},
-           {"scope", s.scope}}};
+std::vector<NamedOffset> offsets_of(const LinesSettings& s) {
+  std::vector<NamedOffset> out{
+      {"estop_a", s.estop_a}, {"estop_b", s.estop_b}, {"dead_man", s.dead_man},   {"grip", s.grip},
+      {"clutch", s.clutch},   {"enable", s.enable},   {"heartbeat", s.heartbeat}, {"led", s.led},
+      {"scope", s.scope},     {"sync", s.sync}};
+  for (std::size_t i = 0; i < kEventKeys.size(); ++i) out.push_back({kEventKeys[i], s.event[i]});
+  return out;
 }
 
 /// After the refusal, with all lines of this scene free again.
@@ -207,9 +211,11 @@ std::optional<Groups> request(Chip& chip, const LinesSettings& s) {
   lines.grip = inputs.add(s.grip);
   lines.grip_closes_low = s.grip_closes_low;
   lines.clutch = inputs.add(s.clutch);
+  for (std::size_t i = 0; i < kEventKeys.size(); ++i) lines.event[i] = inputs.add(s.event[i]);
   lines.enable = outputs.add(s.enable);
   lines.heartbeat = outputs.add(s.heartbeat);
   lines.led = outputs.add(s.led);
+  lines.sync = outputs.add(s.sync);
   scope.add(s.scope);
   const bool given = inputs.request(chip, LineUse::kInput, lines.inputs) &&
                      outputs.request(chip, LineUse::kOutput, lines.outputs) &&

@@ -20,8 +20,9 @@
 
 namespace tact::hal::gpio {
 
-inline constexpr std::size_t kMaxRequestLines = 5;  // estop_a, estop_b, dead_man, grip, clutch
-using Levels = std::array<int, kMaxRequestLines>;   // by place in the request; 1: high
+// estop_a, estop_b, dead_man, grip, clutch, event_0 to event_7
+inline constexpr std::size_t kMaxRequestLines = 13;
+using Levels = std::array<int, kMaxRequestLines>;  // by place in the request; 1: high
 
 enum class LineUse { kInput, kOutput, kEdges };  // outputs begin low
 

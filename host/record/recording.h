@@ -88,6 +88,9 @@ struct Snapshot {
   std::vector<std::shared_ptr<const KeptFrame>> frames;
 };
 
+/// Of a whole recording.
+Snapshot snapshot_of(Recording recording);
+
 /// The newest frames, oldest first, of a limited time span, with the operator if tracked.
 class RecentFrames {
  public:

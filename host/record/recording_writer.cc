@@ -13,7 +13,27 @@ constexpr std::int64_t kFlush_ns = 1'000'000'000;
 
 using model::Error;
 
+std::shared_ptr<const KeptFrame> kept_frame(const Frame& frame,
+                                            const tracking::TrackedOperator* tracked,
+                                            const figure::FigurePose* figure) {
+  auto kept = std::make_shared<KeptFrame>(frame);
+  if (tracked != nullptr)
+    kept->person = std::make_unique<const KeptOperator>(
+        *tracked, figure != nullptr ? std::optional(*figure) : std::nullopt);
+  return kept;
+}
+
 }  // namespace
+
+Snapshot snapshot_of(Recording recording) {
+  Snapshot out{.header = recording.header,
+               .mesh = std::make_shared<const MeshBytes>(std::move(recording.mesh)),
+               .frames = {}};
+  for (std::size_t i = 0; i < recording.frames.size(); ++i)
+    out.frames.push_back(
+        kept_frame(recording.frames[i], recording.operator_at(i), recording.figure_at(i)));
+  return out;
+}
 
 std::string start_of_recording(const RunHeader& header, const MeshBytes& mesh) {
   return start_of_run(header, mesh,
@@ -70,11 +90,7 @@ void RecentFrames::restart(double frame_rate_Hz) {
 void RecentFrames::add(const Frame& frame, const tracking::TrackedOperator* tracked,
                        const figure::FigurePose* figure) {
   if (frames_.size() >= capacity_ && !frames_.empty()) frames_.pop_front();
-  auto kept = std::make_shared<KeptFrame>(frame);
-  if (tracked != nullptr)
-    kept->person = std::make_unique<const KeptOperator>(
-        *tracked, figure != nullptr ? std::optional(*figure) : std::nullopt);
-  frames_.push_back(std::move(kept));
+  frames_.push_back(kept_frame(frame, tracked, figure));
 }
 
 }  // namespace tact::host::record

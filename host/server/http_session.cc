@@ -130,7 +130,7 @@ void HttpSession::handle(const Request& request) {
                  request);
   if (beast::websocket::is_upgrade(request) && path == "/live") return upgrade(request);
   if (request.method() == http::verb::get && site_.view.has_scene() &&
-      (path == "/recording.csv" || path == "/recording.tact")) {
+      (path == "/recording.csv" || path == "/recording.tactview")) {
     return download(request, path, query);
   }
   write(answer(request, path), request);
@@ -168,7 +168,7 @@ HttpSession::Response HttpSession::answer(const Request& request, std::string_vi
     return sorry(http::status::method_not_allowed, "405: this server can only be read");
   if (path == "/session") return Response{http::status::no_content, 11};
   const bool from_tactd = path == "/scene.json" || path == "/mesh.bin" ||
-                          path == "/recording.csv" || path == "/recording.tact";
+                          path == "/recording.csv" || path == "/recording.tactview";
   if (from_tactd && !site_.view.has_scene())
     return sorry(http::status::service_unavailable, "503: waiting for tactd");
   if (path == "/scene.json")

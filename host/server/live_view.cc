@@ -30,6 +30,7 @@ void LiveView::begin(const record::RunHeader& header, record::MeshBytes mesh, Li
     figure_ = std::make_shared<const std::string>(
         model::io::text_of(overlay_source_->begin(header, *mesh_)));
   recent_.restart(header.frame_rate_Hz);
+  file_.clear();
   link_ = link;
   detail_ = detail;
   report();
@@ -49,8 +50,6 @@ void LiveView::add(const record::Frame& frame, const tracking::TrackedOperator* 
   const Text text = std::make_shared<const std::string>(frame_json(frame, header_));
   for (LiveListener* listener : listeners_) listener->on_frame(text, beside);
 }
-
-void LiveView::rewind() { recent_.restart(header_.frame_rate_Hz); }
 
 void LiveView::lose(const std::string& reason) {
   link_ = has_scene() ? Link::kLost : Link::kWaiting;
@@ -101,9 +100,12 @@ void LiveView::report() {
 
 record::Snapshot LiveView::recent(std::uint64_t first_tick, std::uint64_t last_tick) const {
   record::Snapshot out{.header = header_, .mesh = mesh_, .frames = {}};
-  std::ranges::copy_if(recent_.frames(), std::back_inserter(out.frames), [&](const auto& kept) {
-    return kept->frame.tick >= first_tick && kept->frame.tick <= last_tick;
-  });
+  const auto take = [&](const auto& frames) {
+    std::ranges::copy_if(frames, std::back_inserter(out.frames), [&](const auto& kept) {
+      return kept->frame.tick >= first_tick && kept->frame.tick <= last_tick;
+    });
+  };
+  file_.empty() ? take(recent_.frames()) : take(file_);
   return out;
 }
 

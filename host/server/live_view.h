@@ -9,6 +9,8 @@
 #include <nlohmann/json_fwd.hpp>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "host/record/recording.h"
 
@@ -54,7 +56,10 @@ class LiveView {
   /// `tracked`: the operator at this frame, null without a tracker; `shown`: as in OverlaySource.
   void add(const record::Frame& frame, const tracking::TrackedOperator* tracked = nullptr,
            const figure::FigurePose* shown = nullptr);
-  void rewind();  // drops the kept frames, when a replay jumps
+  /// Of a replay: recent() then gives these, the whole file, whatever has been shown.
+  void keep(std::vector<std::shared_ptr<const record::KeptFrame>> frames) {
+    file_ = std::move(frames);
+  }
   /// Of a replay: the status's "replay".
   void report_replay(const nlohmann::json& replay);
   /// Of a session with scenes to choose: the status's "picker"; null: none.
@@ -92,6 +97,7 @@ class LiveView {
   Text figure_;         // of the overlay source, for this scene
   Text newest_beside_;  // of the newest frame
   record::RecentFrames recent_;
+  std::vector<std::shared_ptr<const record::KeptFrame>> file_;  // of a replay
   std::set<LiveListener*> listeners_;
 };
 

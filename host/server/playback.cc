@@ -24,20 +24,25 @@ double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
 Playback::Playback(boost::asio::io_context& io, LiveView& view, record::Recording recording,
                    std::string name)
-    : timer_(io), view_(view), recording_(std::move(recording)), name_(std::move(name)) {
+    : timer_(io),
+      view_(view),
+      recording_(snapshot_of(std::move(recording))),
+      name_(std::move(name)) {
   const auto believed_ns = [](const record::Frame& frame) {
     return std::clamp(frame.time_ns, -kLongest_ns, kLongest_ns);
   };
   // Times that step back are held at the latest one: at_ns_ must be sorted for the search.
   std::int64_t latest_ns = 0;
-  for (const record::Frame& frame : recording_.frames) {
-    latest_ns = std::max(latest_ns, believed_ns(frame) - believed_ns(recording_.frames.front()));
+  for (const auto& kept : recording_.frames) {
+    latest_ns = std::max(latest_ns,
+                         believed_ns(kept->frame) - believed_ns(recording_.frames.front()->frame));
     at_ns_.push_back(latest_ns);
   }
 }
 
 void Playback::start() {
-  view_.begin(recording_.header, recording_.mesh, Link::kReplay, name_);
+  view_.begin(recording_.header, *recording_.mesh, Link::kReplay, name_);
+  view_.keep(recording_.frames);
   report();
   show(0);
   view_.when_watched([this] {
@@ -55,12 +60,12 @@ void Playback::report() {
   using firmware::loop::State;
   nlohmann::json stops = nlohmann::json::array();
   for (std::size_t i = 0; i < at_ns_.size() && stops.size() < kMaxStops; ++i) {
-    const record::Frame& frame = recording_.frames[i];
-    const bool was_stopped = i > 0 && recording_.frames[i - 1].state == State::kStopped;
+    const record::Frame& frame = recording_.frames[i]->frame;
+    const bool was_stopped = i > 0 && recording_.frames[i - 1]->frame.state == State::kStopped;
     if (frame.state == State::kStopped && !was_stopped)
       stops.push_back({{"at_s", seconds(at_ns_[i])}, {"fault", frame.fault}});
   }
-  view_.report_replay({{"start_s", seconds(recording_.frames.front().time_ns)},
+  view_.report_replay({{"start_s", seconds(recording_.frames.front()->frame.time_ns)},
                        {"length_s", seconds(at_ns_.back())},
                        {"frames", at_ns_.size()},
                        {"playing", playing_},
@@ -71,14 +76,10 @@ void Playback::report() {
 
 void Playback::show(std::size_t frame) {
   shown_ = frame;
-  view_.add(recording_.frames[frame], recording_.operator_at(frame), recording_.figure_at(frame));
-}
-
-/// Shows a frame out of sequence; the view's kept frames start again.
-void Playback::jump_to(std::size_t frame) {
-  // The frames kept for "save" must be one continuous stretch.
-  if (frame != shown_ + 1) view_.rewind();
-  show(frame);
+  const record::KeptFrame& kept = *recording_.frames[frame];
+  const record::KeptOperator* const person = kept.person.get();
+  view_.add(kept.frame, person != nullptr ? &person->tracked : nullptr,
+            person != nullptr && person->figure ? &*person->figure : nullptr);
 }
 
 std::size_t Playback::frame_at(double at_s) const {
@@ -106,7 +107,7 @@ void Playback::schedule() {
 
 void Playback::play_next(std::uint64_t turn) {
   if (turn != turn_) return;
-  jump_to(is_last() ? 0 : shown_ + 1);
+  show(is_last() ? 0 : shown_ + 1);
   schedule();
 }
 
@@ -114,16 +115,16 @@ void Playback::steer(const ReplayRequest& request) {
   stop();
   speed_ratio_ = request.speed_ratio.value_or(speed_ratio_);
   repeats_ = request.repeats.value_or(repeats_);
-  if (request.at_s) jump_to(frame_at(*request.at_s));
+  if (request.at_s) show(frame_at(*request.at_s));
   if (request.step_frames) {
     playing_ = false;
     const std::int64_t wanted = static_cast<std::int64_t>(shown_) + *request.step_frames;
     const auto last = static_cast<std::int64_t>(at_ns_.size()) - 1;
-    jump_to(static_cast<std::size_t>(std::clamp<std::int64_t>(wanted, 0, last)));
+    show(static_cast<std::size_t>(std::clamp<std::int64_t>(wanted, 0, last)));
   }
   if (request.playing) {
     // Play at the end starts again from the beginning.
-    if (*request.playing && !playing_ && is_last() && !request.at_s) jump_to(0);
+    if (*request.playing && !playing_ && is_last() && !request.at_s) show(0);
     playing_ = *request.playing;
   }
   due_ = Clock::now();

@@ -31,7 +31,6 @@ class Playback {
  private:
   void report();
   void show(std::size_t frame);
-  void jump_to(std::size_t frame);
   void schedule();
   void play_next(std::uint64_t turn);
   std::size_t frame_at(double at_s) const;
@@ -39,7 +38,7 @@ class Playback {
 
   boost::asio::steady_timer timer_;
   LiveView& view_;
-  record::Recording recording_;
+  record::Snapshot recording_;
   std::string name_;
   std::vector<std::int64_t> at_ns_;  // of each frame, since the first; never decreases
   std::size_t shown_ = 0;

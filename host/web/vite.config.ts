@@ -23,7 +23,7 @@ export default defineConfig({
       "/scene.json": viewer,
       "/mesh.bin": viewer,
       "/recording.csv": viewer,
-      "/recording.tact": viewer,
+      "/recording.tactview": viewer,
       "/live": { target: viewer, ws: true, changeOrigin: true, rewriteWsOrigin: true },
     },
   },

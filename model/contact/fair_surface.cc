@@ -32,41 +32,47 @@ std::vector<double> mean_heights_m(const SurfaceView& mesh) {
   return sum;
 }
 
-struct Fit {
-  const SurfaceView& mesh;
-  const FairParameters& p;
-  const std::vector<SurfaceCorner>& first;
-  std::vector<SurfaceCorner>& now;
+struct Corner {
+  Vec3 point_m, normal;
 };
 
-// One Gauss-Newton step on the corner v alone: its normal along two axes, its height over the mean
+// What no sweep changes at a corner.
+struct CornerFit {
+  std::array<Vec3, 2> axis;
+  double edge_m = 0.0;  // mean of the mesh
+  std::vector<std::uint32_t> near;
+};
+
+CornerFit corner_fit(const SurfaceView& mesh, std::uint32_t v) {
+  CornerFit fit{axes_across(mesh.vertex_normal[v]), 0.0, neighbours_of(mesh, v)};
+  for (const std::uint32_t w : fit.near) fit.edge_m += norm(mesh.vertex_m[w] - mesh.vertex_m[v]);
+  if (!fit.near.empty()) fit.edge_m /= static_cast<double>(fit.near.size());
+  return fit;
+}
+
+// One Gauss-Newton step on one corner alone: its normal along two axes, its height over the mean
 // edge.
-void fit_corner(const Fit& fit, std::uint32_t v, const std::vector<std::uint32_t>& near) {
-  if (near.empty()) return;
-  SurfaceCorner& corner = fit.now[v];
-  const SurfaceCorner& first = fit.first[v];
-  const auto [e1, e2] = axes_across(first.normal);
-  double edge_m = 0.0;
-  for (const std::uint32_t w : near) edge_m += norm(fit.mesh.vertex_m[w] - fit.mesh.vertex_m[v]);
-  edge_m /= static_cast<double>(near.size());
-  const double turn = fit.p.turn_weight_ratio, height = fit.p.height_weight_ratio;
+void fit_corner(const CornerFit& fit, const FairParameters& p, const Corner& first,
+                std::span<const Corner> all, Corner& corner) {
+  const auto [e1, e2] = fit.axis;
+  const double turn = p.turn_weight_ratio, height = p.height_weight_ratio;
   const Vec3 turned = corner.normal - first.normal, moved_m = corner.point_m - first.point_m;
   Mat3 a{{Vec3{turn, 0, 0}, Vec3{0, turn, 0}, Vec3{0, 0, height}}};
   Vec3 b{-turn * dot(turned, e1), -turn * dot(turned, e2),
-         -height * dot(moved_m, first.normal) / edge_m};
-  for (const std::uint32_t w : near) {
-    const Vec3 way_m = fit.now[w].point_m - corner.point_m;
+         -height * dot(moved_m, first.normal) / fit.edge_m};
+  for (const std::uint32_t w : fit.near) {
+    const Vec3 way_m = all[w].point_m - corner.point_m;
     const double length_m = norm(way_m);
-    const Vec3 both = corner.normal + fit.now[w].normal;
+    const Vec3 both = corner.normal + all[w].normal;
     const double residual = dot(both, way_m) / length_m;
     const Vec3 d{dot(e1, way_m) / length_m, dot(e2, way_m) / length_m,
-                 -edge_m * dot(both, first.normal) / length_m};
+                 -fit.edge_m * dot(both, first.normal) / length_m};
     a = a + Mat3{{d.x * d, d.y * d, d.z * d}};
     b -= residual * d;
   }
   const Vec3 step = inverse(a) * b;
   corner.normal = normalized(corner.normal + step.x * e1 + step.y * e2);
-  corner.point_m += (step.z * edge_m) * first.normal;
+  corner.point_m += (step.z * fit.edge_m) * first.normal;
 }
 
 }  // namespace
@@ -88,17 +94,20 @@ std::array<Vec3, 2> axes_across(const Vec3& normal) {
 std::vector<SurfaceCorner> fair_corners(const SurfaceView& mesh, const FairParameters& p) {
   const std::size_t count = mesh.vertex_m.size();
   const std::vector<double> height_m = mean_heights_m(mesh);
-  std::vector<SurfaceCorner> out(count);
-  std::vector<std::vector<std::uint32_t>> near(count);
+  std::vector<Corner> now(count);
+  std::vector<CornerFit> fit(count);
   for (std::uint32_t v = 0; v < count; ++v) {
     const Vec3& n = mesh.vertex_normal[v];
-    out[v] = {mesh.vertex_m[v] - height_m[v] * n, n};
-    near[v] = neighbours_of(mesh, v);
+    now[v] = {mesh.vertex_m[v] - height_m[v] * n, n};
+    fit[v] = corner_fit(mesh, v);
   }
-  const std::vector<SurfaceCorner> first = out;
-  const Fit fit{mesh, p, first, out};
+  const std::vector<Corner> first = now;
   for (int sweep = 0; sweep < p.sweeps; ++sweep)
-    for (std::uint32_t v = 0; v < count; ++v) fit_corner(fit, v, near[v]);
+    for (std::uint32_t v = 0; v < count; ++v)
+      if (!fit[v].near.empty()) fit_corner(fit[v], p, first[v], now, now[v]);
+  std::vector<SurfaceCorner> out(count);
+  for (std::size_t v = 0; v < count; ++v)
+    out[v] = {narrowed(now[v].point_m), narrowed(now[v].normal)};
   return out;
 }
 

@@ -42,11 +42,6 @@ Map2 invertible_offset_map(const SurfaceFrame& f, double height_m) RT_SAFE {
   return m;
 }
 
-Vec3 slope_of(const VertexCompliance& v, std::size_t k) RT_SAFE {
-  const std::array<float, 3>& s = v.slope_times_E_per_m2[k];
-  return {static_cast<double>(s[0]), static_cast<double>(s[1]), static_cast<double>(s[2])};
-}
-
 // The same surface point in the neighbour across edge `edge`.
 SurfacePoint across(const SurfaceView& mesh, const SurfacePoint& surface_point, std::size_t edge,
                     std::uint32_t next) RT_SAFE {
@@ -78,22 +73,24 @@ void fill_geometry(const SmoothSurface& surface, SurfaceFrame& f) RT_SAFE {
   f.axis[1] = cross(record.normal, f.axis[0]);
   const std::array<Vec3, 3> gradient_per_m = weight_gradients(record);
   std::array<Vec3, 3> db_per_m;  // x, y: along each axis
+  std::array<Vec3, 3> point_m, normal;
   Vec3 q_m, sum;
   std::array<Vec3, 2> dq, dsum_per_m;
   for (std::size_t i = 0; i < 3; ++i) {
     const SurfaceCorner& c = surface.corner[corner[i]];
     const double db_0 = dot(gradient_per_m[i], f.axis[0]), db_1 = dot(gradient_per_m[i], f.axis[1]);
     db_per_m[i] = {db_0, db_1, 0.0};
-    q_m += b[i] * c.point_m, dq[0] += db_0 * c.point_m, dq[1] += db_1 * c.point_m;
-    sum += b[i] * c.normal, dsum_per_m[0] += db_0 * c.normal, dsum_per_m[1] += db_1 * c.normal;
+    point_m[i] = c.point_m(), normal[i] = c.normal();
+    q_m += b[i] * point_m[i], dq[0] += db_0 * point_m[i], dq[1] += db_1 * point_m[i];
+    sum += b[i] * normal[i], dsum_per_m[0] += db_0 * normal[i], dsum_per_m[1] += db_1 * normal[i];
   }
   f.point_m = q_m, f.point_m_per_m = dq;
   for (std::size_t i = 0; i < 3; ++i) {
-    const SurfaceCorner& c = surface.corner[corner[i]];
-    const double lift_m = 0.5 * dot(c.point_m - q_m, c.normal);
-    f.point_m += (b[i] * lift_m) * c.normal;
-    f.point_m_per_m[0] += (db_per_m[i].x * lift_m - 0.5 * b[i] * dot(c.normal, dq[0])) * c.normal;
-    f.point_m_per_m[1] += (db_per_m[i].y * lift_m - 0.5 * b[i] * dot(c.normal, dq[1])) * c.normal;
+    const Vec3& n = normal[i];
+    const double lift_m = 0.5 * dot(point_m[i] - q_m, n);
+    f.point_m += (b[i] * lift_m) * n;
+    f.point_m_per_m[0] += (db_per_m[i].x * lift_m - 0.5 * b[i] * dot(n, dq[0])) * n;
+    f.point_m_per_m[1] += (db_per_m[i].y * lift_m - 0.5 * b[i] * dot(n, dq[1])) * n;
   }
   const double length = norm(sum);
   f.normal = sum / length;
@@ -109,10 +106,10 @@ void fill_compliance(const SmoothSurface& surface, SurfaceFrame& f) RT_SAFE {
   std::array<Vec3, 6> dg{};
   for (std::size_t i = 0; i < 3; ++i) {
     const VertexCompliance& v = surface.compliance[corner[i]];
-    const Vec3 half_way_m = 0.5 * (f.point_m - surface.corner[corner[i]].point_m);
+    const Vec3 half_way_m = 0.5 * (f.point_m - surface.corner[corner[i]].point_m());
     const double weight = f.surface_point.weight[i] / surface.youngs_modulus_Pa;
     for (std::size_t k = 0; k < 6; ++k) {
-      const Vec3 slope = slope_of(v, k);
+      const Vec3 slope = v.slope_times_E_per_m2(k);
       g[k] += weight * (static_cast<double>(v.times_E_per_m[k]) + dot(half_way_m, slope));
       dg[k] += weight * slope;
     }

@@ -17,6 +17,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 
 #include "model/contact/contact_point.h"
@@ -25,16 +26,36 @@
 
 namespace tact::model::contact {
 
-/// A corner of the smooth surface, near the vertex of the mesh.
+constexpr Vec3 widened(const std::array<float, 3>& v) RT_SAFE {
+  return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
+}
+constexpr std::array<float, 3> narrowed(const Vec3& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+/// A corner of the smooth surface, near the vertex of the mesh. Of single precision: 4 nm in 0.1 m.
 struct SurfaceCorner {
-  Vec3 point_m, normal;
+  std::array<float, 3> at_m{}, unit{};
+
+  Vec3 point_m() const RT_SAFE { return widened(at_m); }
+  Vec3 normal() const RT_SAFE { return widened(unit); }
 };
 
-/// Regular compliance of the organ at a vertex, times E: symmetric, in W.
-struct VertexCompliance {
-  std::array<float, 6> times_E_per_m{};                        // xx yy zz yz zx xy
-  std::array<std::array<float, 3>, 6> slope_times_E_per_m2{};  // of each along the surface
+/// Regular compliance of the organ at a vertex, times E: symmetric, in W. One line of a cache.
+struct alignas(64) VertexCompliance {
+  std::array<float, 6> times_E_per_m{};  // xx yy zz yz zx xy
+  float slope_step_times_E_per_m2 = 0.0F;
+  std::array<std::array<std::int16_t, 3>, 6> slope_steps{};  // of each along the surface
+
+  /// Of the k-th component.
+  Vec3 slope_times_E_per_m2(std::size_t k) const RT_SAFE {
+    const std::array<std::int16_t, 3>& steps = slope_steps[k];
+    return static_cast<double>(slope_step_times_E_per_m2) * Vec3{static_cast<double>(steps[0]),
+                                                                 static_cast<double>(steps[1]),
+                                                                 static_cast<double>(steps[2])};
+  }
 };
+static_assert(sizeof(SurfaceCorner) == 24 && sizeof(VertexCompliance) == 64);
 
 struct SmoothSurface {
   SurfaceView mesh;

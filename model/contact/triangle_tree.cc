@@ -41,12 +41,15 @@ class Builder {
         const Vec3& p = surface_.vertex_m[v];
         const std::array<double, 3> axis{p.x, p.y, p.z};
         for (std::size_t a = 0; a < 3; ++a) {
-          // Rounding to float must not exclude the vertex.
           const auto rounded = static_cast<float>(axis[a]);
-          box.low_m[a] = std::min(box.low_m[a], std::nextafter(rounded, -kMaxFloat));
-          box.high_m[a] = std::max(box.high_m[a], std::nextafter(rounded, kMaxFloat));
+          box.low_m[a] = std::min(box.low_m[a], rounded);
+          box.high_m[a] = std::max(box.high_m[a], rounded);
         }
       }
+    for (std::size_t a = 0; a < 3; ++a) {  // rounding to float must not exclude a vertex
+      box.low_m[a] = std::nextafter(box.low_m[a], -kMaxFloat);
+      box.high_m[a] = std::nextafter(box.high_m[a], kMaxFloat);
+    }
     return box;
   }
 

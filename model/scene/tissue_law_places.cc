@@ -145,25 +145,26 @@ tissue::ElasticNeighbours TissueLawBuilder::neighbours() {
   if (law_->press_coordinate_.empty() && !law_->organ_) return out;  // it knows no place
   auto map = read_scene_map(scene_);
   if (!map) return out;
-  // Nothing of the tip is wider: with it S is limited for every sphere.
-  const double widest_m =
-      std::ranges::max(scene_.tool.spheres, {}, &contact::ProbeSphere::radius_m).radius_m;
-  law_->tangent_times_E_per_m_ =
-      tissue::tangent_compliance(*map, scene_.organ_mesh.view().vertex_normal, widest_m);
-  out.tangent_times_E_per_m = law_->tangent_times_E_per_m_;
-  law_->tilt_times_E_per_m2_ = tissue::indentation_tilt(*map, scene_.organ_mesh.view());
-  out.tilt_times_E_per_m2 = law_->tilt_times_E_per_m2_;
-  if (law_->organ_) {
+  if (law_->organ_) {  // MovedContact computes the force: what follows is for telemetry
     law_->regular_times_E_per_m_ = std::move(map->regular_times_E_per_m);
     out.regular_times_E_per_m = law_->regular_times_E_per_m_;
+    out.vertex_compliance = law_->compliance_;
+  } else {
+    // Nothing of the tip is wider: with it S is limited for every sphere.
+    const double widest_m =
+        std::ranges::max(scene_.tool.spheres, {}, &contact::ProbeSphere::radius_m).radius_m;
+    law_->tangent_times_E_per_m_ =
+        tissue::tangent_compliance(*map, scene_.organ_mesh.view().vertex_normal, widest_m);
+    out.tangent_times_E_per_m = law_->tangent_times_E_per_m_;
+    law_->tilt_times_E_per_m2_ = tissue::indentation_tilt(*map, scene_.organ_mesh.view());
+    out.tilt_times_E_per_m2 = law_->tilt_times_E_per_m2_;
+    law_->memory_bytes_ += map->ring_times_E_per_m.size() * sizeof(float) +
+                           law_->tangent_times_E_per_m_.size() * sizeof(tissue::TangentTensors);
   }
   law_->rings_times_E_per_m_ = std::move(map->ring_times_E_per_m);
   out.ring_times_E_per_m = law_->rings_times_E_per_m_;
   out.rings = map->rings;
   out.ring_pitch_m = map->ring_pitch_m;
-  law_->memory_bytes_ += law_->rings_times_E_per_m_.size() * sizeof(float) +
-                         law_->tangent_times_E_per_m_.size() * sizeof(tissue::TangentTensors) +
-                         law_->tilt_times_E_per_m2_.size() * sizeof(Vec3);
   return out;
 }
 

@@ -7,6 +7,7 @@
 
 #include "model/law/law_bounds.h"
 #include "model/law/ring_taper.h"
+#include "model/tissue/indentation_tilt.h"
 
 namespace tact::model::tissue {
 namespace {
@@ -273,13 +274,15 @@ void ElasticField::report_own_rings(const contact::Indentation& in,
 
 Vec3 ElasticField::tilt(const contact::Indentation& in) const RT_SAFE {
   const ElasticNeighbours& near = parts_.neighbours;
-  if (near.tilt_times_E_per_m2.empty() || !is_known(in)) return {};
+  const bool bends = !near.vertex_compliance.empty();
+  if ((near.tilt_times_E_per_m2.empty() && !bends) || !is_known(in)) return {};
   const double force_N = part_at(in.surface_point, in.indentation_m).law.force_N;
   const contact::TriangleCorners& corner = parts_.surface.triangle[in.surface_point.triangle];
   Vec3 sum;
   for (std::size_t i = 0; i < 3; ++i)
     sum += force_N / near.youngs_modulus_Pa * in.surface_point.weight[i] *
-           near.tilt_times_E_per_m2[corner[i]];
+           (bends ? tilt_times_E_per_m2(near.vertex_compliance[corner[i]], in.normal)
+                  : near.tilt_times_E_per_m2[corner[i]]);
   return sum;
 }
 

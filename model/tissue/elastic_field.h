@@ -28,6 +28,7 @@
 #include <vector>
 
 #include "model/contact/contact_law.h"
+#include "model/contact/smooth_surface.h"
 #include "model/law/relaxation.h"
 #include "model/mat3.h"
 
@@ -50,7 +51,9 @@ struct ElasticNeighbours {
   std::size_t rings = 0;
   double ring_pitch_m = 0.0;
   std::span<const TangentTensors> tangent_times_E_per_m{};  // S E of each vertex; or empty
-  std::span<const Vec3> tilt_times_E_per_m2{};              // t E of each vertex (CF-6); or empty
+  // For tilt(): t E of each vertex (CF-6), or of an organ that bends its compliance and slope.
+  std::span<const Vec3> tilt_times_E_per_m2{};
+  std::span<const contact::VertexCompliance> vertex_compliance{};
 };
 
 /// What an ElasticField borrows; all of it outlives the field.

@@ -60,4 +60,12 @@ std::vector<Vec3> indentation_tilt(const ComplianceMap& map, const contact::Surf
   return out;
 }
 
+Vec3 tilt_times_E_per_m2(const contact::VertexCompliance& vertex, const Vec3& n) RT_SAFE {
+  const std::array<double, 6> share{n.x * n.x,     n.y * n.y,     n.z * n.z,
+                                    2 * n.y * n.z, 2 * n.z * n.x, 2 * n.x * n.y};
+  Vec3 slope;
+  for (std::size_t k = 0; k < share.size(); ++k) slope += share[k] * vertex.slope_times_E_per_m2(k);
+  return tangential(0.5 * slope, n);
+}
+
 }  // namespace tact::model::tissue

@@ -13,12 +13,12 @@
 //
 // G(x, s), how far x sinks with a unit force at s, beyond a half-space, is symmetric and r(s) is
 // G(s, s): along the surface r changes twice as fast as G does. grad r is that of the plane through
-// the r of all skin within kTiltReach_m that looks the same way. Set-up code only.
+// the r of all surface within kTiltReach_m that looks the same way.
 #pragma once
 
 #include <vector>
 
-#include "model/contact/surface.h"
+#include "model/contact/smooth_surface.h"
 #include "model/tissue/compliance_map.h"
 
 namespace tact::model::tissue {
@@ -28,6 +28,10 @@ inline constexpr double kTiltReach_m = 0.02;
 
 /// t E of each vertex, 1/m^2, in the axes of the surface. Each vertex is held against those of a
 /// slab of twice kTiltReach_m around it.
+/// Set-up code only.
 std::vector<Vec3> indentation_tilt(const ComplianceMap& map, const contact::SurfaceView& surface);
+
+/// The same at a vertex of an organ that bends, whose slope is known: r = n' G n.
+Vec3 tilt_times_E_per_m2(const contact::VertexCompliance& vertex, const Vec3& normal) RT_SAFE;
 
 }  // namespace tact::model::tissue

@@ -45,14 +45,11 @@ std::vector<std::uint32_t> two_rings(const SurfaceView& mesh, std::uint32_t v) {
   return out;
 }
 
-Vec3 slope_of(const VertexCompliance& v, std::size_t k) {
-  const std::array<float, 3>& s = v.slope_times_E_per_m2[k];
-  return {static_cast<double>(s[0]), static_cast<double>(s[1]), static_cast<double>(s[2])};
-}
-void set_slope(VertexCompliance& v, std::size_t k, const Vec3& s) {
-  v.slope_times_E_per_m2[k] = {static_cast<float>(s.x), static_cast<float>(s.y),
-                               static_cast<float>(s.z)};
-}
+// While it is fitted, times E: the tensor, and the slope of each of its components by axis.
+struct Field {
+  Six value{};
+  std::array<Six, 3> slope{};
+};
 
 // Weighted moments of the plane a + b x + c y through the values around a vertex.
 struct PlaneMoments {
@@ -79,8 +76,8 @@ struct PlaneMoments {
 };
 
 // Value of the map, slope of the plane.
-VertexCompliance first_guess(const std::vector<Six>& tensor, const SurfaceView& mesh,
-                             std::uint32_t v, double reach_m) {
+Field first_guess(const std::vector<Six>& tensor, const SurfaceView& mesh, std::uint32_t v,
+                  double reach_m) {
   constexpr double kMinFacing = 0.1;
   const Vec3& n = mesh.vertex_normal[v];
   const auto [e1, e2] = contact::axes_across(n);
@@ -91,58 +88,99 @@ VertexCompliance first_guess(const std::vector<Six>& tensor, const SurfaceView& 
     const double weight = std::exp(-0.5 * dot(away_m, away_m) / (reach_m * reach_m));
     moments.add(weight, dot(away_m, e1), dot(away_m, e2), tensor[w]);
   }
-  VertexCompliance out;
+  Field out{.value = tensor[v], .slope = {}};
   for (std::size_t k = 0; k < 6; ++k) {
-    const contact::Vec2 slope = moments.slope(k);
-    out.times_E_per_m[k] = static_cast<float>(tensor[v][k]);
-    set_slope(out, k, slope.x * e1 + slope.y * e2);
+    const contact::Vec2 along = moments.slope(k);
+    const Vec3 slope = along.x * e1 + along.y * e2;
+    out.slope[0][k] = slope.x, out.slope[1][k] = slope.y, out.slope[2][k] = slope.z;
   }
   return out;
 }
 
-struct Fit {
-  std::span<const SurfaceCorner> corner;
-  const VertexComplianceParameters& p;
-  const std::vector<VertexCompliance>& first;
-  std::vector<VertexCompliance>& now;
+// The part of the least-squares step that no sweep changes.
+struct EdgeFit {
+  std::uint32_t to = 0;
+  double length_m = 0.0;
+  Vec3 way_m,
+      derivative;  // of the residual by slope along two axes and by value over the mean edge
+};
+struct VertexFit {
+  std::array<Vec3, 2> axis;
+  double edge_m = 0.0;  // mean
+  Mat3 inverted;
+  std::vector<EdgeFit> edge;
 };
 
-// One least-squares step on the vertex v alone: slope along two axes, value over the mean edge.
-void fit_vertex(const Fit& fit, std::uint32_t v, const std::vector<std::uint32_t>& near) {
-  if (near.empty()) return;
-  const auto [e1, e2] = contact::axes_across(fit.corner[v].normal);
-  double edge_m = 0.0;
-  for (const std::uint32_t w : near) edge_m += norm(fit.corner[w].point_m - fit.corner[v].point_m);
-  edge_m /= static_cast<double>(near.size());
-  const double by_slope = fit.p.slope_weight_ratio, by_value = fit.p.value_weight_ratio;
-  Mat3 a{{Vec3{by_slope, 0, 0}, Vec3{0, by_slope, 0}, Vec3{0, 0, by_value}}};
-  std::array<Vec3, 6> b;
-  VertexCompliance& now = fit.now[v];
-  const VertexCompliance& first = fit.first[v];
-  for (std::size_t k = 0; k < 6; ++k) {
-    const Vec3 change = slope_of(now, k) - slope_of(first, k);
-    const auto value = static_cast<double>(now.times_E_per_m[k] - first.times_E_per_m[k]);
-    b[k] = {-by_slope * dot(change, e1), -by_slope * dot(change, e2), -by_value * value / edge_m};
+VertexFit vertex_fit(const SurfaceView& mesh, std::span<const SurfaceCorner> corner,
+                     const VertexComplianceParameters& p, std::uint32_t v) {
+  VertexFit fit{
+      .axis = contact::axes_across(corner[v].normal()), .edge_m = 0.0, .inverted = {}, .edge = {}};
+  for (const std::uint32_t w : contact::neighbours_of(mesh, v)) {
+    const Vec3 way_m = corner[w].point_m() - corner[v].point_m();
+    fit.edge.push_back({.to = w, .length_m = norm(way_m), .way_m = way_m, .derivative = {}});
+    fit.edge_m += fit.edge.back().length_m;
   }
-  for (const std::uint32_t w : near) {
-    const Vec3 way_m = fit.corner[w].point_m - fit.corner[v].point_m;
-    const double length_m = norm(way_m);
-    const VertexCompliance& other = fit.now[w];
-    const Vec3 d{0.5 * dot(e1, way_m) / length_m, 0.5 * dot(e2, way_m) / length_m,
-                 edge_m / length_m};
+  if (fit.edge.empty()) return fit;
+  fit.edge_m /= static_cast<double>(fit.edge.size());
+  const auto [e1, e2] = fit.axis;
+  Mat3 a{{Vec3{p.slope_weight_ratio, 0, 0}, Vec3{0, p.slope_weight_ratio, 0},
+          Vec3{0, 0, p.value_weight_ratio}}};
+  for (EdgeFit& edge : fit.edge) {
+    const Vec3 d{0.5 * dot(e1, edge.way_m) / edge.length_m,
+                 0.5 * dot(e2, edge.way_m) / edge.length_m, fit.edge_m / edge.length_m};
     a = a + Mat3{{d.x * d, d.y * d, d.z * d}};
+    edge.derivative = d;
+  }
+  fit.inverted = inverse(a);
+  return fit;
+}
+
+// One least-squares step on one vertex alone: slope along two axes, value over the mean edge.
+void fit_vertex(const VertexFit& fit, const VertexComplianceParameters& p, const Field& first,
+                std::span<const Field> all, Field& now) {
+  const auto [e1, e2] = fit.axis;
+  Six b1, b2, b3;
+  for (std::size_t k = 0; k < 6; ++k) {
+    const Vec3 change{now.slope[0][k] - first.slope[0][k], now.slope[1][k] - first.slope[1][k],
+                      now.slope[2][k] - first.slope[2][k]};
+    b1[k] = -p.slope_weight_ratio * dot(change, e1);
+    b2[k] = -p.slope_weight_ratio * dot(change, e2);
+    b3[k] = -p.value_weight_ratio * (now.value[k] - first.value[k]) / fit.edge_m;
+  }
+  for (const EdgeFit& edge : fit.edge) {
+    const Field& other = all[edge.to];
+    const Vec3 half_way = (0.5 / edge.length_m) * edge.way_m, d = edge.derivative;
+    const double per_m = 1.0 / edge.length_m;
     for (std::size_t k = 0; k < 6; ++k) {
-      const auto value = static_cast<double>(now.times_E_per_m[k] - other.times_E_per_m[k]);
-      const double by_slopes = 0.5 * dot(slope_of(now, k) + slope_of(other, k), way_m);
-      b[k] -= ((value + by_slopes) / length_m) * d;
+      const double residual = per_m * (now.value[k] - other.value[k]) +
+                              half_way.x * (now.slope[0][k] + other.slope[0][k]) +
+                              half_way.y * (now.slope[1][k] + other.slope[1][k]) +
+                              half_way.z * (now.slope[2][k] + other.slope[2][k]);
+      b1[k] -= residual * d.x, b2[k] -= residual * d.y, b3[k] -= residual * d.z;
     }
   }
-  const Mat3 inverted = inverse(a);
   for (std::size_t k = 0; k < 6; ++k) {
-    const Vec3 step = inverted * b[k];
-    set_slope(now, k, slope_of(now, k) + step.x * e1 + step.y * e2);
-    now.times_E_per_m[k] += static_cast<float>(step.z * edge_m);
+    const Vec3 step = fit.inverted * Vec3{b1[k], b2[k], b3[k]};
+    const Vec3 slope = step.x * e1 + step.y * e2;
+    now.slope[0][k] += slope.x, now.slope[1][k] += slope.y, now.slope[2][k] += slope.z;
+    now.value[k] += step.z * fit.edge_m;
   }
+}
+
+VertexCompliance packed(const Field& field) {
+  constexpr double kMaxSteps = 32767.0;
+  double largest = 0.0;
+  for (const Six& axis : field.slope)
+    for (const double slope : axis) largest = std::max(largest, std::abs(slope));
+  VertexCompliance out;
+  out.slope_step_times_E_per_m2 = static_cast<float>(largest / kMaxSteps);
+  for (std::size_t k = 0; k < 6; ++k) {
+    out.times_E_per_m[k] = static_cast<float>(field.value[k]);
+    for (std::size_t axis = 0; axis < 3 && largest > 0.0; ++axis)
+      out.slope_steps[k][axis] =
+          static_cast<std::int16_t>(std::lround(field.slope[axis][k] / largest * kMaxSteps));
+  }
+  return out;
 }
 
 }  // namespace
@@ -153,16 +191,18 @@ std::vector<VertexCompliance> vertex_compliance(const ComplianceMap& map, const 
   const std::size_t count = map.vertices();
   std::vector<Six> tensor(count);
   for (std::size_t v = 0; v < count; ++v) tensor[v] = tensor_of(map, mesh.vertex_normal[v], v, p);
-  std::vector<VertexCompliance> out(count);
-  std::vector<std::vector<std::uint32_t>> near(count);
+  std::vector<Field> now(count);
+  std::vector<VertexFit> fit(count);
   for (std::uint32_t v = 0; v < count; ++v) {
-    out[v] = first_guess(tensor, mesh, v, p.reach_m);
-    near[v] = contact::neighbours_of(mesh, v);
+    now[v] = first_guess(tensor, mesh, v, p.reach_m);
+    fit[v] = vertex_fit(mesh, corner, p, v);
   }
-  const std::vector<VertexCompliance> first = out;
-  const Fit fit{corner, p, first, out};
+  const std::vector<Field> first = now;
   for (int sweep = 0; sweep < p.sweeps; ++sweep)
-    for (std::uint32_t v = 0; v < count; ++v) fit_vertex(fit, v, near[v]);
+    for (std::uint32_t v = 0; v < count; ++v)
+      if (!fit[v].edge.empty()) fit_vertex(fit[v], p, first[v], now, now[v]);
+  std::vector<VertexCompliance> out(count);
+  std::ranges::transform(now, out.begin(), packed);
   return out;
 }
 

@@ -42,7 +42,7 @@ async function check_stranger(page, url) {
   );
   const words = await page.textContent("#notice");
   check("... and says what to do", /open the whole link that tact-view printed/.test(words), words);
-  for (const path of ["live", "session", "scene.json", "mesh.bin", "recording.csv", "recording.tact"]) {
+  for (const path of ["live", "session", "scene.json", "mesh.bin", "recording.csv", "recording.tactview"]) {
     const { status } = await fetch(address + path);
     check(`... /${path} is refused`, status === 401, status);
   }

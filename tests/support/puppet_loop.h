@@ -75,12 +75,14 @@ class PuppetLines final : public hal::SafetyLines {
   }
   std::optional<bool> grip() const RT_SAFE override { return grip_pressed; }
   std::optional<bool> clutch() const RT_SAFE override { return clutch_pressed; }
+  std::uint8_t event_word() const RT_SAFE override { return event_bits; }
   bool enabled() const RT_SAFE override { return enable; }
   void scope(bool up) RT_SAFE override { up ? ++ups : ++downs; }
   void stop() override {}
 
   model::Fault fault = model::Fault::kNone, write_fault = model::Fault::kNone;
   bool enable = true;
+  std::uint8_t event_bits = 0;
   std::optional<bool> grip_pressed, clutch_pressed;
   hal::LinesTick last;
   const int* device_writes = nullptr;

@@ -31,7 +31,7 @@ from strangers import owner_beside_strangers  # noqa: E402
 BUILD = Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build").resolve()
 LIMIT_S, MIB, STRANGER = 58, 1 << 20, 65534
 FIVE_MINUTES = 18_000  # frames at 60 Hz
-SECRET = ("scene.json", "mesh.bin", "recording.csv", "recording.tact", "session", "live", "none")
+SECRET = ("scene.json", "mesh.bin", "recording.csv", "recording.tactview", "session", "live", "none")
 rng = random.Random(15)
 passed = failed = 0
 started = []
@@ -152,7 +152,7 @@ def connections(view):
     wires, let_in = [], 0
     for i in range(100):
         wire = view.connect()
-        name = "recording.csv" if i % 2 else "recording.tact"
+        name = "recording.csv" if i % 2 else "recording.tactview"
         wire.sendall(f"GET /{name} HTTP/1.1\r\nHost: localhost\r\n{view.bearer}\r\n".encode())
         wires.append(wire)
     time.sleep(1.0)

@@ -84,6 +84,27 @@ TEST_F(Control, SetsNumbersOfTheLawWhileItRunsAndTheRecordReplays) {
   EXPECT_EQ(report("a").at("refused_requests"), 2);
 }
 
+TEST_F(Control, AnEventIsInTheRecordOfTheTickThatTheAnswerNames) {
+  const std::string tactd = program_path("tactd");
+  const Outcome out = in_bash(
+      tactd +
+      " liver.toml --seconds 20 --no-telemetry --no-black-box --record run.tactlog 2>a.told & "
+      "a=$!\n"
+      "until ctl liver.toml status | grep -q armed; do sleep .1; done\n"
+      "ctl liver.toml event 7 | tee told; ctl liver.toml event 0; ctl liver.toml event\n"
+      "ctl liver.toml stop; wait $a; " +
+      tactd +
+      " --replay run.tactlog --csv run.csv; grep -v '^#' run.csv | awk -F, 'NR == 1 { for (i = 1; "
+      "i "
+      "<= NF; ++i) if ($i == \"event\") c = i; next } $c != 0 { print \"event \" $c \" in tick \" "
+      "$1 }' >found; grep '^event' told | diff - found && echo equal");
+  EXPECT_TRUE(has(out, "event 7 in tick ")) << out.output;
+  EXPECT_TRUE(has(out, "\nequal\n")) << out.output;
+  EXPECT_TRUE(has(out, "event takes a number from 1 to 255\nstatus 1")) << out.output;
+  EXPECT_TRUE(has(out, "event needs a number from 1 to 255; see tactctl --help\nstatus 2"))
+      << out.output;
+}
+
 TEST_F(Control, OnHardwareSetsOnlyWhatTheSceneDeclaresLive) {
   const Outcome out = in_bash(
       "cp liver.toml live.toml; printf '\\n[[live]]\\nkey = \"elastic.youngs_modulus_Pa\"\\n' "

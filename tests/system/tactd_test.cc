@@ -100,6 +100,19 @@ TEST_F(Tactd, PrintsEveryFaultWithItsRemedy) {
   EXPECT_EQ(words.at("states")[2].at("name"), "armed");
 }
 
+TEST_F(Tactd, CitesItselfWithTheCommitOfItsBuild) {
+  std::ifstream file(TACT_SOURCE_DIR "/CITATION.cff");
+  const std::string citation{std::istreambuf_iterator<char>(file), {}};
+  const Outcome out = tactd("--cite");
+  EXPECT_EQ(out.status, 0);
+  ASSERT_TRUE(out.output.starts_with(citation)) << out.output;
+  const std::string commit = out.output.substr(citation.size());
+  EXPECT_TRUE(commit.starts_with("commit: \"") && commit.ends_with("\"\n")) << commit;
+  const std::string version = tactd("--version").output;
+  EXPECT_NE(version.find("(" + commit.substr(9, commit.size() - 11) + ")"), std::string::npos)
+      << version;
+}
+
 TEST_F(Tactd, AReportHoldsEveryNumberThatProvesARun) {
   const json report = report_of(kLiver + " --free-run --seconds 5");
   EXPECT_EQ(report.at("ticks"), 5000);

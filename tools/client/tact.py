@@ -128,7 +128,7 @@ class live:  # noqa: N801  # an iterator with a header
             start = _File(os.pread(file.fileno(), os.fstat(file.fileno()).st_size, 0), str(self._path), "")
         self.header, self.fields = start.header, start.fields("frame")
         self.organ, self.tool = start.meshes()
-        self._layout = start.layout("frame")
+        self._layout = _dtype(start.records["frame"]["fields"])
 
     def _receive(self, control_bytes=0):
         try:
@@ -189,11 +189,24 @@ def read_ticks(path):
     return TickLog(file.header, file.rows("tick"), recording, file.fields("tick"), damage)
 
 
+def epoch_ns(header):
+    """ns since 1970 at which CLOCK_MONOTONIC was 0, by the clocks when the run began: UTC is due_ns plus this."""
+    if "began_monotonic_ns" not in header:
+        raise Error("it was written before files of tact had both clocks; record it again")
+    began_ns = np.datetime64(header["began_utc"].removesuffix("Z"), "ns").astype(np.int64)
+    return int(began_ns) - header["began_monotonic_ns"]
+
+
+def utc_ns(rows):
+    """(n,) ns since 1970, of ticks or frames, by the clocks in each of them; utc_max_error_us says how true it is."""
+    if "utc_offset_ns" not in (rows.dtype.names or ()):
+        raise Error("its records have no UTC: it was written before; record it again")
+    return rows["due_ns"] + rows["utc_offset_ns"]
+
+
 def _dtype(fields):
-    def one(field):
-        kind = _dtype(field["fields"]) if "fields" in field else TYPES[field["type"]]
-        return (field["name"], kind, tuple(field["shape"])) if "shape" in field else (field["name"], kind)
-    return np.dtype([one(field) for field in fields])
+    kinds = ((field, _dtype(field["fields"]) if "fields" in field else TYPES[field["type"]]) for field in fields)
+    return np.dtype([(field["name"], kind, tuple(field.get("shape", ()))) for field, kind in kinds])
 
 
 class _File:
@@ -242,14 +255,11 @@ class _File:
     def fields(self, record):
         return {field["name"]: field for field in self.records[record]["fields"]}
 
-    def layout(self, record):
-        return _dtype(self.records[record]["fields"])
-
     def rows(self, record):
         """(n,), of all good chunks of that record."""
         if record not in self.records:
             return np.empty(0)
-        layout, contents = self.layout(record), self._contents.get(self.records[record]["kind"], [])
+        layout, contents = _dtype(self.records[record]["fields"]), self._contents.get(self.records[record]["kind"], [])
         return np.frombuffer(b"".join(content for content in contents if len(content) == layout.itemsize), layout)
 
     def recording(self):

@@ -51,7 +51,7 @@ class BlackBoxTest : public testing::Test {
           fault == model::Fault::kNone ? loop::State::kArmed : loop::State::kStopped;
       record.output.written.force_N.z =
           fault == model::Fault::kNone ? 0.001 * static_cast<double>(tick) : 0;
-      box.add(record);
+      box.add(protocol::LoggedTick::of(record, false));
       if (tick % 20 != 0) continue;
       protocol::Frame frame;
       frame.tick = tick;
@@ -167,10 +167,12 @@ TEST_F(BlackBoxTest, ACutOffFileKeepsItsTicksAndSaysThatThePicturesAreMissing) {
   ticks(*box, 300, model::Fault::kDeviceLost);
   box->finish();
   const std::string path = box->files().at(0);
-  const std::string start = start_of_run(
-      protocol::TickLog::open(path)->header(), telemetry::mesh_bytes(scene),
-      {protocol::schema_of<protocol::LoggedTick>(), protocol::schema_of<protocol::Frame>()});
-  fs::resize_file(path, start.size() + 300 * chunk_of(protocol::LoggedTick{}).size() + 7);
+  const std::string start =
+      start_of_run(protocol::TickLog::open(path)->header(), telemetry::mesh_bytes(scene),
+                   {protocol::schema_of<protocol::LoggedTick>(protocol::LoggedTick::fields(1)),
+                    protocol::schema_of<protocol::Frame>(protocol::Frame::fields(1))});
+  const std::size_t size = chunk_of(protocol::LoggedTick{}, protocol::LoggedTick::fields(1)).size();
+  fs::resize_file(path, start.size() + 300 * size + 7);
   EXPECT_EQ(logged(path).size(), 300u);
   EXPECT_NE(host::record::read_recording(path).damage.find("cut off"), std::string::npos);
 }
@@ -218,12 +220,12 @@ TEST_F(BlackBoxTest, AFullFolderKeepsItsNewestAndNoFileOfOthersIsRemoved) {
     fs::last_write_time(folder + "/" + name, now - std::chrono::hours(hours_ago));
   };
   for (int i = 1; i <= 9; ++i)
-    put("liver-2026010" + std::to_string(i) + "T000000Z-105-loop-late.tactlog", 10 - i);
+    put("liver-2026010" + std::to_string(i) + "T000000Z-105-loop-late.tactbox", 10 - i);
   for (const char* other : {"notes.txt", "run.tactlog", "run-1.tactlog"}) put(other, 100);
   EXPECT_EQ(remove_oldest(folder, 9000), 0u);
   EXPECT_EQ(remove_oldest(folder, 4500), 5u);
-  EXPECT_FALSE(fs::exists(folder + "/liver-20260105T000000Z-105-loop-late.tactlog"));
-  EXPECT_TRUE(fs::exists(folder + "/liver-20260106T000000Z-105-loop-late.tactlog"));
+  EXPECT_FALSE(fs::exists(folder + "/liver-20260105T000000Z-105-loop-late.tactbox"));
+  EXPECT_TRUE(fs::exists(folder + "/liver-20260106T000000Z-105-loop-late.tactbox"));
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 7) << "others stay";
   EXPECT_EQ(remove_oldest(folder + "/none", 0), 0u);
 }

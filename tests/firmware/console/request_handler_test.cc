@@ -255,6 +255,16 @@ TEST_F(Requests, ToldOfItsStateAndOfWordsThatItDoesNotKnow) {
   EXPECT_TRUE(edges.empty());
 }
 
+TEST_F(Requests, AnEventIsAnsweredByItsTickAndIsNotKeptForLater) {
+  request_handler = make_handler(view, [this] { static_cast<void>(requests.take_event(41)); });
+  EXPECT_EQ(ask("event 7").message, "event 7 in tick 41");
+  request_handler = make_handler(view, tick);  // does not take it
+  EXPECT_EQ(refusal("event 8"), "puppet: no event: the loop gives no answer");
+  EXPECT_EQ(requests.take_event(42), 0);
+  for (const char* wrong : {"event 0", "event 256", "event -1", "event 1x", "event "})
+    EXPECT_EQ(refusal(wrong), "event takes a number from 1 to 255") << wrong;
+}
+
 TEST_F(Requests, ASignalToEndIsHeardBesideARequest) {
   show(State::kReady);
   const int fd = say("status");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Records by their tables: what is packed comes back, by name, from this and from another program.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -54,11 +55,11 @@ TEST(Records, TheTablesNameEachMemberOnce) {
   expect_all_named<Frame>();
   expect_all_named<host::record::OperatorRecord>();
   // Holes by alignment: a member of up to 7 bytes without a row changes the sum.
-  EXPECT_EQ(sizeof(LoggedTick) - packed_bytes(LoggedTick::fields()), 21u);
+  EXPECT_EQ(sizeof(LoggedTick) - packed_bytes(LoggedTick::fields()), 74u);
   EXPECT_EQ(sizeof(Frame) - packed_bytes(Frame::fields()), 54u);
 }
 
-TEST(Records, AFrameHoldsTheContactsThatTheToolHas) {
+TEST(Records, FrameAndTickHoldTheContactsThatTheToolHas) {
   Frame frame;
   for (std::size_t i = 0; i < kMaxContacts; ++i)
     frame.contact[i].depth_m = static_cast<float>(i + 1);
@@ -72,6 +73,14 @@ TEST(Records, AFrameHoldsTheContactsThatTheToolHas) {
     ASSERT_TRUE(Unpacker::make(json_of(fields), Frame::fields())->unpack(bytes, &back));
     for (std::size_t i = 0; i < kMaxContacts; ++i)
       EXPECT_EQ(back.contact[i].depth_m, i < spheres ? frame.contact[i].depth_m : 0.0f) << i;
+    EXPECT_EQ(packed_bytes(LoggedTick::fields()) - packed_bytes(LoggedTick::fields(spheres)),
+              (kMaxContacts - spheres) * packed_bytes(LoggedContact::fields()));
+    EXPECT_NE(csv_columns(LoggedTick::fields(spheres))
+                  .find(fmt::format(",contact{0}_depth_m,contact{0}_state,contact{0}_state_name",
+                                    spheres)),
+              std::string::npos);
+    EXPECT_EQ(csv_columns(LoggedTick::fields(spheres)).find(fmt::format("contact{}_", spheres + 1)),
+              std::string::npos);
   }
 }
 

@@ -161,11 +161,11 @@ TEST_F(ReplayTest, TheTableHasEveryTickAndSaysWhichRunItWas) {
     else if (rows++ == 1800)
       row = line;
   std::remove(csv.c_str());
-  EXPECT_EQ(comments, 10);
+  EXPECT_EQ(comments, 13);
   EXPECT_EQ(rows, 3000);
   for (const char* name :
        {"tick,non_rt,due_ns,", ",tool_position_x_m,", ",wanted_force_x_N,", ",force_x_N,",
-        ",limit,limit_name,", ",rms_force_N,contact_losses,", ",phase_limit_ns,"})
+        ",limit,limit_name,", ",rms_force_N,contact_losses,", ",phase_limit_ns,", ",utc_offset_ns,", ",event_word,"})
     EXPECT_NE(names.find(name), std::string::npos) << name;
   EXPECT_EQ(std::count(names.begin(), names.end(), ','), std::count(row.begin(), row.end(), ','));
   EXPECT_EQ(row.find("1800,"), 0u) << row;

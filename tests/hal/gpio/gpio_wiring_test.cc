@@ -72,7 +72,7 @@ LineRequest Chip::request(LineUse /*use*/, std::span<const int> offsets, const c
 namespace {
 
 constexpr int kEstopA = 16, kEstopB = 17, kDeadMan = 18, kEnable = 0, kHeartbeat = 1, kLed = 2,
-              kScope = 3, kGrip = 19, kClutch = 20;
+              kScope = 3, kSync = 4, kGrip = 19, kClutch = 20, kEvent = 8;
 
 class GpioWiring : public testing::Test {
  protected:
@@ -82,7 +82,8 @@ class GpioWiring : public testing::Test {
     settings_.estop_a = kEstopA, settings_.estop_b = kEstopB, settings_.dead_man = kDeadMan;
     settings_.enable = kEnable, settings_.heartbeat = kHeartbeat;
     settings_.led = kLed, settings_.scope = kScope, settings_.grip = kGrip;
-    settings_.clutch = kClutch;
+    settings_.clutch = kClutch, settings_.sync = kSync;
+    for (int i = 0; i < 8; ++i) settings_.event.at(static_cast<std::size_t>(i)) = kEvent + i;
     for (const int input : {kEstopA, kEstopB, kDeadMan}) set(input, 1);
   }
   static void set(int offset, int level) {
@@ -102,15 +103,18 @@ class GpioWiring : public testing::Test {
 };
 
 TEST_F(GpioWiring, ALineThatTheChipRefusesIsAnErrorAndNotAnUnwiredLine) {
-  const std::array<std::pair<int, const char*>, 9> lines{{{kEstopA, "estop_a"},
-                                                          {kEstopB, "estop_b"},
-                                                          {kDeadMan, "dead_man"},
-                                                          {kEnable, "enable"},
-                                                          {kHeartbeat, "heartbeat"},
-                                                          {kLed, "led"},
-                                                          {kScope, "scope"},
-                                                          {kGrip, "grip"},
-                                                          {kClutch, "clutch"}}};
+  const std::array<std::pair<int, const char*>, 12> lines{{{kEstopA, "estop_a"},
+                                                           {kEstopB, "estop_b"},
+                                                           {kDeadMan, "dead_man"},
+                                                           {kEnable, "enable"},
+                                                           {kHeartbeat, "heartbeat"},
+                                                           {kLed, "led"},
+                                                           {kScope, "scope"},
+                                                           {kGrip, "grip"},
+                                                           {kClutch, "clutch"},
+                                                           {kSync, "sync"},
+                                                           {kEvent, "event_0"},
+                                                           {kEvent + 7, "event_7"}}};
   for (const auto& [offset, key] : lines) {
     played().not_given = {offset};
     const auto opened = open();
@@ -178,15 +182,32 @@ TEST_F(GpioWiring, TheClutchIsPressedAfterItsLineWasHighFor10Ms) {
   EXPECT_EQ((*opened)->grip(), false) << "lines of their own";
 }
 
+TEST_F(GpioWiring, TheEventWordHasABitForEachOfItsLines) {
+  const auto opened = open();
+  ASSERT_TRUE(opened) << opened.error().message;
+  for (int i = 0; i < 8; ++i) {
+    set(kEvent + i, 1);
+    EXPECT_EQ((*opened)->read(1'000'000), model::Fault::kNone);
+    EXPECT_EQ((*opened)->event_word(), 1 << i);
+    set(kEvent + i, 0);
+  }
+  (*opened)->stop();
+  EXPECT_EQ((*opened)->read(2'000'000), model::Fault::kLinesLost);
+  EXPECT_EQ((*opened)->event_word(), 0);
+}
+
 TEST_F(GpioWiring, WhatIsNotWiredIsLeftAlone) {
   settings_.estop_a = settings_.estop_b = settings_.dead_man = settings_.grip = -1;
-  settings_.clutch = -1;
-  played().not_given = {kEstopA, kEstopB, kDeadMan, kGrip, kClutch};
+  settings_.clutch = settings_.sync = settings_.event[3] = -1;
+  played().not_given = {kEstopA, kEstopB, kDeadMan, kGrip, kClutch, kSync, kEvent + 3};
   const auto opened = open();
   ASSERT_TRUE(opened) << opened.error().message;
   EXPECT_EQ((*opened)->read(1'000'000), model::Fault::kNone);
   EXPECT_FALSE((*opened)->grip());
   EXPECT_FALSE((*opened)->clutch());
+  set(kEvent + 4, 1);
+  EXPECT_EQ((*opened)->read(2'000'000), model::Fault::kNone);
+  EXPECT_EQ((*opened)->event_word(), 16) << "of the lines that are wired";
 }
 
 TEST_F(GpioWiring, ALineInUseIsToldWithItsUserAndTheOthersAreFreeAgain) {
@@ -204,12 +225,12 @@ TEST_F(GpioWiring, OutputsAreLowAndAllLinesFreeAfterStop) {
   const auto opened = open();
   ASSERT_TRUE(opened) << opened.error().message;
   (*opened)->scope(true);
-  EXPECT_EQ((*opened)->write({.healthy = true, .armed = true}), model::Fault::kNone);
-  for (const int output : {kHeartbeat, kLed, kScope})
+  EXPECT_EQ((*opened)->write({.healthy = true, .armed = true, .sync = true}), model::Fault::kNone);
+  for (const int output : {kHeartbeat, kLed, kScope, kSync})
     EXPECT_EQ(played().level.at(static_cast<std::size_t>(output)), 1) << "line " << output;
-  EXPECT_EQ(played().requested.size(), 9u);
+  EXPECT_EQ(played().requested.size(), 18u);
   (*opened)->stop();
-  for (const int output : {kEnable, kHeartbeat, kLed, kScope})
+  for (const int output : {kEnable, kHeartbeat, kLed, kScope, kSync})
     EXPECT_EQ(played().level.at(static_cast<std::size_t>(output)), 0) << "line " << output;
   EXPECT_TRUE(played().requested.empty());
   EXPECT_EQ((*opened)->read(2'000'000), model::Fault::kLinesLost);

@@ -195,7 +195,7 @@ TEST(RecordingCsv, HasOneNameForEveryColumn) {
   std::string row;
   append_csv_row(row, test::make_frame(1.0f, firmware::protocol::ContactState::kHeld), header);
   EXPECT_EQ(columns(row), columns(csv_header(header)));
-  EXPECT_EQ(columns(row), 42 + 2 * (12 + 11 + 3));
+  EXPECT_EQ(columns(row), 46 + 2 * (12 + 11 + 3));
   EXPECT_EQ(std::count(row.begin(), row.end(), '\n'), 1);
 }
 

@@ -90,7 +90,8 @@ TEST_F(OperatorReplay, OfADownloadFromTheMiddleIsTheFigureThatWasSeenLive) {
   });
   while (!done) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   const std::string file = folder_ / "a.tact";
-  std::ofstream(file, std::ios::binary) << get("/recording.tact?from_tick=240&to_tick=300").body();
+  std::ofstream(file, std::ios::binary)
+      << get("/recording.tactview?from_tick=240&to_tick=300").body();
   record::ReadResult read = record::read_recording(file);
   ASSERT_EQ(read.damage, "");
   ASSERT_EQ(read.recording.frames.size(), kTo - kFrom + 1);

@@ -150,14 +150,19 @@ TEST_F(Replay, GoesWhereItIsToldAndRestsThere) {
   view_.unsubscribe(late);
 }
 
-TEST_F(Replay, KeepsAfterAJumpWhatIsPlayedFromThere) {
+TEST_F(Replay, ItsTableIsTheWholeFileWhateverWasShown) {
   playback_.start();
   view_.subscribe(heard_);
   rest();
-  for (int i = 0; i < 10; ++i) step(1);
-  EXPECT_EQ(view_.recent(0, UINT64_MAX).frames.size(), 11U) << "steps forward go on";
-  seek(0.2);
-  EXPECT_EQ(view_.recent(0, UINT64_MAX).frames.size(), 1U);
+  for (const double at_s : {0.0, 0.2, 0.1}) {
+    seek(at_s);
+    const auto all = view_.recent(0, UINT64_MAX).frames;
+    ASSERT_EQ(all.size(), 100U);
+    EXPECT_EQ(all[99]->frame.tick, 99U);
+  }
+  EXPECT_EQ(view_.recent(20, 29).frames.size(), 10U);
+  view_.begin(recording().header, test::TinyMeshes{}.bytes(), Link::kLive);
+  EXPECT_TRUE(view_.recent(0, UINT64_MAX).frames.empty()) << "not of the run after it";
 }
 
 TEST_F(Replay, PlaysInOneRowWhateverIsAsked) {

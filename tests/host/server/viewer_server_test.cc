@@ -48,7 +48,7 @@ TEST_P(ViewerAt, ShowsNothingWithoutItsToken) {
   for (const std::string& wrong : {std::string(), std::string("Bearer wrong")}) {
     bearer_ = wrong;
     EXPECT_EQ(get("/").result(), http::status::ok) << "the page itself is no secret";
-    for (const char* path : {"/scene.json", "/mesh.bin", "/recording.csv", "/recording.tact",
+    for (const char* path : {"/scene.json", "/mesh.bin", "/recording.csv", "/recording.tactview",
                              "/session", "/live", "/none"}) {
       EXPECT_EQ(get(path).result(), http::status::unauthorized) << path;
       EXPECT_EQ(get(path + ("?token=" + server_.token())).result(), http::status::unauthorized)
@@ -240,7 +240,7 @@ TEST_F(Viewer, GivesTheKeptFramesAsATableAndAsARecording) {
   EXPECT_EQ(
       std::count(table.begin(), table.end(), '\n') - std::count(table.begin(), table.end(), '#'),
       601);
-  const auto part = get("/recording.tact?from_tick=101&to_tick=200");
+  const auto part = get("/recording.tactview?from_tick=101&to_tick=200");
   EXPECT_EQ(part[http::field::content_disposition], "attachment") << "the page names the file";
   const fs::path file = folder_ / "part.tact";
   std::ofstream(file, std::ios::binary) << part.body();

@@ -29,7 +29,8 @@ struct Body {
         const auto x_m = static_cast<float>(mesh.vertex_m[v].x);
         const float slope = k < 3 ? slope_times_E_per_m2 : 0.0F;
         compliance[v].times_E_per_m[k] = times_E_per_m[k] + slope * x_m;
-        compliance[v].slope_times_E_per_m2[k] = {slope, 0.0F, 0.0F};
+        compliance[v].slope_step_times_E_per_m2 = slope_times_E_per_m2;
+        compliance[v].slope_steps[k] = {static_cast<std::int16_t>(k < 3), 0, 0};
       }
   }
   SmoothSurface surface() const { return {mesh.view(), corner, compliance, kE_Pa}; }

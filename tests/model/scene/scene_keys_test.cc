@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The format of a scene, its reference, and the scene that ships: they say the same.
+// The format of a scene, its reference and the scene that ships agree.
 #include "model/scene/scene_keys.h"
 
 #include <gtest/gtest.h>
@@ -58,8 +58,7 @@ center_m = [0.01, 0.02, 0.03]
 radius_m = 0.005
 youngs_modulus_Pa = 5e4
 )";
-  const std::string path =
-      testing::TempDir() + "liver_with_the_rest_" + std::to_string(getpid()) + ".toml";
+  const std::string path = testing::TempDir() + "liver_" + std::to_string(getpid()) + ".toml";
   std::ofstream(path) << text.str();
   return path;
 }
@@ -88,7 +87,6 @@ TEST(SceneReference, HasEveryKeyOfTheShippedScenesAndTheyHaveEveryKey) {
       reference.insert(section + row.key);
   }
   EXPECT_EQ(reference, shipped);
-  EXPECT_GT(reference.size(), 45u);
 }
 
 TEST(SceneReference, ASectionThatNoShippedSceneHasIsRead) {

