@@ -59,7 +59,7 @@ apt-get -s -qq --no-install-recommends install /root/tact_*.deb /root/tact-tools
   awk "/^Installed-Size:/ {kB += \$2} END {print kB, \"kB\"; exit kB > 60000}"'
 step "the page From bare PC to first force does what it says"
 python3 "$root/tests/tools/deploy/first_force.py" "$root/tools/deploy/FIRST_FORCE.md" "$base"
-inside 'tact-mcap --version && tact-doctor --version
+inside 'tact-mcap --version && tact-plot --version && tact-doctor --version
 ! tact-mcap a b 2>/root/said || exit 1
 grep "apt install python3-numpy" /root/said
 gpasswd -d root haptics >/dev/null && rm -rf /etc/tact/mine.toml /run/tact /tmp/tact-0'
