@@ -59,10 +59,10 @@ apt-get -s -qq --no-install-recommends install /root/tact_*.deb /root/tact-tools
   awk "/^Installed-Size:/ {kB += \$2} END {print kB, \"kB\"; exit kB > 60000}"'
 step "the page From bare PC to first force does what it says"
 python3 "$root/tests/tools/deploy/first_force.py" "$root/tools/deploy/FIRST_FORCE.md" "$base"
-inside 'tact-mcap --version && tact-doctor --version
+inside 'tact-mcap --version && tact-plot --version && tact-doctor --version
 ! tact-mcap a b 2>/root/said || exit 1
 grep "apt install python3-numpy" /root/said
-gpasswd -d root haptics >/dev/null && rm -r /etc/tact/mine.toml /run/tact'
+gpasswd -d root haptics >/dev/null && rm -rf /etc/tact/mine.toml /run/tact /tmp/tact-0'
 step install
 inside 'apt-get -qq install -y --no-install-recommends /root/*.deb' >"$base/root/log" 2>&1 ||
   { tail -n 30 "$base/root/log"; exit 1; }
@@ -74,7 +74,7 @@ inside 'for page in $(dpkg -L tact tact-view tact-tools tact-lab tact-doc | grep
   page=${page##*/}
   man ${page##*.} ${page%.*} >/root/page
   for part in EXAMPLES FILES "SEE ALSO"; do grep -qx "$part" /root/page || { echo "$page has no $part"; exit 1; }; done
-  for other in $(sed -n "/^SEE ALSO/,\$ s/\(tact[a-z-]*\)(\([157]\)).*/\2 \1/p" /root/page | tr " " ,); do
+  for other in $(sed -n "/^SEE ALSO/,\$p" /root/page | grep -oE "tact[a-z-]*[(][157][)]" | sed -E "s/(.*)[(](.)[)]/\2,\1/"); do
     man -w ${other%,*} ${other#*,} >/dev/null || { echo "$page names $other"; exit 1; }; done; done
 grep -c youngs_modulus_Pa <(man 5 tact-scene)
 cp /usr/share/tact/scenes/liver.toml /root/mine.toml && ln -s /usr/share/tact/scenes/meshes /root/meshes
