@@ -93,7 +93,7 @@ def list_versions(now):
 
 
 VERSION_AT = {  # each: the version as written there
-    "CITATION.cff": r'^version: "([^"]+)"$',
+    ".github/CITATION.cff": r'^version: "([^"]+)"$',
     "tools/deploy/CHANGELOG.md": r"^## (\S+)",
     "host/web/package.json": r'^  "version": "([^"]+)"',
     "tools/mcap/tact-mcap": r'^VERSION = "([^"]+)"',
@@ -138,7 +138,7 @@ def blind_rules():
         return {"a": {"revision": revision, "values": {}}}
     excused = {"a": {"revision": "bad", "reason": "takes a day on a machine of its own"}}
     files = dict.fromkeys(VERSION_AT, "") | {"CMakeLists.txt": "set(TACT_VERSION 1.0.0-rc1)\n"}
-    good_files = {"CMakeLists.txt": files["CMakeLists.txt"], "CITATION.cff": 'version: "1.0.0-rc1"',
+    good_files = {"CMakeLists.txt": files["CMakeLists.txt"], ".github/CITATION.cff": 'version: "1.0.0-rc1"',
                   "tools/deploy/CHANGELOG.md": "## 1.0.0-rc1", "host/web/package.json": '  "version": "1.0.0-rc1"',
                   "tools/mcap/tact-mcap": 'VERSION = "1.0.0-rc1"', "tools/plot/tact-plot": 'VERSION = "1.0.0-rc1"'}
     cases = {

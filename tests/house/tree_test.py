@@ -11,8 +11,7 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-# CITATION.cff is looked for at the top, and nowhere else.
-TOP = {"CITATION.cff", "CMakeLists.txt", "LICENSE", "README.md", "firmware", "hal", "host", "model", "tests", "tools"}
+TOP = {"CMakeLists.txt", "LICENSE", "README.md", "firmware", "hal", "host", "model", "tests", "tools"}
 MAX_BYTES = 1_000_000
 PUSH, NIGHT = ".github/workflows/check.yml", ".github/workflows/nightly.yml"
 
