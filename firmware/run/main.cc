@@ -143,10 +143,7 @@ int run(int argc, char** argv) {
   firmware::run::Options& options = parsed.options;
   if (options.faults) return print_faults(options.json_path);
   if (options.list_devices) return print_devices(options.json_path);
-  if (options.cite) {
-    say(stdout, "{}", firmware::run::citation());
-    return 0;
-  }
+  if (options.cite) return say(stdout, "{}", firmware::run::citation()), 0;
   if (options.help_scene) {
     say(stdout, "{}", model::scene::scene_reference(hal::registry::visit_device));
     return 0;

@@ -8,6 +8,7 @@
 #include "firmware/pc/environment.h"
 #include "firmware/protocol/run_file.h"
 #include "firmware/telemetry/utc_clock.h"
+#include "hal/monotonic.h"
 #include "model/io/socket_file.h"
 
 namespace tact::firmware::run {
@@ -36,7 +37,7 @@ protocol::RunHeader header_of(const RunSetup& run, const protocol::UtcOffset& ut
   uname(&pc_name);
   header.host_name = pc_name.nodename;
   // Simulated time begins at 0.
-  header.began_monotonic_ns = run.options.free_run ? 0 : loop::MonotonicClock().now_ns();
+  header.began_monotonic_ns = run.options.free_run ? 0 : hal::monotonic_ns();
   header.began_utc = telemetry::date_of(header.began_monotonic_ns + utc.offset_ns);
   header.utc_max_error_us = utc.max_error_us;
   header.utc_error_us = utc.error_us;
@@ -86,7 +87,7 @@ std::optional<Error> open_sockets(const RunSetup& run, protocol::RunHeader heade
 Result<Sinks> open_sinks(const RunSetup& run) {
   Sinks out;
   out.utc = telemetry::read_utc_offset();
-  if (run.options.free_run) out.utc.offset_ns += loop::MonotonicClock().now_ns();
+  if (run.options.free_run) out.utc.offset_ns += hal::monotonic_ns();
   const protocol::RunHeader header = header_of(run, out.utc);
   const std::vector<std::byte> meshes = telemetry::mesh_bytes(run.scene);
   if (!run.options.no_telemetry)
