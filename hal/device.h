@@ -74,7 +74,7 @@ struct DeviceCount {
   std::uint64_t count;
 };
 
-/// An open device makes no force before the first write. The destructor does the same as stop().
+/// An open device gives no force before the first write. The destructor does the same as stop().
 class Device {
  public:
   Device() = default;
@@ -94,8 +94,8 @@ class Device {
   /// one whose handle another process cannot use.
   virtual std::optional<ShutdownFrames> shutdown_frames() { return std::nullopt; }
 
-  /// Called by the loop's thread once, before its first tick: takes what came since opening, so
-  /// that no tick has to.
+  /// Called by the loop's thread once, before its first tick: reads the backlog since opening, so
+  /// that the first tick is not longer.
   virtual void catch_up(std::int64_t now_ns) RT_SAFE { (void)now_ns; }
 
   // Called by the loop's thread, once per tick, in this order.
@@ -107,7 +107,7 @@ class Device {
   /// the loop stops if it becomes false while armed.
   virtual bool ready() const RT_SAFE { return true; }
 
-  /// Whether the drives may have power in this tick, by the safety lines; without lines true.
+  /// Permission of the safety lines for power in this tick; without lines true.
   virtual void permit(bool powered) RT_SAFE { (void)powered; }
 
   /// Writes this wrench to the hardware; the device adds its gravity compensation.
@@ -120,8 +120,8 @@ class Device {
   /// target is a position of the tool.
   virtual void shift_tool(const Vec3& shift_m) RT_SAFE { (void)shift_m; }
 
-  /// Simulates one or more periods of a simulated device; hardware does nothing here. Not part of
-  /// the tick's measured time.
+  /// Simulates one or more periods of a simulated device; no effect on hardware. Not part of the
+  /// tick's measured time.
   virtual void between_ticks(double elapsed_s) RT_SAFE { (void)elapsed_s; }
 
   // Callable from any thread at any time.

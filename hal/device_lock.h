@@ -2,10 +2,10 @@
 // device_lock.h - one program per device: two that write to one drive would each undo the other.
 //
 // The lock is an abstract Unix socket with the device's name, so no file stays behind, and the
-// kernel tells who listens there. A program keeps it to its end, in whatever way it ends. Names are
-// those of one network namespace, as CAN interfaces are; between programs of several namespaces the
-// kernel's own claim keeps a USB device apart, and names nobody. The simulated device needs no
-// lock. Set-up code only.
+// kernel names the process that listens there. A program keeps it until it ends or is killed. Names
+// are those of one network namespace, as CAN interfaces are; between programs of several namespaces
+// the kernel's own claim keeps a USB device apart, but names no holder. The simulated device needs
+// no lock. Set-up code only.
 #pragma once
 
 #include <optional>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // fault_latch.h - the first fault of a device stays, with its cause, for the loop and for messages.
 //
-// Any thread may set and read it. A cause is one atomic of 64 bits: nobody sees half of it.
+// Any thread may set and read it. A cause is one atomic of 64 bits: no reader sees half of it.
 #pragma once
 
 #include <atomic>

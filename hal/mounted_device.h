@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// mounted_device.h - a device that stands otherwise, or whose motion is scaled (mounting.h):
+// mounted_device.h - a device with a turned base, or whose motion is scaled (mounting.h):
 // between the loop, which knows W, and the device, which knows its base.
 #pragma once
 

@@ -33,7 +33,7 @@ constexpr std::array<Stance, 6> kStances{
      {{-1, 0, 0}, "lies on its side, its axis points away from you", "axis away"},
      {{0, 1, 0}, "lies on its side, its axis points to the right", "axis right"},
      {{0, -1, 0}, "lies on its side, its axis points to the left", "axis left"},
-     {{0, 0, 1}, "stands upright, its axis points up", "upright"},
+     {{0, 0, 1}, "is upright, its axis points up", "upright"},
      {{0, 0, -1}, "hangs from above, its axis points down", "hangs"}}};
 
 /// Null: along none of the six.
@@ -47,9 +47,9 @@ const Stance* stance_of(const Mounting& m) {
 /// ", hangs, motion x 3": behind the name of the device, on the page and wherever it is named.
 std::string brief_of(const Mounting& m) {
   const Stance* const stance = stance_of(m);
-  std::string_view stands = stance != nullptr ? stance->brief : "tilted";
-  if (stands.empty() && std::abs(m.turn.w) < 1.0 - 1e-9) stands = "turned";  // about its own axis
-  std::string out = stands.empty() ? "" : fmt::format(", {}", stands);
+  std::string_view pose = stance != nullptr ? stance->brief : "tilted";
+  if (pose.empty() && std::abs(m.turn.w) < 1.0 - 1e-9) pose = "turned";  // about its own axis
+  std::string out = pose.empty() ? "" : fmt::format(", {}", pose);
   if (m.scale != 1.0) out += fmt::format(", motion x {:g}", m.scale);
   return out;
 }
@@ -69,16 +69,16 @@ Mounting mounting_of(const model::DeviceSettings& settings) {
 
 std::string text_of(const Mounting& m) {
   const Stance* const stance = stance_of(m);
-  const std::string stands = stance != nullptr
-                                 ? stance->words
-                                 : fmt::format("is tilted, its axis points along {} of W",
-                                               text_of(m.direction_W({1, 0, 0})));
-  std::string out = fmt::format("the base {}; down is {} in its own axes", stands,
+  const std::string pose = stance != nullptr
+                               ? stance->words
+                               : fmt::format("is tilted, its axis points along {} of W",
+                                             text_of(m.direction_W({1, 0, 0})));
+  std::string out = fmt::format("the base {}; down is {} in its own axes", pose,
                                 text_of(m.direction_in_base({0, 0, -1})));
   if (m.shift_m != Vec3{}) out += fmt::format("; its origin is at {} m of W", text_of(m.shift_m));
   if (m.scale != 1.0)
     out += fmt::format(
-        "; the tool goes {0:g} times the way of the handle, and the hand feels {0:g} "
+        "; the tool goes {0:g} times the way of the handle, and the hand gets {0:g} "
         "times the tool's force",
         m.scale);
   return out;

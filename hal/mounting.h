@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// mounting.h - how the base of a device stands in the room, and how its motion is scaled.
+// mounting.h - the pose of a device's base in the room, and how its motion is scaled.
 //
 //     p_W = s R p_B + t    v_W = s R v_B    F_B = s R^T F_W    T_B = R^T T_W    g_B = R^T g_W
 //
@@ -8,8 +8,8 @@
 //     t  device.base_position_m: where the origin of B is in W, m
 //     s  device.motion_scale: way of the tool for a way of the handle
 //
-// Power agrees: F_B . v_B = F_W . v_W. This is the one place that turns what a device tells and is
-// told; what balances weight asks it where down is.
+// Power agrees: F_B . v_B = F_W . v_W. This is the one place that turns what a device reports and
+// receives; the weight balance asks it where down is.
 #pragma once
 
 #include <string>

@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdlib>
 
 #include "model/io/input_file.h"
 #include "model/io/program/remedy.h"
@@ -44,8 +43,7 @@ Refusal why_refused(const std::string& node, const char* rule, std::optional<gid
                 ? model::io::group_remedy() +
                       " installs it; then sudo adduser $USER haptics, and log in again"
                 : fmt::format("start the container with --device {}", node)};
-  return {fmt::format("{} may not be opened: it is of the group haptics, and whoever runs this is "
-                      "not in it",
+  return {fmt::format("{} may not be opened: it is of the group haptics, and its user is not in it",
                       node),
           "sudo adduser $USER haptics, and log in again"};
 }

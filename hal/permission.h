@@ -2,7 +2,7 @@
 // permission.h - a device node that may not be opened: for a moment, or for lack of what.
 //
 // When a device is plugged in its node is root's alone, until udev has given it to the group: a
-// refusal counts once it has lasted 200 ms. Its group then tells whether the rule is missing, or
+// refusal counts once it has lasted 200 ms. Its group then shows whether the rule is missing, or
 // the member. Set-up code, which waits.
 #pragma once
 
@@ -47,7 +47,7 @@ std::optional<gid_t> haptics_group();
 Refusal why_refused(const std::string& node, const char* rule,
                     std::optional<gid_t> group = haptics_group());
 
-/// 0, or the errno of opening a node for reading and writing; asked, so nobody is disturbed.
+/// 0, or the errno of opening a node for reading and writing; without opening it.
 int access_error(const std::string& node);
 
 /// Where the kernel shows devices; a test has others.
@@ -65,8 +65,8 @@ std::string usb_node(const std::filesystem::path& device, const SystemRoots& roo
 const UsbPart* usb_part_of(const std::filesystem::path& device, std::span<const UsbPart> parts);
 /// Of the first of these USB devices whose node is refused; nothing where all may be opened, or
 /// none is there. For libraries that look for devices by themselves:
-/// ask before the library, which then finds what udev has given away, and tell only when it fails,
-/// as it may open another device.
+/// ask before the library, which then finds what udev has given away, and report only when it
+/// fails, as it may open another device.
 std::optional<Refusal> refused_usb_device(std::span<const UsbPart> parts,
                                           const SystemRoots& roots = {});
 

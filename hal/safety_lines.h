@@ -5,7 +5,7 @@
 // The PC is never the safety device: the lines watch an e-stop chain that works without them, add
 // one more permission in series, and prove that the loop is alive. Once per tick, in this order:
 // scope(true), read, write, scope(false). Enable comes after 100 ms of heartbeat with good inputs,
-// goes at the first fault before anything else is told, and returns only after a reset.
+// goes at the first fault before any other output, and returns only after a reset.
 #pragma once
 
 #include <cstdint>
@@ -20,9 +20,9 @@ namespace tact::hal {
 
 /// What the tick that ends has found.
 struct LinesTick {
-  bool healthy = false;  // no fault stands and the tick was in time: the heartbeat may toggle
+  bool healthy = false;  // no fault is present and the tick was in time: the heartbeat may toggle
   bool armed = false;    // for the status light
-  bool faulted = false;  // a fault stands: enable goes now, not when the heartbeat is missed
+  bool faulted = false;  // a fault is present: enable goes now, not when the heartbeat is missed
   bool sync = false;     // level of the sync line
 };
 
@@ -33,7 +33,7 @@ class SafetyLines {
   SafetyLines& operator=(const SafetyLines&) = delete;
   virtual ~SafetyLines() = default;
 
-  /// Levels of now. kNone, or why force must be zero; the fault stands while its cause does.
+  /// Levels of now. kNone, or why force must be zero; the fault lasts while its cause does.
   [[nodiscard]] virtual model::Fault read(std::int64_t now_ns) RT_SAFE = 0;
   /// Outputs of this tick; kLinesLost when they cannot be set.
   [[nodiscard]] virtual model::Fault write(const LinesTick& tick) RT_SAFE = 0;

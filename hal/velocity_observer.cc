@@ -19,7 +19,7 @@ Vec3 VelocityObserver::step(const Vec3& position_m, double elapsed_s) RT_SAFE {
     position_m_ = position_m;
     return {};
   }
-  // A hard start, a jump: no filter, so that it is never told as slower than it was.
+  // A hard start, a jump: no filter, so that it is never reported as slower than it was.
   const double q = norm(residual_m) <= jump_mps_ * elapsed_s
                        ? std::exp(-2.0 * std::numbers::pi * bandwidth_Hz_ * elapsed_s)
                        : 0.0;

@@ -61,7 +61,7 @@ constexpr std::array kTable{
         Fault::kClutchPressed, "clutch pressed",
         "the tool stays where it is, without a force, while the handle moves; held tissue is "
         "let go",
-        "release the clutch: contact begins again where the tool is. If nobody presses it, its "
+        "release the clutch: contact begins again where the tool is. If it is not pressed, its "
         "line "
         "flaps: repair it (device.lines.clutch)"},
     FaultEntry{Fault::kUnknown, "unknown", "a fault of another version of tact, or a broken record",
@@ -85,7 +85,7 @@ constexpr std::array kTable{
                "make its step shorter or its springs softer (spring_patch.substeps, integrator), "
                "then start tactd again"},
     FaultEntry{Fault::kEmergencyStop, "emergency stop", "a channel of the e-stop is open",
-               "make sure that nobody is in danger, release the e-stop, then reset and arm"},
+               "make sure that no person is in danger, release the e-stop, then reset and arm"},
     FaultEntry{Fault::kLinesDiffer, "lines differ",
                "the two channels of the e-stop disagreed for more than 50 ms",
                "a wire, contact or input is broken: repair it before anybody holds the device"},

@@ -70,7 +70,7 @@ void LimitWitness::add_energy(const WrittenTick& tick, double periods) {
     const double held_s = held_periods * period_s_;
     const double done_J =
         (dot(held_.force_N, moved_m) + dot(held_.torque_Nm, turned_rad)) / held_periods;
-    given_J_ += done_J;
+    given_energy_J_ += done_J;
     lately_J_ = std::max(lately_J_ + done_J - limits_.recovery_W * held_s, 0.0);
     is_permitted_ = is_permitted_ && !is_paused_ && norm(moved_m) <= limits_.speed_mps * held_s &&
                     norm(turned_rad) <= limits_.turn_radps * held_s;
@@ -93,7 +93,7 @@ void LimitWitness::add_thermal(double periods) {
   longest_s_ = is_overheated_ ? std::max(longest_s_, periods * period_s_) : 0.0;
 }
 
-double LimitWitness::most_given_J() const {
+double LimitWitness::max_given_energy_J() const {
   return limits_.energy_J + limits_.recovery_W * static_cast<double>(periods_) * period_s_;
 }
 
@@ -109,8 +109,8 @@ void LimitWitness::keep_worst(const WrittenTick& tick, double periods, bool stop
   if (is_finite(tick.tool)) raise(worst_.power_W, given_power_W(w, tick.tool));
   raise(worst_.rms_N, std::sqrt(mean_square_N2_));
   raise(worst_.rms_Nm, std::sqrt(torque_mean_square_N2m2_));
-  raise(worst_.given_J, given_J_);
-  raise(worst_.overdrawn_J, given_J_ - most_given_J() * kRounding_ratio);
+  raise(worst_.given_energy_J, given_energy_J_);
+  raise(worst_.overdrawn_J, given_energy_J_ - max_given_energy_J() * kRounding_ratio);
 }
 
 const char* LimitWitness::broken_peak(const WrittenTick& tick, bool stopped) const {
@@ -161,7 +161,7 @@ const char* LimitWitness::broken_thermal() const {
 }
 
 const char* LimitWitness::broken_energy(bool stopped) const {
-  const bool overdrawn = !(given_J_ <= most_given_J() + kRounding_J);
+  const bool overdrawn = !(given_energy_J_ <= max_given_energy_J() + kRounding_J);
   if (!stopped && overdrawn) return "energy given: beyond the budget it stops in the same tick";
   if (is_permitted_ && overdrawn) return "energy given <= energy_J + recovery_W t";
   if (!stopped && lately_J_ > 2.0 * limits_.energy_J + kRounding_J)
@@ -171,7 +171,7 @@ const char* LimitWitness::broken_energy(bool stopped) const {
 
 // What a tick without arming leaves behind.
 void LimitWitness::disarm() {
-  given_J_ = lately_J_ = 0.0;
+  given_energy_J_ = lately_J_ = 0.0;
   periods_ = held_periods_ = 0;
   held_ = {};
   is_placed_ = false;

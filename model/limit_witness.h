@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // limit_witness.h - did what was written to a device keep the limits of limits.h? It is for tests
-// and for tools that judge a run. It sums by itself: nothing here asks the gate or shares its code.
+// and for tools that evaluate a run. It sums by itself: nothing here asks the gate or shares its
+// code.
 //
 //     |F| <= force_N     |T| <= torque_Nm     both zero unless armed and without a fault
 //     |dF| <= slew_N_per_s t, t since the write before; |F| grows by one period's slew at most
@@ -27,7 +28,7 @@ struct WrittenTick {
   Tool tool{};                  // of the newest sample
   bool fresh = false;
   bool armed = false;
-  bool faulted = false;               // a fault latches or stands
+  bool faulted = false;               // a fault latches or is latched
   std::uint32_t skipped_periods = 0;  // between the tick before and this one
 };
 
@@ -38,7 +39,7 @@ double given_power_W(const Wrench& w, const Tool& tool);
 struct LimitExtremes {
   double force_N = 0.0, torque_Nm = 0.0, power_W = 0.0;
   double step_N = 0.0, step_Nm = 0.0;  // for each period that passed since the write before
-  double given_J = 0.0;                // since arming
+  double given_energy_J = 0.0;         // since arming
   double overdrawn_J = 0.0;            // above budget and recovery; 0: never
   double rms_N = 0.0, rms_Nm = 0.0;
   double grip_N = 0.0;
@@ -59,7 +60,7 @@ class LimitWitness {
   void forget_worst() { worst_ = {}; }
   double force_step_N() const { return step_N_; }  // of one period
   /// Since arming; below zero: more was taken.
-  double given_J() const { return given_J_; }
+  double total_given_energy_J() const { return given_energy_J_; }
   /// Since arming no step was longer than its time allows, and no period was skipped.
   bool is_motion_permitted() const { return is_permitted_; }
   std::uint64_t missed_samples() const { return missed_samples_; }
@@ -69,7 +70,7 @@ class LimitWitness {
 
  private:
   static double ratio(double rms, double most) { return rms > 0.0 ? rms / most : 0.0; }
-  double most_given_J() const;
+  double max_given_energy_J() const;
   void add_energy(const WrittenTick& tick, double periods);
   void add_thermal(double periods);
   void keep_worst(const WrittenTick& tick, double periods, bool stopped);
@@ -87,7 +88,7 @@ class LimitWitness {
   double mean_square_N2_ = 0.0, torque_mean_square_N2m2_ = 0.0;
   bool is_overheated_ = false;  // a force was held for longer than could be known
   double longest_s_ = 0.0;      // that one was held meanwhile
-  double given_J_ = 0.0, lately_J_ = 0.0;
+  double given_energy_J_ = 0.0, lately_J_ = 0.0;
   std::uint64_t missed_samples_ = 0;              // in a row, one a period
   std::uint64_t periods_ = 0, held_periods_ = 0;  // since arming; since the last sample
   Wrench held_;                                   // sum of each period's since the last sample

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // rt.h - the one mark of real-time code.
 //
-// RT_SAFE stands after every function that the loop is allowed to reach: it does not allocate,
+// RT_SAFE follows every function that the loop is allowed to reach: it does not allocate,
 // lock, throw or print. But for the clock's sleep and the loops themselves it does not wait and its
-// work is bounded. tools/tick_size tells which ones a tick does reach. clang 20 and later check the
+// work is bounded. tools/tick_size lists which ones a tick does reach. clang 20 and later check the
 // promise at compile time (-Wfunction-effects) and at run time (-fsanitize=realtime); gcc sees
 // noexcept.
 #pragma once

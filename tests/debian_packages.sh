@@ -42,7 +42,7 @@ left_over() {
 }
 
 before=$(left_over)
-# GRUB as a file that says what it would tell the kernel: the chroot has no disk to boot from.
+# GRUB as a file with the kernel's command line: the chroot has no disk to boot from.
 mkdir -p "$base/boot/grub" "$base/etc/default" && touch "$base/boot/grub/grub.cfg"
 cat >"$base/usr/sbin/update-grub" <<'END'
 #!/bin/sh -e
@@ -66,7 +66,7 @@ gpasswd -d root haptics >/dev/null && rm -rf /etc/tact/mine.toml /run/tact /tmp/
 step install
 inside 'apt-get -qq install -y --no-install-recommends /root/*.deb' >"$base/root/log" 2>&1 ||
   { tail -n 30 "$base/root/log"; exit 1; }
-step "every program tells its version and has a manual page"
+step "every program prints its version and has a manual page"
 inside 'for program in $(dpkg -L tact tact-view tact-tools tact-lab | grep ^/usr/bin/); do
   $program --version && man -w ${program##*/} >/dev/null; done'
 step "a manual page has examples, files and what to see also, which is there"
@@ -104,7 +104,7 @@ step "the viewer's user looks, and cannot stop what it looks at"
 inside 'export XDG_RUNTIME_DIR=/run
 install -d -o tact -g haptics -m 0750 /run/tact
 install -d -o tact-view -m 0755 /root/seen && chmod 711 /root
-runuser -u tact -g haptics -- tactd /etc/tact/liver.toml --viewers haptics --no-black-box 2>/root/told & tactd=$!
+runuser -u tact -g haptics -- tactd /etc/tact/liver.toml --viewers haptics --no-black-box 2>/root/log & tactd=$!
 for i in $(seq 100); do [ -S /run/tact/telemetry.sock ] && break; sleep .1; done
 [ "$(stat -c "%U %G %a" /run/tact/telemetry.sock)" = "tact haptics 660" ]
 timeout --preserve-status -s INT 3 runuser -u tact-view -g haptics -- tact-view --tactd-user tact --port 0 --record /root/seen/r >/dev/null

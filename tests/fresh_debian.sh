@@ -4,7 +4,7 @@
 # chroot from debootstrap, a clone of this tree's last commit, tools/run, the ladders of CONTRIBUTING.md and
 # tools/check twice each; first tools/run --tools.
 #
-#   tests/fresh_debian.sh [12|13] [FOLDER]    the oldest of tools/releases unless told; needs root,
+#   tests/fresh_debian.sh [12|13] [FOLDER]    the oldest of tools/releases by default; needs root,
 #                                             debootstrap and 6 GB; FOLDER is kept for a next time
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)

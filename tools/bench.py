@@ -102,21 +102,21 @@ def wake_up():
 def contact_times(scene):
     run = subprocess.run([BUILD / "tact-tick-bench", ROOT / f"model/scenes/{scene}.toml", "--benchmark_format=json"],
                          check=True, capture_output=True, text=True)
-    return {told["name"].split("/")[0]: told for told in json.loads(run.stdout)["benchmarks"]}
+    return {measured["name"].split("/")[0]: measured for measured in json.loads(run.stdout)["benchmarks"]}
 
 
 def contact_ticks():
     """Detect and render alone on one path of the hand; a tick's time is the least of 100 passes."""
-    told, command = contact_times("liver"), "tact-tick-bench liver.toml"
-    hot = told["hot"]
+    measured, command = contact_times("liver"), "tact-tick-bench liver.toml"
+    hot = measured["hot"]
     row("contact of two spheres, least of passes, median", round(hot["median_us"], 2), "us", "<= 0.9", command)
     row("  p99.9", round(hot["p999_us"], 2), "us", "<= 2", command)
     row("  longest over median", round(hot["longest_us"] / hot["median_us"], 1), "", "<= 2.5", command)
-    row("  caches cold, median", round(told["cold_caches"]["median_us"], 2), "us", "<= 1.3", command)
-    row("  first contact, cold", round(told["first_contact"]["median_us"], 2), "us", "<= 3", command)
-    row("contact of one sphere, median", round(told["spheres_1"]["median_us"], 2), "us", "<= 0.35", command)
-    told = contact_times("grasper")
-    more_us = (told["hot"]["median_us"] - told["spheres_1"]["median_us"]) / 9
+    row("  caches cold, median", round(measured["cold_caches"]["median_us"], 2), "us", "<= 1.3", command)
+    row("  first contact, cold", round(measured["first_contact"]["median_us"], 2), "us", "<= 3", command)
+    row("contact of one sphere, median", round(measured["spheres_1"]["median_us"], 2), "us", "<= 0.35", command)
+    measured = contact_times("grasper")
+    more_us = (measured["hot"]["median_us"] - measured["spheres_1"]["median_us"]) / 9
     row("contact of ten, median of a further sphere", round(more_us, 2), "us", "<= 0.35", "tact-tick-bench grasper.toml")
 
 
@@ -144,14 +144,14 @@ def mesh_size():
     """The same liver with a million vertices: runs in turn, the middle of three, so that a drift of the
     machine cancels. Neither varies by place: the map is of the coarse one."""
     fine = fine_liver()
-    told = {(name, at): [] for name in ("coarse", "fine") for at in ("p50_ns", "p99.9_ns")}
+    measured = {(name, at): [] for name in ("coarse", "fine") for at in ("p50_ns", "p99.9_ns")}
     for _ in range(3):
         for name, extra in (("coarse", []), ("fine", ["--set", f'organ.mesh="{fine}"'])):
             report = tactd("--seconds", str(SECONDS), "--set", "varies_by_place=false", *extra)
             for at in ("p50_ns", "p99.9_ns"):
-                told[name, at].append(report["phases"]["total"][at])
+                measured[name, at].append(report["phases"]["total"][at])
     for what, at, goal in (("median", "p50_ns", "<= 1.2"), ("p99.9", "p99.9_ns", "<= 1.5")):
-        ratio = sorted(told["fine", at])[1] / sorted(told["coarse", at])[1]
+        ratio = sorted(measured["fine", at])[1] / sorted(measured["coarse", at])[1]
         row(f"tick at a million vertices over 3 116, {what}", round(ratio, 2), "", goal,
             "tactd liver.toml --set organ.mesh=...")
 
@@ -159,10 +159,10 @@ def mesh_size():
 def loading():
     big = fine_liver()
     start = time.monotonic()
-    told = subprocess.run([BUILD / "tact-mesh", big], check=True, capture_output=True, text=True)
+    measured = subprocess.run([BUILD / "tact-mesh", big], check=True, capture_output=True, text=True)
     row("load of an OBJ of a million vertices", round(time.monotonic() - start, 2), "s", "<= 3",
         "tact-mesh FILE")
-    assert "1008938" in told.stdout, told.stdout
+    assert "1008938" in measured.stdout, measured.stdout
 
 
 def system_calls():
@@ -187,26 +187,26 @@ def tracking():
     """Medians of times, us, and counters of the operator's pose and figure, by the benchmark's name."""
     run = subprocess.run([BUILD / "tact-tracking-bench", ROOT / "model/scenes/maintenance.toml",
                           "--benchmark_format=json"], check=True, capture_output=True, text=True)
-    return {told["name"].split("/")[0]: told for told in json.loads(run.stdout)["benchmarks"]
-            if told.get("aggregate_name", "median") == "median"}
+    return {measured["name"].split("/")[0]: measured for measured in json.loads(run.stdout)["benchmarks"]
+            if measured.get("aggregate_name", "median") == "median"}
 
 
 def pose():
     """The operator's, from eight markers."""
-    told, command = tracking(), "tact-tracking-bench"
-    row("pose of eight markers, median", round(told["pose"]["cpu_time"], 1), "us", "<= 200", command)
+    measured, command = tracking(), "tact-tracking-bench"
+    row("pose of eight markers, median", round(measured["pose"]["cpu_time"], 1), "us", "<= 200", command)
     row("  off at 2 m with 0.5 px, shown, median",
-        round(told["pose_errors"]["shown_at_rest.median_mm"], 1), "mm", "<= 3", command)
-    row("  of two cameras, median", round(told["joint"]["cpu_time"], 1), "us", "<= 200", command)
-    row("    raw, p95", round(told["joint_errors"]["raw.p95_mm"], 1), "mm", "<= 3", command)
+        round(measured["pose_errors"]["shown_at_rest.median_mm"], 1), "mm", "<= 3", command)
+    row("  of two cameras, median", round(measured["joint"]["cpu_time"], 1), "us", "<= 200", command)
+    row("    raw, p95", round(measured["joint_errors"]["raw.p95_mm"], 1), "mm", "<= 3", command)
 
 
 def arm():
     """The operator's, seven joints: time, and what its start from the shoulder saves on the recorded motion."""
-    told = tracking()
-    row("pose of the arm, median", round(told["arm"]["cpu_time"], 1), "us", "<= 50", "tact-tracking-bench")
+    measured = tracking()
+    row("pose of the arm, median", round(measured["arm"]["cpu_time"], 1), "us", "<= 50", "tact-tracking-bench")
     row("joint updates, whole chain over shoulder first",
-        round(told["scene_full_chain"]["joint_updates"] / told["scene_shoulder_first"]["joint_updates"], 2),
+        round(measured["scene_full_chain"]["joint_updates"] / measured["scene_shoulder_first"]["joint_updates"], 2),
         "", ">= 2", "tact-tracking-bench")
 
 
@@ -220,17 +220,17 @@ def browser(test):
 
 
 def page():
-    told = browser("page")
-    fps = re.search(r"([\d.]+) frames/s", told)
-    wire = re.search(r"largest (\d+) bytes", told)
+    measured = browser("page")
+    fps = re.search(r"([\d.]+) frames/s", measured)
+    wire = re.search(r"largest (\d+) bytes", measured)
     command = "node tests/browser/page_test.mjs build"
     row("page, headless Chromium, software", fps[1] if fps else "?", "frames/s", ">= 30", command)
     row("wire, largest frame", wire[1] if wire else "?", "bytes", "<= 4096", command)
 
 
 def page_with_figure():
-    told = browser("figure")
-    fps = re.search(r"([\d.]+) frames/s with the figure, ([\d.]+) without", told)
+    measured = browser("figure")
+    fps = re.search(r"([\d.]+) frames/s with the figure, ([\d.]+) without", measured)
     command = "node tests/browser/figure_test.mjs build"
     row("page with the operator's figure", fps[1] if fps else "?", "frames/s", ">= 30", command)
     row("  without it, in its own first view", fps[2] if fps else "?", "frames/s", "", command)
@@ -238,8 +238,8 @@ def page_with_figure():
 
 def page_with_operator():
     """30 s of recorded motion, seen with the tracked head."""
-    told = browser("maintenance")
-    fps = re.search(r"([\d.]+) frames/s", told)
+    measured = browser("maintenance")
+    fps = re.search(r"([\d.]+) frames/s", measured)
     row("page with the tracked operator, 30 s", fps[1] if fps else "?", "frames/s", ">= 30",
         "node tests/browser/maintenance_test.mjs build")
 
@@ -254,8 +254,8 @@ def main():
             wrong.append(f"{measure.__name__}: {error}")
     if OUT:
         pathlib.Path(OUT).write_text(json.dumps(rows, indent=2) + "\n")
-    for sentence in wrong:
-        print(f"tools/bench: {sentence}", file=sys.stderr)
+    for message in wrong:
+        print(f"tools/bench: {message}", file=sys.stderr)
     return 1 if wrong else 0
 
 

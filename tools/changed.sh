@@ -2,7 +2,7 @@
 # changed.sh - sourced by check: what a stage need not try again, as nothing has changed since it passed here.
 #
 # A stage that passes leaves $build/passed.STAGE, of the time at which it began: a file that is newer has changed. It
-# may hold the digest of each program: one of another digest has changed, whatever is newer of what it is linked from.
+# may hold the digest of each program: one of another digest has changed, regardless of the dates of its objects.
 # The caller has $root, $build, $again (yes where something may be left out) and a function `tracked`: git in $root.
 
 # shellcheck disable=SC2034  # for check
@@ -43,7 +43,7 @@ program_digests() { built_programs | xargs -r python3 "$root/tools/program_diges
 # changed_programs STAGE: names of the programs that are not as they were when it began and then passed
 changed_programs() { program_digests | grep -vxFf "$build/passed.$1" | sed 's/^[^ ]* //'; }
 
-# program_changed STAGE PROGRAM...: yes, too, where nobody knows
+# program_changed STAGE PROGRAM...: yes, too, where it is unknown
 program_changed() {
   [ -e "$build/passed.$1" ] || return 0
   changed_programs "$1" | grep -qxF "$(printf '%s\n' "${@:2}")"

@@ -24,7 +24,7 @@ as_root() {
 # release_lacks PACKAGE: by the lists of apt, which are fetched where there are none
 release_lacks() {
   apt-cache show dpkg 2>/dev/null | grep -q '^Filename' || as_root apt-get update >/dev/null 2>&1
-  # Of a name that others only refer to, apt-cache tells nothing, and says that all is well.
+  # Of a name that others only refer to, apt-cache prints nothing, and says that all is well.
   [ -z "$(apt-cache show "$1" 2>/dev/null)" ]
 }
 

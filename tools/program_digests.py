@@ -4,7 +4,7 @@
 
     python3 tools/program_digests.py BUILD_DIR PROGRAM...
 
-The git revision that a program tells, and so its build id, is another after each commit: neither counts. A program that is
+The git revision that a program prints, and so its build id, is another after each commit: neither counts. A program that is
 not there has no line.
 """
 import hashlib

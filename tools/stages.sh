@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# stages.sh - sourced by check: runs its stages, tells of each in a line, and counts.
+# stages.sh - sourced by check: runs its stages, reports each in a line, and counts.
 #
 # A stage is a shell function of that name; what it prints goes to $logs/NAME.log. The caller has $logs, a folder.
 
@@ -47,8 +47,8 @@ ctest_beside_load() {
   return $status
 }
 
-# tell_stage NAME STATUS SECONDS: one line a stage; ctest stages count their tests, others count as one.
-tell_stage() {
+# report_stage NAME STATUS SECONDS: one line a stage; ctest stages count their tests, others count as one.
+report_stage() {
   local name=$1 status=$2 seconds=$3 log="$logs/$1.log" good bad skipped flaky
   # "100% tests passed, 0 tests failed out of 123"
   read -r bad good < <(sed -n 's/.* \([0-9]*\) tests failed out of \([0-9]*\).*/\1 \2/p' "$log" |
@@ -78,16 +78,16 @@ cpu_seconds() { tr ' ' '\n' <"$1" | awk -F '[ms]' '{sum += 60 * $1 + $2} END {pr
 # run_stage NAME: its function, its output to its log; then one line. ${ended[NAME]} is its status.
 declare -A ended
 run_stage() {
-  local start=$SECONDS status told
+  local start=$SECONDS status report
   [ -t 1 ] && [ -z "${is_beside:-}" ] && printf '%s ...\r' "$1"
   # shellcheck disable=SC2064  # that name, wherever the stage ends
   (set -e; trap "times >'$logs/$1.times'; flock --unlock 9" EXIT; one_of_many; "$1") >"$logs/$1.log" 2>&1 9>"$logs/alone.lock" &
   wait $!  # ends when the trap is called, too
   status=$?
   ended[$1]=$status
-  told=$(tell_stage "$1" $status $((SECONDS - start)))
+  report=$(report_stage "$1" $status $((SECONDS - start)))
   [ -t 1 ] && printf '\033[K'
-  printf '%s\n' "$told"  # in one piece: a stage beside it may print now
+  printf '%s\n' "$report"  # in one piece: a stage beside it may print now
 }
 
 # after_build COMMAND...: what a stage builds where the stage build has not run; where that has failed, it fails
@@ -140,8 +140,8 @@ descendants() {
 }
 
 begin_counts() { counts=$(mktemp) && touch "$counts.flaky" && trap 'rm -f "$counts" "$counts.flaky"' EXIT; }
-# tell_counts NAME...: what was flaky, and the sum; fails if a test failed, or if one of these stages told nothing
-tell_counts() {
+# report_counts NAME...: what was flaky, and the sum; fails if a test failed, or if one of these stages has no result
+report_counts() {
   local name
   for name in "$@"; do
     grep -q "^$name " "$counts" || { echo "$name did not end: it counts as failed"; echo "$name 0 1" >>"$counts"; }

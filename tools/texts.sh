@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # texts.sh - sourced by check: its stages that read the tree as text, format and layering.
 #
-# What judges a file by itself reads those that have changed since it passed (changed.sh); a rule of the whole tree
+# What checks a file by itself reads those that have changed since it passed (changed.sh); a rule of the whole tree
 # reads all. The caller has $root, $again and a function `tracked`: git in $root.
 
 sources() { find "$root"/{firmware,hal,host,model,tests,tools} \
@@ -42,7 +42,7 @@ layering() {
   pass_stage layering
 }
 
-# A shell script is judged with those that it sources.
+# A shell script is checked with those that it sources.
 lint() {
   local shell python
   mapfile -d '' -t shell < <(shell_sources)
@@ -51,7 +51,7 @@ lint() {
   mapfile -t python < <(newer_of layering "${python[@]}")
   on_cores 8 shellcheck -x -S warning -- "${shell[@]}"
   on_cores 40 pyflakes3 -- "${python[@]}"
-  # not W504: the operator stands before the break here, as in the other languages
+  # not W504: the operator is before the break here, as in the other languages
   on_cores 40 pycodestyle --max-line-length=130 --ignore=W504 --show-source -- "${python[@]}" ||
     { echo "not in style: repair these lines by hand (PEP 8, 130 columns; a line breaks after its operator)"; return 1; }
 }

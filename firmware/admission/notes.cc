@@ -31,7 +31,7 @@ std::string open_organ_note(const model::scene::Scene& scene) {
   if (edges == 0) return {};
   return fmt::format(
       "{}: the organ is open, with {} boundary edges; beside the boundary of an open surface there "
-      "is no inside: a tool that comes in through a hole feels nothing until it has once been "
+      "is no inside: a tool that comes in through a hole gives no force until it has once been "
       "outside; tact-mesh MESH --close-holes closes it",
       scene.path, edges);
 }

@@ -66,7 +66,7 @@ std::string reach_note(const model::scene::Scene& scene) {
         scene.path, size_m, 2.0 * scene.limits.workspace_radius_m, remedy);
   if (scene.hand.path.size() < 2) return {};
   const double gap_m = least_gap_m(scene);
-  if (gap_m <= 1e-4) return {};  // a stroke of depth 0 just touches the surface
+  if (gap_m <= 1e-4) return {};  // a stroke of depth 0 ends at the surface
   return fmt::format(
       "{}: no stroke of the hand reaches the organ, {:.3g} mm are missing: change "
       "organ.position_m, "

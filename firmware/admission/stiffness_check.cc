@@ -17,7 +17,7 @@ using model::Error;
 
 /// Rounds down, so that a printed limit is itself accepted.
 double rounded_down(double value) {
-  // Four digits, as {:.4g} prints them; what is four digits already stays, whatever its last bit.
+  // Four digits, as {:.4g} prints them; a number of four digits stays, for any last bit.
   const double unit = std::pow(10.0, std::floor(std::log10(value)) - 3.0);
   return value > 0.0 ? unit * std::floor(value / unit * (1.0 + 1e-12)) : 0.0;
 }
@@ -87,9 +87,9 @@ double stiffest_sideways_N_per_m(const model::scene::Scene& scene,
   double most_N_per_m = 0.0;
   const auto ask = [&](const model::contact::SurfacePoint& place,
                        const model::contact::Axes& axes) {
-    const model::contact::TangentCompliance give = law.tangent_compliance(place, true, axes);
+    const model::contact::TangentCompliance compliance = law.tangent_compliance(place, true, axes);
     for (const model::contact::ProbeSphere& sphere : scene.tool.spheres) {
-      const double compliance_m_per_N = give.at(sphere.radius_m).least_eigenvalue();
+      const double compliance_m_per_N = compliance.at(sphere.radius_m).least_eigenvalue();
       if (compliance_m_per_N > 0.0) most_N_per_m = std::max(most_N_per_m, 1.0 / compliance_m_per_N);
     }
   };
@@ -197,7 +197,7 @@ model::Result<StiffnessMargin> check_renderable(const model::scene::Scene& scene
   // A device that does not report its damping cannot be checked, so it is refused.
   if (!device.at_tool)
     return Error{fmt::format(
-        "device {} does not tell its damping at the tool: fill DeviceInfo::at_tool", device.name)};
+        "device {} does not state its damping at the tool: fill DeviceInfo::at_tool", device.name)};
   const auto spheres = static_cast<double>(scene.tool.spheres.size());
   const double damping_Ns_per_m = tissue.law().damping_Ns_per_m();
   const Demand demand{

@@ -12,7 +12,7 @@
 
 #include "firmware/loop/clock.h"
 #include "firmware/loop/controller.h"
-#include "hal/thread.h"
+#include "hal/threads/thread.h"
 #include "model/scene/scene_strokes.h"
 #include "model/time_ns.h"
 
@@ -130,7 +130,7 @@ model::Result<TimeMargin> check_budget(const model::scene::Scene& scene,
   margin.tail_counts = hard_real_time.has_value();
   margin.budget_us = scene.tolerance ? scene.tolerance->tick_budget_us : 0.5e6 / scene.rate_Hz;
   // In a separate thread, which keeps its priority, core and flushed denormals to itself.
-  auto thread = hal::start_thread("tact-budget", [&] {
+  auto thread = hal::threads::start_thread("tact-budget", [&] {
     std::vector<pc::Shortfall> known;  // probe_rt_threads has reported them
     if (hard_real_time) pc::enter_rt_thread(*hard_real_time, known);
     pc::flush_denormals();

@@ -23,7 +23,7 @@ BlackBox::BlackBox(BlackBoxRun run, double rate_Hz, double frame_rate_Hz)
 model::Result<std::unique_ptr<BlackBox>> BlackBox::make(BlackBoxRun run, double rate_Hz,
                                                         double frame_rate_Hz) {
   std::unique_ptr<BlackBox> box(new BlackBox(std::move(run), rate_Hz, frame_rate_Hz));
-  auto thread = hal::start_thread("tact-box", [&box = *box] { box.keep_writing(); });
+  auto thread = hal::threads::start_thread("tact-box", [&box = *box] { box.keep_writing(); });
   if (!thread) return thread.error();
   box->writer_ = std::move(*thread);
   return box;
@@ -48,7 +48,7 @@ void BlackBox::add(const protocol::LoggedTick& tick) {
   before_ = fault;
 }
 
-void BlackBox::stands(model::Fault fault) {
+void BlackBox::report_fault(model::Fault fault) {
   if (fault == model::Fault::kNone || before_ != model::Fault::kNone) return;
   // The loop no longer ticks, so the file does not wait. before_: each fault is recorded once.
   before_ = waiting_ = fault;

@@ -16,7 +16,7 @@
 #include "firmware/black_box/black_box_file.h"
 #include "firmware/black_box/newest_ones.h"
 #include "firmware/telemetry/telemetry.h"
-#include "hal/thread.h"
+#include "hal/threads/thread.h"
 
 namespace tact::firmware::black_box {
 
@@ -34,7 +34,7 @@ class BlackBox final : public telemetry::Recorder {
   void add(const protocol::LoggedTick& tick) override;
   void add(const protocol::Frame& frame) override { frames_.add(frame); }
   void add_variant(const std::string& chunk) override { variants_ += chunk; }
-  void stands(model::Fault fault) override;
+  void report_fault(model::Fault fault) override;
   /// Starts to write the pending file, once its 0.25 s have passed.
   void work() override;
   /// Writes the pending file, if any.
@@ -67,7 +67,7 @@ class BlackBox final : public telemetry::Recorder {
   std::atomic<bool> ending_{false};
   mutable std::mutex reported_mutex_;  // the loop never takes it
   std::vector<std::string> news_, files_;
-  hal::Thread writer_;  // last: it uses the others
+  hal::threads::Thread writer_;  // last: it uses the others
 };
 
 }  // namespace tact::firmware::black_box

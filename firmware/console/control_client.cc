@@ -24,7 +24,8 @@ using model::Result;
 // Chosen: a running tactd answers at once.
 constexpr timeval kTimeout{.tv_sec = 5, .tv_usec = 0};
 
-/// A connected socket; -1: nobody listens, the peer is not trusted, or (errno EACCES) a refusal.
+/// A connected socket; -1: no process listens, the peer is not trusted, or (errno EACCES) a
+/// refusal.
 int connect_to(const std::string& path) {
   const auto address = model::io::socket_address(path);
   const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);

@@ -44,10 +44,10 @@ std::vector<ControlName> controls_that_end_in(const std::string& folder, std::st
 }
 
 /// The socket file of a killed process remains: only a connection attempt shows that it is dead.
-bool nobody_listens(const std::string& path) {
+bool is_abandoned(const std::string& path) {
   const auto address = model::io::socket_address(path);
   const int probe = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  // Only ECONNREFUSED means that nobody listens; a full queue, for example, means a live process.
+  // Only ECONNREFUSED means that no process listens; a full queue means a live process.
   const bool dead = address && probe >= 0 &&
                     connect(probe, model::io::plain(*address), sizeof *address) != 0 &&
                     errno == ECONNREFUSED;
@@ -67,7 +67,7 @@ std::vector<ControlName> find_controls(const std::string& folder, const std::str
 
 void remove_dead_controls(const std::string& folder) {
   for (const ControlName& control : controls_that_end_in(folder, kEnd))
-    if (nobody_listens(control.path)) unlink(control.path.c_str());
+    if (is_abandoned(control.path)) unlink(control.path.c_str());
 }
 
 }  // namespace tact::firmware::console

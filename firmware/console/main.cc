@@ -23,7 +23,7 @@ tact::model::Result<std::string> folder_of(const std::string& scene_path) {
   using tact::firmware::console::find_controls;
   auto own = tact::model::io::runtime_directory();
   const bool is_own = own && !find_controls(*own, scene_path).empty();
-  // One that may not be read has its reason told (control_client.h).
+  // One that may not be read has its reason in the message (control_client.h).
   const bool closed = access(kServices, R_OK) != 0 && errno == EACCES;
   if (!is_own && (closed || !find_controls(kServices, scene_path).empty()))
     return std::string(kServices);
@@ -63,7 +63,7 @@ int main(int argc, char** argv) {
                  "arm: force, after the words \"ready, force is off\"; disarm: no force, and ready "
                  "to be armed again; reset: leave a stop whose cause is gone; stop: force to zero, "
                  "then end; status: how it is; set: other numbers of the law, used as soon as the "
-                 "tool touches nothing; event: a number into the record of the next tick")
+                 "tool is out of contact; event: a number into the record of the next tick")
       ->required()
       ->check(CLI::IsMember({"arm", "disarm", "reset", "stop", "status", "set", "event"}));
   std::vector<std::string> numbers;

@@ -38,7 +38,7 @@ void ignore(int signal) {
 
 }  // namespace
 
-void outlive_stray_signals() {
+void ignore_other_signals() {
   const auto is_one_of = [](int signal, const auto& some) {
     return std::ranges::find(some, signal) != some.end();
   };

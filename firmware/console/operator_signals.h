@@ -11,7 +11,7 @@ namespace tact::firmware::console {
 /// Call first in main: ignores signals that would otherwise end or halt the process while the loop
 /// renders force. A write beyond the file size limit becomes an error (XFSZ). A crash still ends
 /// the process, because the kernel does not let it ignore that signal.
-void outlive_stray_signals();
+void ignore_other_signals();
 
 class OperatorSignals {
  public:

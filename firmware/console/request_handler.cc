@@ -80,7 +80,7 @@ Answer RequestHandler::status() const {
   const std::string at =
       fmt::format("{}, {:.1f} ms ago", view_.status(), 1e-6 * static_cast<double>(age_ns));
   if (age_ns < kSilence_ns) return {.done = true, .message = at};
-  return {.done = false, .message = "not answered: the loop stands still; " + at};
+  return {.done = false, .message = "not answered: the loop has stopped; " + at};
 }
 
 Answer RequestHandler::do_word(const std::string& word, bool too_early) {
@@ -190,7 +190,7 @@ std::unique_ptr<ControlSocket> open_control(const std::string& scene_path,
   auto control = folder ? ControlSocket::open(control_path(*folder, scene_path, getpid()))
                         : model::Result<std::unique_ptr<ControlSocket>>(folder.error());
   if (control) return std::move(*control);
-  view.report(fmt::format("tactctl does not reach this tactd, so nobody can arm it: {}",
+  view.report(fmt::format("tactctl does not reach this tactd, so it cannot be armed: {}",
                           control.error().message));
   return nullptr;
 }

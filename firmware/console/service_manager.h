@@ -2,8 +2,8 @@
 // service_manager.h - reports to the systemd that started tactd, by sd_notify(3): text to the
 // socket that NOTIFY_SOCKET names. Without that socket nothing is sent.
 //
-// A service never arms itself, because at boot or at a restart after a crash nobody holds the tool:
-// even the simulated device then waits for an operator.
+// A service never arms itself, because at boot or at a restart after a crash no hand holds the
+// tool: even the simulated device then waits for an operator.
 #pragma once
 
 #include <sys/socket.h>

@@ -56,12 +56,7 @@ loop::TickOutput Haptics::tick(const hal::Sample& sample, std::uint32_t skipped_
 }
 
 std::optional<model::Error> Haptics::set(const std::vector<std::string>& numbers) {
-  const auto key_of = [](const std::string& set) { return set.substr(0, set.find('=')); };
-  std::vector<std::string> all = numbers_;
-  for (const std::string& number : numbers) {
-    std::erase_if(all, [&](const auto& old) { return key_of(old) == key_of(number); });
-    all.push_back(number);
-  }
+  auto all = model::scene::merged(numbers_, numbers);
   auto variant = make_variant(*scene_, all);
   if (!variant) return variant.error();
   numbers_ = std::move(all);

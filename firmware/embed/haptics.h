@@ -2,7 +2,7 @@
 // haptics.h - a scene in a program with its own loop: from a sample of the tool to the force that
 // the device may get.
 //
-//     auto haptics = tact::Haptics::make("liver.toml");
+//     auto haptics = std::move(*tact::Haptics::make("liver.toml"));
 //     haptics->arm();                                      // on the request of a person
 //     const auto out = haptics->tick(sample);              // once a period, out.written
 //     haptics->set({"elastic.youngs_modulus_Pa=4000"});    // used when the tool is out of contact

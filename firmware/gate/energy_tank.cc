@@ -48,8 +48,8 @@ void EnergyTank::observe(const model::Tool& tool, bool fresh, double periods,
   turned_rad_ = is_placed_ ? share * turn_rad(orientation_, tool.orientation) : Vec3{};
   // GT-1   E <- min(2 B, E - F . dx - T . da), then back towards B
   const double budget_J = settings_.budget_J;
-  const double given_J = dot(held_.force_N, moved_m_) + dot(held_.torque_Nm, turned_rad_);
-  const double left_J = level_J_ - given_J;
+  const double given_energy_J = dot(held_.force_N, moved_m_) + dot(held_.torque_Nm, turned_rad_);
+  const double left_J = level_J_ - given_energy_J;
   level_J_ = left_J > 2.0 * budget_J ? 2.0 * budget_J : left_J;  // NaN is kept: is_overdrawn()
   if (level_J_ < budget_J)
     level_J_ = std::fmin(budget_J, level_J_ + settings_.recovery_W * settings_.period_s * periods_);

@@ -27,8 +27,6 @@
 // by less than the energy of that tick; the gate then latches in the same tick.
 #pragma once
 
-#include <cstdint>
-
 #include "firmware/gate/limiter.h"
 
 namespace tact::firmware::gate {
@@ -57,7 +55,7 @@ class EnergyTank {
   /// The energy in the tank is negative.
   bool is_overdrawn() const RT_SAFE;
   /// Energy given minus energy taken, J; not below -B.
-  double given_J() const RT_SAFE { return settings_.budget_J - level_J_; }
+  double given_energy_J() const RT_SAFE { return settings_.budget_J - level_J_; }
   /// Without force on the hand: E = B. Permits no force before the next fresh sample.
   void refill() RT_SAFE {
     level_J_ = settings_.budget_J;

@@ -50,8 +50,8 @@ ThermalLimit thermal_limit(const model::Limits& limits, double peak, double peri
 }
 
 // The first fault of a tick is kept: it is the cause of the others.
-void latch_first(Fault fault, LimitedForce& verdict) RT_SAFE {
-  if (!latches(verdict.fault)) verdict.fault = fault;
+void latch_first(Fault fault, LimitedForce& limited) RT_SAFE {
+  if (!latches(limited.fault)) limited.fault = fault;
 }
 
 }  // namespace
@@ -77,32 +77,32 @@ Gate::Gate(const model::Limits& limits, double period_s, double force_share)
 
 LimitedForce Gate::limit(const GateInput& input) RT_SAFE {
   const double periods = 1.0 + input.skipped_periods;  // since the last write
-  LimitedForce verdict{.wrench = input.wanted};
+  LimitedForce limited{.wrench = input.wanted};
   book_last_write(input, periods);
   // Order as in gate.h; no stage breaks the limit of an earlier one (README.md).
-  check_finite(input, verdict);
-  ramp_down_missed_samples(input, verdict);
-  check_energy(input.armed, verdict);
-  if (!check_armed(input.armed, verdict)) return without_force(verdict);
-  ramp_down_outside(input.tool, periods, verdict);
+  check_finite(input, limited);
+  ramp_down_missed_samples(input, limited);
+  check_energy(input.armed, limited);
+  if (!check_armed(input.armed, limited)) return without_force(limited);
+  ramp_down_outside(input.tool, periods, limited);
   const Permitted permitted = permitted_now();
-  keep_passive(permitted, verdict);
-  limit_magnitudes(permitted.thermal, verdict);
-  limit_slew(permitted.all, periods, verdict);
-  limit_power(input.tool, permitted.all, periods, verdict);
-  ramp_up(verdict);
-  check_power(input.tool, verdict);
-  if (latches(verdict.fault)) return without_force(verdict);
-  written_ = verdict.wrench;
-  return verdict;
+  keep_passive(permitted, limited);
+  limit_magnitudes(permitted.thermal, limited);
+  limit_slew(permitted.all, periods, limited);
+  limit_power(input.tool, permitted.all, periods, limited);
+  ramp_up(limited);
+  check_power(input.tool, limited);
+  if (latches(limited.fault)) return without_force(limited);
+  written_ = limited.wrench;
+  return limited;
 }
 
-void Gate::note(Stage stage, Fault reason, LimitedForce& verdict) RT_SAFE {
+void Gate::note(Stage stage, Fault reason, LimitedForce& limited) RT_SAFE {
   ++counter_[static_cast<std::size_t>(stage)];
   if (latches(reason))
-    latch_first(reason, verdict);
+    latch_first(reason, limited);
   else
-    verdict.acting = reason;
+    limited.acting = reason;
 }
 
 // Adds the last written force to the energy tank and to the thermal model: it acted until now.
@@ -112,46 +112,46 @@ void Gate::book_last_write(const GateInput& input, double periods) RT_SAFE {
   thermal_torque_.add(written_.torque_Nm, periods);
 }
 
-void Gate::check_finite(const GateInput& input, LimitedForce& verdict) RT_SAFE {
-  if (!is_finite(input.tool)) note(Stage::kFinite, Fault::kSampleNotFinite, verdict);
+void Gate::check_finite(const GateInput& input, LimitedForce& limited) RT_SAFE {
+  if (!is_finite(input.tool)) note(Stage::kFinite, Fault::kSampleNotFinite, limited);
   if (is_finite(input.wanted)) return;
-  note(Stage::kFinite, Fault::kForceNotFinite, verdict);
-  verdict.wrench = {};
+  note(Stage::kFinite, Fault::kForceNotFinite, limited);
+  limited.wrench = {};
 }
 
 // Skipped periods count as missed samples, unless this tick has a fresh sample.
-void Gate::ramp_down_missed_samples(const GateInput& input, LimitedForce& verdict) RT_SAFE {
+void Gate::ramp_down_missed_samples(const GateInput& input, LimitedForce& limited) RT_SAFE {
   // Ramps down by the samples missed since the last tick, without the first of a row.
   const std::int64_t held = std::max<std::int64_t>(missed_, 1);  // at the first the force is held
   const bool missing = !input.fresh && input.armed;  // before arming a device may start slowly
   missed_ = missing ? missed_ + 1 + input.skipped_periods : 0;
   const double level = fresh_.step(missed_ < 2, period_s_, static_cast<double>(missed_ - held));
   if (missed_ > 0 || level < 1.0)
-    note(Stage::kFresh, missed_ == 1 ? Fault::kSampleHeld : Fault::kSampleStale, verdict);
-  if (missed_ >= kLostAfter) latch_first(Fault::kDeviceLost, verdict);
-  verdict.wrench = level * verdict.wrench;
+    note(Stage::kFresh, missed_ == 1 ? Fault::kSampleHeld : Fault::kSampleStale, limited);
+  if (missed_ >= kLostAfter) latch_first(Fault::kDeviceLost, limited);
+  limited.wrench = level * limited.wrench;
 }
 
-void Gate::check_energy(bool armed, LimitedForce& verdict) RT_SAFE {
-  if (armed && tank_.is_overdrawn()) note(Stage::kPassivity, Fault::kEnergyOverdrawn, verdict);
+void Gate::check_energy(bool armed, LimitedForce& limited) RT_SAFE {
+  if (armed && tank_.is_overdrawn()) note(Stage::kPassivity, Fault::kEnergyOverdrawn, limited);
 }
 
-bool Gate::check_armed(bool armed, LimitedForce& verdict) RT_SAFE {
+bool Gate::check_armed(bool armed, LimitedForce& limited) RT_SAFE {
   // No force on the hand: full budget, and motion before arming does not count.
   if (!armed) tank_.refill();
-  if (armed && !latches(verdict.fault)) return true;
-  note(Stage::kArmed, Fault::kNotArmed, verdict);
+  if (armed && !latches(limited.fault)) return true;
+  note(Stage::kArmed, Fault::kNotArmed, limited);
   return false;
 }
 
 void Gate::ramp_down_outside(const model::Tool& tool, double periods,
-                             LimitedForce& verdict) RT_SAFE {
+                             LimitedForce& limited) RT_SAFE {
   const double inside = workspace_.step(is_inside(limits_, tool.position_m), period_s_, periods);
   const double slow = speed_.step(is_slow(limits_, tool), period_s_, periods);
-  if (slow < 1.0) note(Stage::kWorkspace, Fault::kTooFast, verdict);
+  if (slow < 1.0) note(Stage::kWorkspace, Fault::kTooFast, limited);
   // If both act, the workspace is reported.
-  if (inside < 1.0) note(Stage::kWorkspace, Fault::kOutsideWorkspace, verdict);
-  verdict.wrench = inside * slow * verdict.wrench;
+  if (inside < 1.0) note(Stage::kWorkspace, Fault::kOutsideWorkspace, limited);
+  limited.wrench = inside * slow * limited.wrench;
 }
 
 Gate::Permitted Gate::permitted_now() const RT_SAFE {
@@ -166,40 +166,40 @@ Gate::Permitted Gate::permitted_now() const RT_SAFE {
   return {.energy = {passive_N, passive_Nm}, .thermal = {thermal_N, thermal_Nm}, .all = all};
 }
 
-void Gate::keep_passive(const Permitted& permitted, LimitedForce& verdict) RT_SAFE {
+void Gate::keep_passive(const Permitted& permitted, LimitedForce& limited) RT_SAFE {
   const Magnitude &energy = permitted.energy, &thermal = permitted.thermal;
-  Wrench& w = verdict.wrench;
+  Wrench& w = limited.wrench;
   // The smaller limit acts and is reported: energy here, motor temperature in the next stage.
   const bool damped = tank_.damp(w);
   const bool braked =
       energy.force_N < thermal.force_N && limit_magnitude(w.force_N, energy.force_N);
   const bool turn_braked =
       energy.torque_Nm < thermal.torque_Nm && limit_magnitude(w.torque_Nm, energy.torque_Nm);
-  if (damped || braked || turn_braked) note(Stage::kPassivity, Fault::kEnergyLimited, verdict);
+  if (damped || braked || turn_braked) note(Stage::kPassivity, Fault::kEnergyLimited, limited);
 }
 
-void Gate::limit_magnitudes(const Magnitude& thermal, LimitedForce& verdict) RT_SAFE {
-  if (limit_magnitude(verdict.wrench.force_N, thermal.force_N))
+void Gate::limit_magnitudes(const Magnitude& thermal, LimitedForce& limited) RT_SAFE {
+  if (limit_magnitude(limited.wrench.force_N, thermal.force_N))
     note(Stage::kMagnitude,
          thermal.force_N < force_limit_N_ ? Fault::kContinuousLimited : Fault::kForceLimited,
-         verdict);
-  if (limit_magnitude(verdict.wrench.torque_Nm, thermal.torque_Nm))
+         limited);
+  if (limit_magnitude(limited.wrench.torque_Nm, thermal.torque_Nm))
     note(Stage::kMagnitude,
          thermal.torque_Nm < torque_limit_Nm_ ? Fault::kContinuousLimited : Fault::kTorqueLimited,
-         verdict);
+         limited);
 }
 
-void Gate::limit_slew(const Magnitude& most, double periods, LimitedForce& verdict) RT_SAFE {
-  if (step_towards(verdict.wrench, periods, most)) note(Stage::kSlew, Fault::kSlewLimited, verdict);
+void Gate::limit_slew(const Magnitude& most, double periods, LimitedForce& limited) RT_SAFE {
+  if (step_towards(limited.wrench, periods, most)) note(Stage::kSlew, Fault::kSlewLimited, limited);
 }
 
 // Removing the force along the motion can turn the force: the slew limit is applied again.
 void Gate::limit_power(const model::Tool& tool, const Magnitude& most, double periods,
-                       LimitedForce& verdict) RT_SAFE {
-  Wrench& w = verdict.wrench;
+                       LimitedForce& limited) RT_SAFE {
+  Wrench& w = limited.wrench;
   if (limit_surplus(w, tool.velocity_mps, tool.angular_velocity_radps,
                     kPowerAim * limits_.power_W)) {
-    note(Stage::kPower, Fault::kPowerLimited, verdict);
+    note(Stage::kPower, Fault::kPowerLimited, limited);
     step_towards(w, periods, most);
   }
   // Reference for the slew of the next tick. The change by the ramp is not part of it:
@@ -215,25 +215,25 @@ bool Gate::step_towards(Wrench& w, double periods, const Magnitude& most) const 
          slow;
 }
 
-void Gate::ramp_up(LimitedForce& verdict) RT_SAFE {
+void Gate::ramp_up(LimitedForce& limited) RT_SAFE {
   const double ramp = ramp_.step(true, period_s_);
-  if (ramp < 1.0) note(Stage::kRamp, Fault::kRampingUp, verdict);
-  verdict.wrench = ramp * verdict.wrench;
+  if (ramp < 1.0) note(Stage::kRamp, Fault::kRampingUp, limited);
+  limited.wrench = ramp * limited.wrench;
 }
 
 // Checks the force after the ramp, which would be written. NaN latches.
-void Gate::check_power(const model::Tool& tool, LimitedForce& verdict) RT_SAFE {
-  if (!(power_W(verdict.wrench, tool) <= limits_.power_W))
-    note(Stage::kPower, Fault::kPowerExceeded, verdict);
+void Gate::check_power(const model::Tool& tool, LimitedForce& limited) RT_SAFE {
+  if (!(power_W(limited.wrench, tool) <= limits_.power_W))
+    note(Stage::kPower, Fault::kPowerExceeded, limited);
 }
 
 // Zero force now; later forces ramp up from zero.
-LimitedForce Gate::without_force(LimitedForce verdict) RT_SAFE {
+LimitedForce Gate::without_force(LimitedForce limited) RT_SAFE {
   before_ramp_ = {};
   ramp_.set(0.0);
   written_ = {};
-  verdict.wrench = {};
-  return verdict;
+  limited.wrench = {};
+  return limited;
 }
 
 }  // namespace tact::firmware::gate

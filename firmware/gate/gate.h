@@ -89,7 +89,7 @@ class Gate {
   double continuous_force_N() const RT_SAFE { return thermal_force_.continuous(); }
   double energy_budget_J() const RT_SAFE { return limits_.energy_J; }
   /// Energy given minus energy taken since arming.
-  double given_energy_J() const RT_SAFE { return tank_.given_J(); }
+  double given_energy_J() const RT_SAFE { return tank_.given_energy_J(); }
   double rms_force_N() const RT_SAFE { return thermal_force_.rms(); }
   double speed_limit_mps() const RT_SAFE { return limits_.speed_mps; }
   double turn_limit_radps() const RT_SAFE { return limits_.turn_radps; }
@@ -104,25 +104,25 @@ class Gate {
     Magnitude energy, thermal, all;
   };
 
-  void note(Stage stage, Fault reason, LimitedForce& verdict) RT_SAFE;
+  void note(Stage stage, Fault reason, LimitedForce& limited) RT_SAFE;
   // One function for each stage; passivity and power also have a check that latches.
-  void check_finite(const GateInput& input, LimitedForce& verdict) RT_SAFE;
-  void ramp_down_missed_samples(const GateInput& input, LimitedForce& verdict) RT_SAFE;
-  void check_energy(bool armed, LimitedForce& verdict) RT_SAFE;
-  bool check_armed(bool armed, LimitedForce& verdict) RT_SAFE;  // false: no force
-  void ramp_down_outside(const model::Tool& tool, double periods, LimitedForce& verdict) RT_SAFE;
-  void keep_passive(const Permitted& permitted, LimitedForce& verdict) RT_SAFE;
-  void limit_magnitudes(const Magnitude& thermal, LimitedForce& verdict) RT_SAFE;
-  void limit_slew(const Magnitude& most, double periods, LimitedForce& verdict) RT_SAFE;
+  void check_finite(const GateInput& input, LimitedForce& limited) RT_SAFE;
+  void ramp_down_missed_samples(const GateInput& input, LimitedForce& limited) RT_SAFE;
+  void check_energy(bool armed, LimitedForce& limited) RT_SAFE;
+  bool check_armed(bool armed, LimitedForce& limited) RT_SAFE;  // false: no force
+  void ramp_down_outside(const model::Tool& tool, double periods, LimitedForce& limited) RT_SAFE;
+  void keep_passive(const Permitted& permitted, LimitedForce& limited) RT_SAFE;
+  void limit_magnitudes(const Magnitude& thermal, LimitedForce& limited) RT_SAFE;
+  void limit_slew(const Magnitude& most, double periods, LimitedForce& limited) RT_SAFE;
   void limit_power(const model::Tool& tool, const Magnitude& most, double periods,
-                   LimitedForce& verdict) RT_SAFE;
-  void ramp_up(LimitedForce& verdict) RT_SAFE;
-  void check_power(const model::Tool& tool, LimitedForce& verdict) RT_SAFE;
+                   LimitedForce& limited) RT_SAFE;
+  void ramp_up(LimitedForce& limited) RT_SAFE;
+  void check_power(const model::Tool& tool, LimitedForce& limited) RT_SAFE;
 
   void book_last_write(const GateInput& input, double periods) RT_SAFE;
   Permitted permitted_now() const RT_SAFE;
   bool step_towards(Wrench& w, double periods, const Magnitude& most) const RT_SAFE;
-  LimitedForce without_force(LimitedForce verdict) RT_SAFE;
+  LimitedForce without_force(LimitedForce limited) RT_SAFE;
 
   model::Limits limits_;
   double period_s_;

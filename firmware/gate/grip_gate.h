@@ -59,13 +59,13 @@ class GripGate {
   }
 
   LimitedGrip limit(const GripInput& in) RT_SAFE {
-    const LimitedForce verdict = gate_.limit(
+    const LimitedForce limited = gate_.limit(
         {.wanted = {.force_N = {in.wanted_N, 0.0, 0.0}, .torque_Nm = {}},
          .tool = {.position_m = {in.gap_m, 0.0, 0.0}, .velocity_mps = {in.speed_mps, 0.0, 0.0}},
          .fresh = in.fresh,
          .armed = in.armed,
          .skipped_periods = in.skipped_periods});
-    return {.force_N = verdict.wrench.force_N.x, .acting = verdict.acting, .fault = verdict.fault};
+    return {.force_N = limited.wrench.force_N.x, .acting = limited.acting, .fault = limited.fault};
   }
 
  private:

@@ -35,7 +35,7 @@ std::string beside_this_program() {
 
 model::Error refused(const std::string& program, const std::string& why) {
   return model::Error{
-      fmt::format("{} cannot be started ({}), and nobody would zero the device if this program "
+      fmt::format("{} cannot be started ({}), and nothing would zero the device if this program "
                   "died: build or install it again, both together",
                   program, why)};
 }
@@ -71,7 +71,7 @@ model::Result<std::unique_ptr<Guardian>> Guardian::start(const hal::ShutdownFram
   core.rlim_cur = std::min<rlim_t>(core.rlim_max, 1);
   setrlimit(RLIMIT_CORE, &core);
   if (const auto why = guardian->spawn(program)) return refused(program, std::strerror(*why));
-  auto thread = hal::start_thread(
+  auto thread = hal::threads::start_thread(
       "tact-guard", [self = guardian.get(), settings] { self->keep(settings.priority); });
   if (!thread) return thread.error();
   guardian->thread_ = std::move(*thread);

@@ -20,7 +20,7 @@
 
 #include "firmware/guardian/liveness_lock.h"
 #include "hal/shutdown_frames.h"
-#include "hal/thread.h"
+#include "hal/threads/thread.h"
 #include "model/result.h"
 
 namespace tact::firmware::guardian {
@@ -59,7 +59,7 @@ class Guardian {
   pid_t process_ = -1;
   std::binary_semaphore held_{0};
   std::atomic<bool> lost_{false};
-  hal::Thread thread_;
+  hal::threads::Thread thread_;
 };
 
 }  // namespace tact::firmware::guardian

@@ -111,7 +111,7 @@ int stand_guard(int socket) {
   auto liveness = taken ? LivenessLock::take(taken->liveness_fd)
                         : model::Result<LivenessLock>(model::Error{"no orders"});
   if (!liveness) {
-    write_all(STDERR_FILENO, "tact-guardian: tactd starts this program; nobody else can\n");
+    write_all(STDERR_FILENO, "tact-guardian: tactd starts this program; do not start it by hand\n");
     return 2;
   }
   // In this order: calls for files and priority come before the filter, which would refuse

@@ -138,17 +138,17 @@ TickOutput Controller::limit(const TickInput& input) RT_SAFE {
   hal::Tool handle = input.sample.tool;
   handle.position_m = handle.position_m - input.clutch_shift_m;
   const bool is_coupled = input.clutch == ClutchState::kCoupled;
-  const gate::LimitedForce verdict =
+  const gate::LimitedForce limited =
       gate_.limit({.wanted = is_coupled ? rendered_.wrench : model::Wrench{},
                    .tool = handle,
                    .fresh = input.sample.fresh,
                    .armed = supervisor_.armed(),
                    .skipped_periods = input.skipped_periods});
-  supervisor_.trip(verdict.fault);
-  acting_ = verdict.acting;
-  const Fault acting = verdict.acting != Fault::kNone ? verdict.acting : grip.acting;
+  supervisor_.trip(limited.fault);
+  acting_ = limited.acting;
+  const Fault acting = limited.acting != Fault::kNone ? limited.acting : grip.acting;
   newest_ = {.wanted = rendered_.wrench,
-             .written = verdict.wrench,
+             .written = limited.wrench,
              .state = supervisor_.state(),
              .limit = find_limit(acting, is_coupled),
              .fault = supervisor_.fault(),
@@ -156,7 +156,7 @@ TickOutput Controller::limit(const TickInput& input) RT_SAFE {
              .rms_force_N = gate_.rms_force_N(),
              .contact_losses = contact_losses_,
              .wanted_grip_N = grip_gate_ ? jaw_force_N_ : 0.0,
-             .written_grip_N = latches(verdict.fault) ? 0.0 : grip.force_N};
+             .written_grip_N = latches(limited.fault) ? 0.0 : grip.force_N};
   return newest_;
 }
 

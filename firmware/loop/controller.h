@@ -13,7 +13,7 @@
 #include "firmware/loop/overrun_counter.h"
 #include "firmware/loop/supervisor.h"
 #include "hal/device.h"
-#include "hal/latest_slot.h"
+#include "hal/threads/latest_slot.h"
 #include "model/contact/contact.h"
 
 namespace tact::firmware::loop {
@@ -44,7 +44,7 @@ struct TickOutput {
   double wanted_grip_N = 0.0, written_grip_N = 0.0;  // on the fingers, opening positive
 };
 
-using ShapeSlot = hal::LatestSlot<model::contact::PatchShape>;
+using ShapeSlot = hal::threads::LatestSlot<model::contact::PatchShape>;
 
 class Controller {
  public:

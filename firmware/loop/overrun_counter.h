@@ -20,9 +20,9 @@ class OverrunCounter {
  public:
   OverrunCounter(bool hard_real_time, double period_s)
       : hard_real_time_(hard_real_time),
-        skipped_at_once_(hard_real_time
-                             ? kSkippedAtOnce
-                             : static_cast<std::uint32_t>(std::lround(kPause_s / period_s))) {}
+        skipped_in_one_pause_(hard_real_time
+                                  ? kSkippedAtOnce
+                                  : static_cast<std::uint32_t>(std::lround(kPause_s / period_s))) {}
 
   /// Call once per tick, with the periods skipped before it. True: stop.
   bool step(std::uint32_t skipped_periods) RT_SAFE {
@@ -30,17 +30,17 @@ class OverrunCounter {
       late_in_a_row_ = 0;
     else if (late_in_a_row_ < kLateInARow)
       ++late_in_a_row_;
-    if (skipped_periods >= skipped_at_once_) return true;
+    if (skipped_periods >= skipped_in_one_pause_) return true;
     return late_in_a_row_ >= (hard_real_time_ ? kLateInARowHard : kLateInARow);
   }
 
  private:
   static constexpr std::uint32_t kSkippedAtOnce = 20;
-  static constexpr double kPause_s = 0.3;  // a held process: nobody knows what the hand does
+  static constexpr double kPause_s = 0.3;  // a held process: the motion of the hand is unknown
   static constexpr std::uint32_t kLateInARowHard = 20, kLateInARow = 100;
 
   bool hard_real_time_;
-  std::uint32_t skipped_at_once_;
+  std::uint32_t skipped_in_one_pause_;
   std::uint32_t late_in_a_row_ = 0;
 };
 

@@ -19,7 +19,7 @@ namespace tact::firmware::pc {
 enum class Verdict { kGreen, kRed, kUnknown };
 /// "green", "red", "unknown".
 const char* name_of(Verdict verdict);
-/// Green or red, and unknown where the files do not tell.
+/// Green or red, and unknown where the files do not say.
 constexpr Verdict verdict_of(bool known, bool good) {
   return !known ? Verdict::kUnknown : good ? Verdict::kGreen : Verdict::kRed;
 }

@@ -45,7 +45,7 @@ PcRow isolation_row(const PcQuestion& q) {
   const bool isolated = contains(cpu_list(q.files, "isolated"), q.core);
   return {.name = "isolated core",
           .verdict = verdict_of(known, isolated),
-          .found = !known ? "not told"
+          .found = !known ? "unknown"
                           : fmt::format("core {} is {}isolated", q.core, isolated ? "" : "not "),
           .why = "other programs run on the core of the loop; each costs it a switch and its cache",
           .remedy = boot_parameters(q)};
@@ -79,7 +79,7 @@ std::string name_interrupt(const PcFiles& files, const std::string& number) {
 PcRow interrupt_row(const PcQuestion& q) {
   PcRow row{.name = "interrupts",
             .verdict = Verdict::kUnknown,
-            .found = "not told",
+            .found = "unknown",
             .why =
                 "a device's interrupt goes before the loop, and its handler takes as long as its "
                 "driver likes",
@@ -162,7 +162,7 @@ PcRow sibling_row(const PcQuestion& q) {
   PcRow row{
       .name = "SMT sibling",
       .verdict = verdict_of(list.has_value(), siblings.empty()),
-      .found = !list ? "not told" : "the core is not shared",
+      .found = !list ? "unknown" : "the core is not shared",
       .why = "two hardware threads share one core's units: what runs beside the loop slows it",
       .remedy = "switch SMT off in the firmware (BIOS)"};
   if (siblings.empty()) return row;

@@ -2,9 +2,7 @@
 // Kernel, clock, and the limits and permissions of the process.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdlib>
-#include <limits>
 #include <sstream>
 
 #include "firmware/pc/pc_check.h"
@@ -46,7 +44,7 @@ PcRow kernel_row(const PcFiles& files) {
   const bool known = realtime || files.line("/proc/sys/kernel/version").has_value();
   return {.name = "kernel",
           .verdict = verdict_of(known, realtime),
-          .found = fmt::format("{}{}", release.value_or("not told"),
+          .found = fmt::format("{}{}", release.value_or("unknown"),
                                realtime ? ", PREEMPT_RT"
                                : known  ? ", not PREEMPT_RT"
                                         : ""),
@@ -65,7 +63,7 @@ PcRow machine_row(const PcFiles& files) {
   const auto* const container = model::io::container_of(files.root());
   return {.name = "machine",
           .verdict = verdict_of(cpu.has_value(), !guest),
-          .found = !cpu ? "not told"
+          .found = !cpu ? "unknown"
                         : fmt::format("{}{}{}",
                                       wsl              ? "WSL, a virtual machine"
                                       : guest && maker ? "a virtual machine of " + *maker
@@ -84,7 +82,7 @@ PcRow clock_row(const PcFiles& files) {
       files.line("/sys/devices/system/clocksource/clocksource0/current_clocksource");
   PcRow row{.name = "clock source",
             .verdict = Verdict::kUnknown,
-            .found = source.value_or("not told"),
+            .found = source.value_or("unknown"),
             .why =
                 "the loop reads the clock twice a tick; some clocks need a system call of "
                 "a microsecond for each",
@@ -107,7 +105,7 @@ PcRow throttling_row(const PcFiles& files) {
   const auto period = files.line("/proc/sys/kernel/sched_rt_period_us");
   PcRow row{.name = "RT throttling",
             .verdict = Verdict::kUnknown,
-            .found = "not told",
+            .found = "unknown",
             .why = "the kernel stops real-time threads that use up their share of a period",
             .remedy = "sudo sysctl kernel.sched_rt_runtime_us=950000"};
   if (!runtime || !period) return row;
@@ -129,7 +127,7 @@ PcRow priority_row(const PcFiles& files) {
   return {.name = "real-time priority",
           .verdict = verdict_of(free || !limit.empty(), enough),
           .found = free            ? "any (CAP_SYS_NICE)"
-                   : limit.empty() ? "not told"
+                   : limit.empty() ? "unknown"
                                    : fmt::format("up to {} of {}", limit, kHighestPriority),
           .why = kPriorityReason,
           .remedy = model::io::rights_remedy(files.root())};
@@ -142,7 +140,7 @@ PcRow memory_row(const PcFiles& files) {
   return {.name = "locked memory",
           .verdict = verdict_of(free || !limit.empty(), free || limit == "unlimited"),
           .found = free                   ? "any (CAP_IPC_LOCK)"
-                   : limit.empty()        ? "not told"
+                   : limit.empty()        ? "unknown"
                    : limit == "unlimited" ? limit
                                           : fmt::format("at most {} bytes", limit),
           .why = kMemoryReason,
@@ -154,7 +152,7 @@ PcRow time_limit_row(const PcFiles& files) {
   const std::string limit = soft_limit(files, "Max realtime timeout");
   return {.name = "real-time time limit",
           .verdict = verdict_of(!limit.empty(), limit == "unlimited"),
-          .found = limit.empty()          ? "not told"
+          .found = limit.empty()          ? "unknown"
                    : limit == "unlimited" ? "none"
                                           : fmt::format("{} us", limit),
           .why = "a real-time thread that runs so long without a sleep is killed without a word",

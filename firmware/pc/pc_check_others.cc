@@ -56,7 +56,7 @@ PcRow swap_row(const PcFiles& files) {
   const auto lines = swaps ? std::count(swaps->begin(), swaps->end(), '\n') : 0;
   return {.name = "swap",
           .verdict = verdict_of(swaps.has_value(), lines <= 1),
-          .found = !swaps      ? "not told"
+          .found = !swaps      ? "unknown"
                    : lines > 1 ? fmt::format("{} in use", lines - 1)
                                : "none",
           .why = "tactd locks its own memory; programs that swap keep disk, bus and kernel busy",
@@ -70,7 +70,7 @@ PcRow balancer_row(const PcFiles& files, const std::vector<Thread>& threads) {
                                 [](const Thread& t) { return t.name == "irqbalance"; });
   return {.name = "irqbalance",
           .verdict = verdict_of(known, !runs),
-          .found = !known ? "not told"
+          .found = !known ? "unknown"
                    : runs ? "it runs"
                           : "it does not run",
           .why = "it moves interrupts to the core of the loop again",
@@ -152,7 +152,7 @@ void check_devices(const PcQuestion& q, std::vector<PcRow>& rows) {
     rows.push_back({.name = "devices",
                     .verdict = Verdict::kUnknown,
                     .found = "none is plugged in",
-                    .why = "only the simulated device can be felt",
+                    .why = "only the simulated device has a force",
                     .remedy = "tactd --list-devices lists what is looked for"});
 }
 

@@ -15,7 +15,7 @@
 #include <cstring>
 
 #include "firmware/pc/pc_files.h"
-#include "hal/thread.h"
+#include "hal/threads/thread.h"
 #include "model/io/program/remedy.h"
 
 #if defined(__x86_64__)
@@ -148,7 +148,7 @@ void enter_watch_thread(const RtSettings& loop, std::vector<Shortfall>& shortfal
 
 std::vector<Shortfall> probe_rt_threads(const RtSettings& loop) {
   std::vector<Shortfall> shortfalls;
-  auto thread = hal::start_thread("tact-probe", [&] {
+  auto thread = hal::threads::start_thread("tact-probe", [&] {
     enter_rt_thread(loop, shortfalls);
     enter_watch_thread(loop, shortfalls);
   });

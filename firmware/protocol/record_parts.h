@@ -35,7 +35,7 @@ inline constexpr std::uint32_t kMaxUtcError_us = 16'000'000;
 /// UTC by CLOCK_MONOTONIC (telemetry/utc_clock.h reads it).
 struct UtcOffset {
   std::int64_t offset_ns = 0;  // since 1970; UTC is CLOCK_MONOTONIC plus this
-  // As chrony, ntpd or phc2sys tell the kernel (adjtimex), with the time that the reading took
+  // As chrony, ntpd or phc2sys set in the kernel (adjtimex), with the time that the reading took
   std::uint32_t max_error_us = kMaxUtcError_us, error_us = kMaxUtcError_us;
 };
 

@@ -24,13 +24,13 @@ constexpr unsigned kShutdownFrames_s = 6;
 LoopExecutor::LoopExecutor(const GuardedLoop& guarded)
     : guarded_(guarded), runaway_(guarded.requests) {
   // Before the loop, because no thread may start when the PC is short of something.
-  auto stopper = hal::start_thread("tact-stop", [this] {
+  auto stopper = hal::threads::start_thread("tact-stop", [this] {
     hung_.acquire();
     if (!ended_.load()) guarded_.device.stop();
     stopped_.store(true);
   });
   auto executor =
-      stopper ? hal::start_thread("tact-executor", [this] { keep(); }) : stopper.error();
+      stopper ? hal::threads::start_thread("tact-executor", [this] { keep(); }) : stopper.error();
   if (!executor) {
     error_ = executor.error();
     guarded_.device.stop();
@@ -42,7 +42,7 @@ LoopExecutor::LoopExecutor(const GuardedLoop& guarded)
 }
 
 LoopExecutor::~LoopExecutor() {
-  // Nobody serves the loop any more; one that has ended keeps its state for the report.
+  // No thread serves the loop any more; one that has ended keeps its state for the report.
   if (!ended_.load()) guarded_.requests.stop.store(true);
   static_cast<void>(join());  // its error was returned before
   hung_.release();
@@ -68,7 +68,7 @@ std::optional<model::Error> LoopExecutor::take(const LoopRun& turn) {
   watch::LoopMonitor watch(watch::StallDetector(guarded_.period_ns, guarded_.hard_real_time),
                            turn.progress, guarded_.requests, guarded_.lines, link);
   if (auto error = watch.start(guarded_.rt)) return error;
-  auto loop = hal::start_thread("tact-loop", [&] {
+  auto loop = hal::threads::start_thread("tact-loop", [&] {
     add_to(costs_, run_as_loop_thread(guarded_.rt, turn.run, guarded_.filter));
   });
   if (!loop) return loop.error();

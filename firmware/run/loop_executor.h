@@ -23,7 +23,7 @@
 #include "firmware/watch/call_filter.h"
 #include "firmware/watch/loop_monitor.h"
 #include "firmware/watch/runaway.h"
-#include "hal/thread.h"
+#include "hal/threads/thread.h"
 
 namespace tact::firmware::run {
 
@@ -76,7 +76,7 @@ class LoopExecutor {
   std::optional<model::Error> error_;  // of the executor's thread until it has ended
   std::binary_semaphore hung_{0};
   std::atomic<bool> stopped_{false};
-  hal::Thread stopper_, executor_;
+  hal::threads::Thread stopper_, executor_;
 };
 
 }  // namespace tact::firmware::run

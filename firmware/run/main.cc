@@ -137,7 +137,7 @@ model::Result<model::scene::Scene> load(firmware::run::Options& options) {
 int run(int argc, char** argv) {
   // Both before anything is printed and before any thread starts.
   model::io::watch_standard_output("tactd");
-  firmware::console::outlive_stray_signals();
+  firmware::console::ignore_other_signals();
   firmware::run::Parsed parsed = firmware::run::parse_options(argc, argv);
   if (parsed.leave) return parsed.status;
   firmware::run::Options& options = parsed.options;
@@ -165,7 +165,7 @@ int run(int argc, char** argv) {
   scene->device.trust_library = options.trust_library;
   if (options.no_device && !hal::registry::is_simulated(scene->device)) {
     say(stderr,
-        "tactd: {} and lines are not opened, a simulated delta stands for them: check again "
+        "tactd: {} and lines are not opened, a simulated delta replaces them: check again "
         "where they are plugged in\n",
         scene->device.kind);
     scene->device.kind = "sim-delta";

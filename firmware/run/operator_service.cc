@@ -18,7 +18,7 @@ void serve_operator(const ServiceParts& s, LoopExecutor& executor) {
                              s.scene.path);
   const auto control = console::open_control(s.scene.path, view);
   const auto set = [&](console::ControlRequest request, const std::string& numbers) {
-    if (const auto refusal = s.variants.ask(std::move(request), numbers)) view.report(*refusal);
+    if (const auto refusal = s.updater.request(std::move(request), numbers)) view.report(*refusal);
   };
   console::RequestHandler request_handler(
       s.signals, s.requests, view, [&s] { return s.telemetry.newest_frame(); }, control.get(),
@@ -26,7 +26,7 @@ void serve_operator(const ServiceParts& s, LoopExecutor& executor) {
   console::ServiceManager service;
   loop::MonotonicClock clock;
   const auto report_news = [&] {
-    if (const auto change = s.variants.poll()) view.report(*change);
+    if (const auto change = s.updater.poll()) view.report(*change);
     if (const auto news = s.telemetry.record_news()) view.report(*news);
     if (s.black_box == nullptr) return;
     for (const std::string& message : s.black_box->news()) view.report(message);

@@ -6,8 +6,8 @@
 
 #include "firmware/black_box/black_box.h"
 #include "firmware/console/operator_signals.h"
+#include "firmware/run/law_updater.h"
 #include "firmware/run/loop_executor.h"
-#include "firmware/run/variants.h"
 
 namespace tact::firmware::run {
 
@@ -18,7 +18,7 @@ struct ServiceParts {
   loop::Requests& requests;
   telemetry::Telemetry& telemetry;
   black_box::BlackBox* black_box;  // or null
-  Variants& variants;
+  LawUpdater& updater;
   const loop::Progress& progress;
   std::int64_t period_ns;
 };

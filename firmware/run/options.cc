@@ -73,7 +73,7 @@ void add_telemetry(CLI::App& app, Options& o) {
                  "/tmp/tact-UID)");
   app.add_option("--viewers", o.viewers,
                  "group whose members may look at the telemetry, and move the hand of a simulated "
-                 "device (default: nobody but the same user and root)");
+                 "device (default: the same user and root)");
   app.add_flag("--no-telemetry", o.no_telemetry, "open no socket");
 }
 
@@ -81,7 +81,7 @@ void add_telemetry(CLI::App& app, Options& o) {
 void add_answers(CLI::App& app, Options& o) {
   auto* check = app.add_flag("--check", o.check, "check scene, meshes, law and device, then leave");
   app.add_flag("--no-device", o.no_device,
-               "with --check: hardware is not opened, a simulated delta stands for it")
+               "with --check: hardware is not opened, a simulated delta replaces it")
       ->needs(check);
   app.add_flag("--faults", o.faults, "print every fault with its cause and remedy, then leave");
   app.add_flag("--list-devices", o.list_devices,
@@ -97,7 +97,7 @@ std::optional<model::Error> contradiction(const Options& o) {
   if (o.scene_path.empty() && !o.faults && !o.help_scene && !o.cite && !o.list_devices &&
       o.csv_path.empty())
     return model::Error{"SCENE is required"};
-  // A service starts at boot or after a crash, when nobody holds the tool.
+  // A service starts at boot or after a crash, when no hand holds the tool.
   if (o.arm && console::is_service())
     return model::Error{"--arm: a service never arms; a person does, by tactctl"};
   // Simulated time does not wait: it would run until it is killed.

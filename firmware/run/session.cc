@@ -83,7 +83,7 @@ class Session {
   std::optional<loop::RtLoop> loop_;
   loop::Requests requests_;
   std::unique_ptr<watch::CallFilter> filter_;
-  std::unique_ptr<Variants> variants_;
+  std::unique_ptr<LawUpdater> law_updater_;
   ThreadCosts costs_;
 };
 
@@ -187,9 +187,10 @@ void Session::run_free() {
 std::optional<model::Error> Session::run_real_time() {
   say(stderr, "tactd: limits {} (the page shows them too)\n", parts_.limits_checksum);
   if (auto error = telemetry_->start()) return error;
-  auto variants = Variants::make(scene_, parts_, requests_, loop_->contacts(), *telemetry_);
-  if (!variants) return variants.error();
-  variants_ = std::move(*variants);
+  auto updater =
+      LawUpdater::make({scene_, *parts_.device, requests_, loop_->contacts(), *telemetry_});
+  if (!updater) return updater.error();
+  law_updater_ = std::move(*updater);
   LoopExecutor executor({.turns = {{loop_->progress(), [this] { loop_->run(); }}},
                          .device = *parts_.device,
                          .lines = *parts_.lines,
@@ -205,7 +206,7 @@ std::optional<model::Error> Session::run_real_time() {
                   .requests = requests_,
                   .telemetry = *telemetry_,
                   .black_box = black_box_.get(),
-                  .variants = *variants_,
+                  .updater = *law_updater_,
                   .progress = loop_->progress(),
                   .period_ns = period_ns()},
                  executor);
@@ -260,7 +261,7 @@ RunFacts Session::collect_facts(model::Fault fault, const std::string& trouble) 
           .fault = fault,
           .trouble = trouble,
           .refused_requests = requests_.refused.load(),
-          .variants = variants_ ? variants_->count() : 0,
+          .variants = law_updater_ ? law_updater_->count() : 0,
           .force_hash = telemetry_->force_hash(),
           .resident_peak_kB = process.ru_maxrss,
           .law_table_bytes = parts_.tissue->law().memory_bytes(),

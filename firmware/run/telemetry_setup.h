@@ -3,7 +3,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 
 #include "firmware/black_box/black_box.h"
 #include "firmware/run/loop_parts.h"

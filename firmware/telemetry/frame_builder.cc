@@ -116,9 +116,9 @@ model::Result<int> make_memory_file(const std::string& bytes) {
 void FrameBuilder::add(const loop::TickRecord& record) {
   if (first_due_ns_ < 0) first_due_ns_ = record.due_ns;
   const float margin_us = to_us(record.margin_ns);
-  const auto given_J = static_cast<float>(record.output.given_energy_J);
+  const auto given_energy_J = static_cast<float>(record.output.given_energy_J);
   // tick_us_ is empty at the first tick of a frame: the extremes start again.
-  given_energy_J_ = tick_us_.empty() ? given_J : std::max(given_energy_J_, given_J);
+  given_energy_J_ = tick_us_.empty() ? given_energy_J : std::max(given_energy_J_, given_energy_J);
   worst_margin_us_ = tick_us_.empty() ? margin_us : std::min(worst_margin_us_, margin_us);
   // The total of the tick before: a tick's own total is known only after its record is published.
   tick_us_.push_back(to_us(record.phase_ns[static_cast<std::size_t>(loop::Phase::kTotal)]));

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/telemetry/telemetry.h"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -27,7 +26,7 @@ Telemetry::Telemetry(loop::TickRing& ring, FrameBuilder builder, const FramePace
 Telemetry::~Telemetry() { static_cast<void>(stop()); }
 
 std::optional<model::Error> Telemetry::start() {
-  auto thread = hal::start_thread("tact-telemetry", [this] { run(); });
+  auto thread = hal::threads::start_thread("tact-telemetry", [this] { run(); });
   if (!thread) return thread.error();
   thread_ = std::move(*thread);
   return std::nullopt;
@@ -40,7 +39,7 @@ std::optional<model::Error> Telemetry::stop() {
   drain();
   publish();
   if (sinks_.recorder) {
-    sinks_.recorder->stands(watch_fault());  // a fault after the loop's last tick
+    sinks_.recorder->report_fault(watch_fault());  // a fault after the loop's last tick
     sinks_.recorder->finish();
   }
   return sinks_.log ? sinks_.log->close() : std::nullopt;
@@ -118,7 +117,7 @@ std::optional<Frame> Telemetry::next_frame() {
   if (builder_.has_news()) {
     frame = builder_.take(ring_.dropped());
   } else {
-    if (sinks_.recorder) sinks_.recorder->stands(found);
+    if (sinks_.recorder) sinks_.recorder->report_fault(found);
     // Only this thread writes newest_, so it reads it without the lock.
     if (found != model::Fault::kNone && newest_.fault == 0) frame = newest_;
   }

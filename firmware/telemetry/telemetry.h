@@ -4,7 +4,6 @@
 #pragma once
 
 #include <atomic>
-#include <memory>
 #include <mutex>
 #include <optional>
 
@@ -12,7 +11,7 @@
 #include "firmware/protocol/run_file.h"
 #include "firmware/telemetry/frame_builder.h"
 #include "firmware/telemetry/telemetry_socket.h"
-#include "hal/thread.h"
+#include "hal/threads/thread.h"
 
 namespace tact::firmware::telemetry {
 
@@ -25,7 +24,7 @@ class Recorder {
   /// Other numbers of the law from the next tick on, as a chunk.
   virtual void add_variant(const std::string& chunk) = 0;
   /// A fault that no tick can report, because the loop no longer ticks. kNone: no fault.
-  virtual void stands(model::Fault fault) = 0;
+  virtual void report_fault(model::Fault fault) = 0;
   /// work(): called at each frame time. finish(): called at the end; returns when all is on disk.
   virtual void work() = 0;
   virtual void finish() = 0;
@@ -106,7 +105,7 @@ class Telemetry {
   std::atomic<std::uint32_t> variant_{0};
   loop::TickRecord record_;
   std::uint64_t force_hash_;
-  hal::Thread thread_;
+  hal::threads::Thread thread_;
 };
 
 }  // namespace tact::firmware::telemetry

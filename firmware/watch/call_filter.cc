@@ -15,7 +15,7 @@
 #include <cstring>
 
 #include "firmware/loop/alloc_counter.h"
-#include "hal/thread.h"
+#include "hal/threads/thread.h"
 
 namespace tact::firmware::watch {
 namespace {
@@ -134,7 +134,7 @@ Result<std::unique_ptr<CallFilter>> CallFilter::make(std::span<const int> of_dev
   if (!good) return no_filter("libseccomp cannot make it");
   std::unique_ptr<CallFilter> filter(new Filter(std::move(context), requests));
   int refused_by_kernel = 0;  // tried in a short-lived thread, as a filter cannot be removed
-  auto thread = hal::start_thread("tact-filter", [&] {
+  auto thread = hal::threads::start_thread("tact-filter", [&] {
     refused_by_kernel = filter->enter_thread();
     filter->leave_loop();
   });

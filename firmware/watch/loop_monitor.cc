@@ -7,7 +7,7 @@
 namespace tact::firmware::watch {
 
 std::optional<model::Error> LoopMonitor::start(const pc::RtSettings& loop) {
-  auto thread = hal::start_thread("tact-watch", [this, loop] {
+  auto thread = hal::threads::start_thread("tact-watch", [this, loop] {
     std::vector<pc::Shortfall> known;
     // pc::probe_rt_threads has already reported what is refused here.
     enter_watch_thread(loop, known);

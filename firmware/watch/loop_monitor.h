@@ -20,7 +20,7 @@
 #include "firmware/pc/rt_setup.h"
 #include "firmware/watch/stall_detector.h"
 #include "firmware/watch/suspend_detector.h"
-#include "hal/thread.h"
+#include "hal/threads/thread.h"
 
 namespace tact::firmware::watch {
 
@@ -28,7 +28,7 @@ namespace tact::firmware::watch {
 struct GuardianLink {
   const std::atomic<bool>* is_lost = nullptr;  // it has ended; null: there is no guardian
   std::atomic<std::uint64_t>* own_count =
-      nullptr;  // it acts when this stands still; 0: not watched
+      nullptr;  // it acts when this stops counting; 0: not watched
   const std::atomic<std::uint64_t>* its_count = nullptr;
 };
 
@@ -66,7 +66,7 @@ class LoopMonitor {
   SuspendDetector suspend_;
   loop::MonotonicClock clock_;
   std::atomic<bool> ending_{false};
-  hal::Thread thread_;
+  hal::threads::Thread thread_;
 };
 
 }  // namespace tact::firmware::watch

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // suspend_detector.h - was the PC suspended since the last check? The loop cannot see it: its
-// clock, CLOCK_MONOTONIC, stands still meanwhile; CLOCK_BOOTTIME goes on.
+// clock, CLOCK_MONOTONIC, stops meanwhile; CLOCK_BOOTTIME goes on.
 #pragma once
 
 #include <cstdint>

@@ -113,7 +113,7 @@ std::string can_bus_trouble(const FaultCause& cause, const std::string& interfac
           std::strerror(static_cast<int>(cause.code)), interface, link_type);
     case CanCause::kNoRoom:
       return fmt::format(
-          "{} took no frames for {} ticks: nobody acknowledges, or its queue is too short; are the "
+          "{} took no frames for {} ticks: no acknowledge, or its queue is too short; are the "
           "drives powered? ip link set {} txqueuelen 100",
           interface, CanBus::kMaxMissedInARow, interface);
     case CanCause::kErrorFrame:
@@ -137,7 +137,7 @@ std::string silent_bus_trouble(const BasicCanBus<Frame>& bus, const std::string&
       seen.has(kNoAck) || seen.has(kTxPassive) || bus.cause().kind == kind_of(CanCause::kNoRoom);
   if (unheard && !seen.has(kBusOff)) {
     return fmt::format(
-        "nobody on {} acknowledges a frame: switch the drives on and connect them; if they are on, "
+        "no node on {} acknowledges a frame: switch on and connect the drives; if they are on, "
         "give {} their bit rate",
         interface, interface);
   }

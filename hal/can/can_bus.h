@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// can_bus.h - one CAN bus in a tick: everything that came in, one batch out, and how the bus is.
+// can_bus.h - one CAN bus in a tick: all received frames, one batch to send, and faults of the bus.
 //
-//     receive()  once per tick: one system call, at most 64 frames; error frames are judged here
+//     receive()  once per tick: one system call, at most 64 frames; error frames are evaluated here
 //     push()     frames of this tick, in order of importance;   send()  one system call for all
 //
-// A batch that the kernel does not take whole (ENOBUFS, EAGAIN) is a missed cycle: counted, never
-// repeated, for the force in it is old by then (CB-4); twenty in a row are a bus that takes no
-// frames. Error passive, bus-off and a controller that came back by itself latch kBusOff, an
-// interface that goes away kBusDown, until the bus is opened again.
+// A batch that the kernel does not take whole (ENOBUFS, EAGAIN) is a missed cycle: counted, but not
+// sent again, as its force would be old by then (CB-4); twenty in a row are a fault. Error passive,
+// bus-off and a controller that restarted by itself latch kBusOff, an interface that was removed
+// latches kBusDown, until the bus is opened again.
 #pragma once
 
 #include <array>
@@ -56,16 +56,16 @@ class BasicCanBus {
   /// The last receive() was full: newer frames may still wait.
   bool was_cut_short() const RT_SAFE { return was_cut_short_; }
 
-  /// For the batch of this tick; what cannot be a frame, or is more than 16, is a missed cycle.
+  /// Adds a frame to the batch of this tick. No frame, or more than 16, makes it a missed cycle.
   void push(const std::optional<Frame>& frame) RT_SAFE;
   void send() RT_SAFE;
-  /// Set-up: what was pushed, instead of sending it; valid until the next push.
+  /// Set-up: the pushed frames, which are then not sent; valid until the next push.
   std::span<const Bytes> take_batch();
 
   Fault fault() const RT_SAFE { return latch_.fault(); }
   FaultCause cause() const RT_SAFE { return latch_.cause(); }
   const CanBusCounts& counts() const RT_SAFE { return counts_; }
-  /// Of all error frames so far: why nobody answers at start.
+  /// Of all error frames so far: why no drive answers at start.
   const CanError& errors_seen() const RT_SAFE { return errors_seen_; }
   Socket& socket() { return *socket_; }
   const CanRate& rate() const { return socket_->rate(); }
@@ -96,7 +96,7 @@ using CanFdBus = BasicCanBus<CanFdFrame>;
 std::string can_bus_trouble(const FaultCause& cause, const std::string& interface,
                             const char* link_type = CanFrame::kLinkType);
 
-/// Set-up: why nobody was heard at all, as far as the bus itself says.
+/// Set-up: why no drive was heard at all, as far as the bus itself says.
 template <class Frame>
 std::string silent_bus_trouble(const BasicCanBus<Frame>& bus, const std::string& interface);
 

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <numbers>
 #include <utility>
-#include <vector>
 
 #include "hal/can/can_error.h"
 #include "hal/delta/delta_at_tool.h"

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// can_delta.h - a delta of one's own between turns of three motors and the tool in W.
+// can_delta.h - a custom delta: from the turns of its three motors to the tool in W, and back.
 //
 //     theta_i = 2 pi direction_i (turns_i - zero_i) / gear        rad, from the motor's turns
 //     tau_i   = direction_i (tau_g,i + s (J^T F)_i) / gear        N m, at the motor
 //
-// tau_g holds the arms at the pose that was measured last; s is one for a force within the limits
-// of force and joint torque and shrinks all of F alike beyond them, so its direction stays. Shared
-// by all drives on CAN. Angles beyond the joint stops, or rods that cannot meet, say that the zero
-// is wrong: a homing that is lost.
+// tau_g, N m, compensates gravity at the last measured pose; s, 0 to 1, scales F down to the limits
+// of force and joint torque without changing its direction. Shared by all drives on CAN. Angles
+// beyond the joint stops, or rods that cannot meet, mean a wrong zero: the homing is lost.
 #pragma once
 
 #include <optional>
@@ -29,14 +28,14 @@ class CanDelta {
   CanDelta(const DeltaSettings& delta, const CanSettings& can,
            const Vec3& gravity_mps2 = delta::kGravity_W_mps2);
 
-  /// Set-up: the arms rest at home_rad now, so zero is where that says.
+  /// Set-up: the arms rest at home_rad now; sets the zero from that.
   void home_on_jig(const delta::Joints& motor_turns);
-  /// Set-up: why these turns cannot be right, if so.
+  /// Set-up: an error if these turns are outside the joint stops or give no pose.
   std::optional<model::Error> check_home(const delta::Joints& motor_turns) const;
 
   delta::Joints theta_rad(const delta::Joints& motor_turns) const RT_SAFE;
-  /// Tool pose and velocity of a sample taken at stamp_ns. A cause: the homing is lost, and the
-  /// tool is untouched.
+  /// Tool pose and velocity of a sample taken at stamp_ns. A cause: the homing is lost, and `tool`
+  /// is unchanged.
   std::optional<FaultCause> measure(const delta::Joints& motor_turns, std::int64_t stamp_ns,
                                     Tool& tool) RT_SAFE;
   /// At the motors, for a force at the tool in W, gravity of the last pose included, all times

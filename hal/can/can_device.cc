@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <thread>
 #include <utility>
 
@@ -223,8 +222,8 @@ class CanDevice final : public Device {
   }
 
   void stop_drives() RT_SAFE {
-    // Then only what keeps healthy drives content, such as the host's heartbeat: a latched fault of
-    // one drive shall log none in the others.
+    // After the stop frames only what the other drives monitor, such as the host's heartbeat: the
+    // fault of one drive must cause none in the others.
     if (fault_batches_ < kFaultBatches) {
       ++fault_batches_;
       drives_.push_fault(loop_);

@@ -1,25 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-// can_device.h - a delta with three drives on one CAN bus, as a haptic device, whatever the drives.
+// can_device.h - a delta with three drives of any kind on one CAN bus, as a haptic device.
 //
-//     read     every frame to the drives' rules, then silence, sample and pose     one recvmmsg
-//     write    torques of force and gravity, as these drives are told them         one sendmmsg
+//     read     all frames to the drives' rules; then timeouts, sample and pose    one recvmmsg
+//     write    torques of force and gravity, in these drives' own frames         one sendmmsg
 //
 //     off --permit--> starting --all three give torque--> ready --not permitted--> off
 //
-// Torque is zero unless ready. When is a sample fresh? Of drives that sample at one SYNC, when all
-// three have sent a new position since the last read. Of drives on clocks of their own, when one
-// has and none is older than one and a half periods: now and then a tick gets no frame of one axis
-// and the next gets two. Power does not matter. Its stamp is the arrival of the oldest. Without
+// Torque is zero unless ready. A sample is fresh, of drives that sample at one SYNC, when all three
+// have sent a new position since the last read; of drives with their own clocks, when one has and
+// no position is older than 1.5 periods, as a tick may get no frame of an axis and the next tick
+// two. It may be fresh without power. Its stamp is the arrival of the oldest position. Without
 // samples the torques ramp down (sample_gap.h). A fault stops all three and latches; only opening
 // the device again clears it.
 //
-// A new kind of drive is its frames, its bring-up and a CanDrives; nothing of a device is in them.
-// All of it is there twice, for classic frames and for CAN FD (CanFdDrives).
+// A new kind of drive adds its frames, its bring-up and an implementation of CanDrives (of
+// CanFdDrives for CAN FD: bus, socket and device are templates of the frame).
 #pragma once
 
 #include <array>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,10 +33,10 @@ namespace tact::hal::can {
 
 enum class CanPower : std::uint8_t { kOff, kStarting, kReady, kStopped };
 
-/// What the loop knows of one drive, whatever the drive.
+/// What the loop knows of one drive of any kind.
 struct CanAxis {
   int node = 0;
-  bool located = false;           // has ever told a position
+  bool located = false;           // has ever reported a position
   bool sampled = false;           // since the last read
   bool jumps = false;             // its positions are not to be trusted
   double motor_turns = 0.0;       // the newest
@@ -58,7 +57,7 @@ struct CanAxis {
   }
 };
 
-/// From the request for torque to torque; after it the start is late.
+/// Longest time from the request for torque until a drive gives it; after that the start is late.
 inline constexpr std::int64_t kLongestStart_ns = 3 * model::kSecond_ns;
 
 /// The bus and its three drives in the loop, as device and rules share them.
@@ -85,7 +84,7 @@ struct BasicCanLoop {
                .kind = static_cast<std::uint8_t>(kind),
                .code = code});
   }
-  /// Before any force: it starts again, and the drive is asked for as long as it has no power.
+  /// No power before the first force is no fault: starts again, and asks until there is power.
   template <class Kind>
   void wait_for_power(std::size_t axis, Kind kind, std::uint32_t code) RT_SAFE {
     if (power == CanPower::kReady) power = CanPower::kStarting;
@@ -94,7 +93,7 @@ struct BasicCanLoop {
                .kind = static_cast<std::uint8_t>(kind),
                .code = code});
   }
-  /// Once a second while one waits.
+  /// True once a second while a drive waits for power.
   bool asks_again() RT_SAFE {
     if (waits.cause().kind == 0 || now_ns < ask_again_ns) return false;
     ask_again_ns = now_ns + model::kSecond_ns;
@@ -122,7 +121,7 @@ class BasicCanDrives {
   virtual ~BasicCanDrives() = default;
 
   virtual int node_of(const Frame& frame) const RT_SAFE = 0;
-  /// A frame of this axis: its position, its heartbeat, its faults. False: nobody asked for it.
+  /// A frame of this axis: its position, its heartbeat, its faults. False: not requested.
   virtual bool take(Loop& loop, std::size_t axis, const Frame& frame,
                     std::int64_t arrival_ns) RT_SAFE = 0;
   /// A command to drives or to all nodes. Loopback is off, so it came from another sender.
@@ -137,7 +136,7 @@ class BasicCanDrives {
   /// What goes on after those, tick by tick, so that drives without a fault note none.
   virtual void push_after_fault(Loop& loop) RT_SAFE { (void)loop; }
   /// For good: the frames of step 0, 1, ..; false: the last ones. Zero torque comes first. They are
-  /// the same at any time, as somebody else may have to send them (hal/shutdown_frames.h).
+  /// the same at any time, as another process may have to send them (hal/shutdown_frames.h).
   virtual bool push_stop(Loop& loop, int step) = 0;
   /// After those, so that drives do not miss a host that has left.
   virtual void push_leave(Loop& loop) { (void)loop; }
@@ -147,7 +146,7 @@ class BasicCanDrives {
   virtual std::vector<DeviceCount> counters() const = 0;
 };
 
-/// Drives that are up, and what opening them told.
+/// Drives that are up, and notes from opening them.
 template <class Frame>
 struct BasicCanStart {
   std::unique_ptr<BasicCanDrives<Frame>> drives;

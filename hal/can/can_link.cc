@@ -100,9 +100,9 @@ std::optional<Refusal> check_interface(const CanLink& link, const std::string& n
                                "old by then",
                                name, *link.restart_ms),
                    again(name, link_type) + " restart-ms 0"};
-  // A serial adapter (slcan) that its daemon has set up tells none.
+  // A serial adapter (slcan) that its daemon has set up reports none.
   if (link.has_controller && !link.bitrate)
-    return Refusal{name + " does not report its bit rate, so nobody knows how late a force is",
+    return Refusal{name + " does not report its bit rate, so the delay of a force is unknown",
                    again(name, link_type)};
   return check_state(link, name);
 }

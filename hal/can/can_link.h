@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// can_link.h - is this CAN interface fit for a force? Asked once, before the loop.
+// can_link.h - checks once, before the loop, that a CAN interface is fit for control.
 //
 // The kernel's answer to RTM_GETLINK (rtnetlink(7), linux/if_link.h, linux/can/netlink.h):
 //
@@ -8,8 +8,8 @@
 //     2 { BITTIMING 1 { bit rate u32, .. }, STATE 4 u32, RESTART_MS 6 u32, DATA_BITTIMING 9 } }
 //
 // An MTU of 72 says that the interface carries CAN FD. A virtual bus (vcan, vxcan) has no DATA: no
-// bit rate, no state, and nothing to refuse. The interface is configured from outside; nothing here
-// changes it. Set-up code only.
+// bit rate, no state, nothing to refuse. The administrator configures the interface; tact does not
+// change it. Set-up code only.
 #pragma once
 
 #include <cstdint>
@@ -55,7 +55,7 @@ struct CanLink {
 /// Of one netlink message; nothing if it is no link or is cut short.
 std::optional<CanLink> decode_can_link(std::span<const std::uint8_t> message);
 
-/// Why it must not be used, if so. `cycle_bits`: of all frames of a tick, at worst stuffing.
+/// Why the interface is refused, or none. `cycle_bits`: all frames of a tick, most stuff bits.
 std::optional<Refusal> check_can_link(const CanLink& link, const std::string& name, int cycle_bits,
                                       double rate_Hz);
 

@@ -33,7 +33,7 @@ Error refused(const std::string& name, const char* what, int error, const char* 
 }
 constexpr const char* kLookAtLink = "the link may have gone; ip -details link shows it";
 constexpr const char* kNewerKernel =
-    "a kernel of Debian 12 or 13 takes them; uname -r tells which one runs";
+    "a kernel of Debian 12 or 13 takes them; uname -r prints the running one";
 
 class File {
  public:
@@ -122,7 +122,7 @@ Result<CanLink> read_can_link(const std::string& name) {
   if (n < 0) return refused(name, "cannot read its state", errno, kLookAtLink);
   const auto link = decode_can_link(std::span(reply).first(static_cast<std::size_t>(n)));
   if (!link)
-    return Error{fmt::format("{}: the kernel does not tell its state: {}", name, kLookAtLink)};
+    return Error{fmt::format("{}: the kernel does not report its state: {}", name, kLookAtLink)};
   return *link;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// can_open.h - from the name of a CAN interface to a socket that is fit for a force.
+// can_open.h - from the name of a CAN interface to a checked socket.
 //
 // Set-up code only.
 #pragma once
@@ -17,7 +17,7 @@
 
 namespace tact::hal::can {
 
-/// Asks the kernel. An error: no such interface, or the kernel's own words.
+/// Asks the kernel. Error: no such interface, or the text of the kernel.
 model::Result<CanLink> read_can_link(const std::string& name);
 
 /// Asks for the link, checks it, and opens a raw socket that knows its rate: for data frames of
@@ -31,9 +31,9 @@ model::Result<std::unique_ptr<CanFdSocket>> open_checked_can(const std::string& 
                                                              std::span<const std::uint32_t> ids,
                                                              std::span<const int> nodes);
 
-/// The drives of a scene, for one program alone (hal/device_lock.h): takes each node of the bus.
-/// `gives_sync`: the one who sends SYNC to all nodes, one on a bus. An interface that is not there
-/// has nothing to be taken.
+/// Locks the drives of a scene for this process alone (hal/device_lock.h), node by node.
+/// `gives_sync`: also the role of the SYNC producer, of which a bus has one. No error if the
+/// interface does not exist.
 std::optional<model::Error> lock_drives(const CanSettings& settings, bool gives_sync);
 
 }  // namespace tact::hal::can

@@ -120,7 +120,7 @@ inline bool is_on_can(const model::DeviceSettings& device) {
 }
 
 /// Of a key in [device.can] that one kind of drives takes: another would leave it aside without a
-/// word, as a current that nobody limits.
+/// word, as a current without a limit.
 inline void refuse_of_others(model::ParameterVisitor& k, const model::DeviceSettings& device,
                              std::string_view kind, std::string_view key, std::string_view owner) {
   if (is_on_can(device) && device.kind != kind)

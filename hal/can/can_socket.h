@@ -15,7 +15,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <ctime>
 #include <span>
 
 #include "hal/can/can_fd_frame.h"

@@ -4,7 +4,7 @@
 // CiA 301, little endian, node n from 1 to 127. Identifiers: NMT 0x000, SYNC 0x080, EMCY 0x080 + n,
 // SDO reply 0x580 + n, SDO request 0x600 + n, heartbeat 0x700 + n. An SDO carries up to four bytes
 // ("expedited"); nothing longer is asked for, so a longer reply counts as none. Encoders return
-// nothing for a node or a size that cannot be, decoders for whatever is not whole or from another
+// nothing for a node or a size that cannot be, decoders for any frame that is cut or from another
 // node.
 #pragma once
 

@@ -6,7 +6,7 @@ namespace {
 
 constexpr std::uint32_t kExact = 0xFFFFFFFF, kFamily = 0xFF00, kGroup = 0xF000;
 
-// The first entry that fits is told: a group before its exact codes would hide them.
+// The first entry that fits is reported: a group before its exact codes would hide them.
 constexpr CanopenText kEmergencyTexts[] = {
     {0x3210, kExact, "DC bus voltage too high: brake more gently or fit a brake resistor."},
     {0x3220, kExact, "DC bus voltage too low: is the drive's supply on?"},
@@ -33,7 +33,7 @@ constexpr CanopenText kEmergencyTexts[] = {
     {0x8100, kFamily, "The drive has trouble on the CAN bus: check cable, termination, bit rate."},
     {0x8200, kFamily, "The drive did not understand a frame: write its mapping again."},
     {0x8300, kFamily, "The torque control met its limit: check the torque limits of the drive."},
-    {0x8400, kFamily, "The motor turned too fast or not as told: move more slowly."},
+    {0x8400, kFamily, "The motor turned too fast or not as commanded: move more slowly."},
     {0x8500, kFamily, "The position control stopped: bring the arm back into its range by hand."},
     {0x1000, kGroup, "The drive reports an error without saying which: look it up in its manual."},
     {0x2000, kGroup, "The drive's current is wrong: check the motor cables and the supply."},

@@ -3,7 +3,6 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "hal/cia402/canopen_text.h"
@@ -117,7 +116,7 @@ class BringUp {
       if (state == Cia402State::kSwitchOnDisabled || state == Cia402State::kReady)
         return std::nullopt;
       if (state == Cia402State::kFault && !reset) {
-        reset = true;  // once: a fault that comes back is present, and is told
+        reset = true;  // once: a fault that comes back is present, and is reported
         if (auto error = command(kControlFaultReset)) return error;
         // Bit 7 acts as it rises (CN-2), so it goes down again.
         if (auto error = command(kControlDisableVoltage)) return error;
@@ -150,7 +149,7 @@ class BringUp {
       return wrong(i, fmt::format("{}: set device.can.rated_torque_Nm to the torque that its "
                                   "manual calls 1000 of object 6071",
                                   rated_mNm ? "has a rated torque of zero (object 6076)"
-                                            : "does not tell its rated torque (object 6076)"));
+                                            : "does not report its rated torque (object 6076)"));
     }
     start.rated_torque_Nm[i] = 1e-3 * *rated_mNm;
     return position(i, start.motor_turns[i]);

@@ -9,7 +9,7 @@
 //     not, once more after NMT reset communication (cia402_network.h)
 //
 // Not every drive has 6007 (what it does when the host is lost) and 60C2 (its period): then its own
-// settings count, which is told. 6076 may be in the scene instead (CN-5).
+// settings count, which is reported. 6076 may be in the scene instead (CN-5).
 //
 // A quick stop that ramps would drive the arm against the hand, so the drive lets go instead. The
 // host's own heartbeat is not sent here: a drive watches it from the first one on, and that is the

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <utility>
 
 #include "hal/can/can_device.h"
@@ -114,7 +113,7 @@ class Cia402s final : public can::CanDrives {
     // A drive of type 1 acts on the quick stop at SYNC, not before.
     if (command_at_sync_) loop.bus.push(canopen_sync());
   }
-  /// Drives without a fault of their own would note one if nobody were heard.
+  /// Drives without a fault of their own would note one if they heard no host.
   void push_after_fault(CanLoop& loop) RT_SAFE override { push_heartbeat(loop.bus); }
 
   bool push_stop(CanLoop& loop, int step) override {
@@ -126,7 +125,7 @@ class Cia402s final : public can::CanDrives {
     for (const Axis& axis : axes_) {
       // First, as some drives refuse to end their watch while operational (heartbeat_guard.h).
       loop.bus.push(canopen_nmt(NmtCommand::kPreOperational, axis.node));
-      // Nobody sends the host's heartbeat any more: that is no fault now.
+      // The host's heartbeat is no longer sent: that is no fault now.
       loop.bus.push(canopen_sdo_download(
           axis.node,
           {.index = 0x1016, .sub = 1, .value = host_watch(configuration_, 0), .size = 4}));

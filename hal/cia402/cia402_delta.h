@@ -7,12 +7,12 @@
 //     off --permit--> starting: 0x06 0x07 0x0F --all three enabled--> ready --not permitted--> off
 //
 // SYNC is the last frame, so all drives sample at one time, and what they saw is there at the next
-// tick. When they let go they are told not to wait for the host's heartbeat (heartbeat_guard.h). A
-// drive that faults, leaves operation enabled or sends EMCY stops all three by quick stop, and no
-// fault is ever reset here. Without the loop its heartbeat is missing and the drives stop by
-// themselves (1016, 6007). A drive that repeats an old position in answer to a new SYNC cannot be
-// told from one at rest: its sample has no velocity that would say otherwise, as an ODrive's has
-// (odrive_axis.h). CiA 301, CiA 402-2. The device itself is in can_device.h.
+// tick. On release they stop monitoring the host's heartbeat (heartbeat_guard.h). A drive that
+// faults, leaves operation enabled or sends EMCY stops all three by quick stop, and no fault is
+// ever reset here. Without the loop its heartbeat is missing and the drives stop by themselves
+// (1016, 6007). A drive that repeats an old position in answer to a new SYNC cannot be
+// distinguished from one at rest: its sample has no velocity that would say otherwise, as an
+// ODrive's has (odrive_axis.h). CiA 301, CiA 402-2. The device itself is in can_device.h.
 #pragma once
 
 #include <memory>

@@ -19,7 +19,7 @@ constexpr int kOperational_ms = 500, kBoot_ms = 3000, kLook_ms = 10;
 }  // namespace
 
 Error Cia402Network::wrong(std::size_t i, const std::string& words) const {
-  // A bus that failed makes every drive look silent: it is told, not the drive.
+  // A bus that failed makes every drive look silent: it is reported, not the drive.
   if (bus_.fault() != Fault::kNone)
     return Error{can::can_bus_trouble(bus_.cause(), can_.interface)};
   return Error{fmt::format("{} {}", can::can_arm_name(i, can_), words)};

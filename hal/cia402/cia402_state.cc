@@ -12,7 +12,7 @@
 namespace tact::hal::cia402 {
 
 Cia402State cia402_state(std::uint16_t statusword) RT_SAFE {
-  // CN-2. In these four states bit 5 (quick stop) may be anything; in the next four it tells.
+  // CN-2. In these four states bit 5 (quick stop) may be anything; in the next four it decides.
   switch (statusword & 0x4Fu) {
     case 0x00:
       return Cia402State::kNotReady;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// cia402_state.h - where a CiA 402 drive stands, from its statusword, and the way to torque.
+// cia402_state.h - the state of a CiA 402 drive, from its statusword, and the way to torque.
 //
 //     statusword & 0x4F:  0x00 not ready  0x40 switch-on disabled  0x0F fault reaction  0x08 fault
 //     statusword & 0x6F:  0x21 ready  0x23 switched on  0x27 operation enabled  0x07 quick stop
 //
 //     switch-on disabled -0x06-> ready -0x07-> switched on -0x0F-> operation enabled
 //
-// One step per statusword received (CN-2, CiA 402-2, object 6041 and 6040). Whatever fits no
+// One step per statusword received (CN-2, CiA 402-2, object 6041 and 6040). What fits no
 // pattern is "unknown", which gets no command.
 #pragma once
 

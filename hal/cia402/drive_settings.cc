@@ -47,7 +47,7 @@ std::optional<std::string> DriveSettings::check_heartbeat(int node) {
     SdoFailure failure;
     if (sdo_.read(node, entry, failure)) continue;
     if (failure.silent) return sdo_failure_text(failure, entry.index, entry.sub);
-    // Whatever else it says, it has the object: writing it will tell.
+    // Any other answer means that it has the object: writing it will show.
     if (failure.abort_code != kNoObject && failure.abort_code != kNoSubIndex) continue;
     return fmt::format(
         "{} (object {:04X}), and its node guarding (object 100C) is not used: update its firmware, "

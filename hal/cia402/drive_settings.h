@@ -10,7 +10,7 @@
 //              and one over our node under another sub-index
 //     1005     SYNC is 0x80, and not theirs to send
 //     1019     it comes without a counter
-//     1006     its period, where a drive is told one: else it misses SYNC, or follows another clock
+//     1006     its period, where a drive has one: else it misses SYNC, or follows another clock
 //     6007, 60C2, 605A, 6061  not every drive has them
 //
 // CN-3, CN-4, CN-6, CN-7. Set-up code: blocks.
@@ -52,9 +52,8 @@ class DriveSettings {
 
   SdoClient& sdo_;
   std::array<Optional, 3> optional_{{
-      {0x6007,
-       "what they do when tactd is gone stands in their own settings; see that they let go"},
-      {0x605A, "how they stop stands in their own settings; see that a quick stop lets go"},
+      {0x6007, "what they do when tactd is gone is in their own settings; see that they let go"},
+      {0x605A, "how they stop is in their own settings; see that a quick stop lets go"},
       {0x60C2, "their period is their own; see that it is that of SYNC, or shorter"},
   }};
 };

@@ -2,7 +2,7 @@
 // heartbeat_guard.h - a drive's watch over the host's heartbeat (object 1016): on before it gets
 // power, off when it lets go, so that the end of the loop is no fault in its log (CN-4).
 //
-//     1016:01 = host node << 16 | timeout, ms       0 instead of the timeout: nobody is missed
+//     1016:01 = host node << 16 | timeout, ms       0 instead of the timeout: no monitoring
 //
 // A watch that is on cannot be written again in some drives (abort 0x06040043): where "on" was
 // refused or left open, "off" comes first.

@@ -6,7 +6,7 @@
 //
 //     m_p, m_arm, m_f  platform with handle, one upper arm, both rods of one forearm, kg
 //     tau_g            torque that holds the device against gravity g, N m
-//     M                mass that the hand feels, kg; thetadot = K v
+//     M                mass at the hand, kg; thetadot = K v
 //
 // Gravity is exact for uniform rods (DK-6); splitting a rod's inertia 2/3 to the elbow and 1/3 to
 // the platform is the usual approximation for M (DK-7).

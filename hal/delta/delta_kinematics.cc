@@ -89,7 +89,7 @@ DeltaPose DeltaKinematics::pose(const Vec3& position_m, const Joints& theta_rad)
 Mat3 joint_rate_matrix(const DeltaPose& pose) RT_SAFE {
   Mat3 k;
   for (std::size_t i = 0; i < 3; ++i) {
-    // DK-4: K_i = s_i / d_i. An arm in line with its rod (d = 0) cannot be told: its row stays 0
+    // DK-4: K_i = s_i / d_i. An arm in line with its rod (d = 0) is singular: its row stays 0
     const double d = pose.lever_m2[i];
     if (std::abs(d) > 0.0) k.row[i] = pose.rod_m[i] / d;
   }

@@ -37,7 +37,7 @@ model::DeviceAtTool falcon_at_tool(const FalconKinematics& falcon, const FalconS
   visit_workspace(falcon, [&](const model::Mat3& jacobian) {
     s = std::max(s, model::singular_values(jacobian)[0]);
   });
-  // The angle is linear in the counts: any step tells it.
+  // The angle is linear in the counts: any step gives it.
   const double rad_per_count = falcon_thigh_rad(1.0) - falcon_thigh_rad(0.0);
   return {.damping_Ns_per_m = s > 0.0 ? settings.joint_damping_Nms_per_rad / (s * s) : 0.0,
           .friction_N = s > 0.0 ? settings.joint_friction_Nm / s : 0.0,

@@ -47,7 +47,7 @@ const char* FalconBalanceRamp::advice() const RT_SAFE {
     case State::kTooHeavy:
       return "it did not lift: is the grip free and the mass right? Take a lighter one";
     case State::kTooLong:
-      return "it took too long: leave the grip alone, and take away what touches it";
+      return "it took too long: leave the grip alone, and remove any object in contact with it";
     case State::kTooFast:
       return "it moved too fast, so the force went: keep hands off, and mind the pose";
     default:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // falcon_balance.h - the force that just balances a weight: up until it lifts, down until it sinks.
 //
-//     force +r dt while it rests, -r dt once it has lifted by 2 mm, until it has sunk by 2 mm
+//     force +r dt while it rests, -r dt once it has lifted by 2 mm, until it has gone down by 2 mm
 //
 // Friction makes it lift late and sink late by the same force, so the mean of the two is the
 // balance. It ends without a result at the largest force, after the longest time, and as soon as

@@ -5,8 +5,8 @@
 //                              -> greet the boot ROM -> raise the speed -> lock it
 //                                 -> send the image, compare its echo -> ask for a report -> ready
 //
-// Pure: no descriptor, no clock. The caller does what `next` says, with the time at hand, and tells
-// what came of it, until the answer is kReady or kGiveUp. What goes wrong starts again from
+// Pure: no descriptor, no clock. The caller does what `next` says, with the time at hand, and
+// reports what came of it, until the answer is kReady or kGiveUp. What goes wrong starts again from
 // opening, a few times: that the first upload fails is normal for this device. Source: FP-2, the
 // protocol as found by K. Machulis, github.com/libnifalcon/libnifalcon. Times in ms.
 #pragma once

@@ -20,7 +20,7 @@ using model::Result;
 constexpr double kStep_kg = 0.005;  // of the first look; then finer
 constexpr int kRefinements = 40;    // each keeps 0.618 of the range
 constexpr double kFlatness = 1e-3;  // relative: below it every moving mass fits as well
-constexpr double kParallel = 1e-6;  // 1 - cos^2 between torque and sign: one cannot be told
+constexpr double kParallel = 1e-6;  // 1 - cos^2 between torque and sign: not identifiable
 
 struct Axis {
   double gain = 0.0, dead = 0.0, squares = 0.0;
@@ -145,7 +145,7 @@ Result<FalconCalibration> fit_falcon(std::span<const FalconBalance> samples) {
     if (!fit_all(samples, unit_Nm, kg + 0.5 * kStep_kg).known)
       return Error{"the loads of an axis are all alike: hang more different masses"};
     if (squares(kg) < squares(best_kg)) best_kg = kg;
-    // If these stay flat, every mass fits with some dead band: the two cannot be told apart.
+    // If these stay flat, every mass fits with some dead band: the two are not identifiable.
     const double free = fit_all(samples, unit_Nm, kg, DeadBand::kAny).squares;
     least = std::min(least, free);
     most = std::max(most, free);
@@ -155,7 +155,7 @@ Result<FalconCalibration> fit_falcon(std::span<const FalconBalance> samples) {
   const Fit fit = fit_all(samples, unit_Nm, moving_kg);
   if (most - least <= kFlatness * kFlatness * sum_of_squares(samples))
     return Error{
-        "dead band and moving mass cannot be told apart: balance the same masses at other poses, "
+        "dead band and moving mass cannot be separated: balance the same masses at other poses, "
         "some centimetres away"};
   const auto& axis = fit.axis;
   if (auto error = check_axes(axis)) return *error;

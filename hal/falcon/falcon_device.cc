@@ -22,7 +22,7 @@ constexpr int kMuteTicks = 20;
 constexpr double kMaxCounts_per_s = 250e3;  // 6 m/s where the counts are finest
 constexpr double kMaxCountsAtOnce = 250.0;  // 1 ms of it: a stamp may be a USB frame off
 constexpr FalconCommand kLastCommand{.lights = kFalconRed};
-constexpr int kLastCommands = 3;  // nobody sees whether the first has come
+constexpr int kLastCommands = 3;  // whether the first has come is not reported
 
 bool is_pressed(const FalconReport& report, std::uint8_t button) RT_SAFE {
   return (report.buttons & button) != 0;
@@ -137,7 +137,7 @@ void FalconDevice::check_silence(std::int64_t now_ns) RT_SAFE {
 void FalconDevice::check_pipe() RT_SAFE {
   const FalconPipeHealth health = pipe_->health();
   const auto error = static_cast<std::uint32_t>(health.error);
-  // The hand has felt zero since; what the gate would go on with is the force from before.
+  // The hand has had zero force since; what the gate would go on with is the force from before.
   if (health.stood_in) return latch(Fault::kLoopStalled, FalconTrouble::kStoodIn);
   switch (health.end) {
     case FalconPipeEnd::kOpen:
@@ -151,7 +151,7 @@ void FalconDevice::check_pipe() RT_SAFE {
   }
 }
 
-/// A short silence takes nothing from it: that is the gate's to judge.
+/// A short silence takes nothing from it: that is the gate's to evaluate.
 bool FalconDevice::ready() const RT_SAFE {
   return homed_ && powered_ && !stopped_ && fault() == Fault::kNone && stamp_ns_ != 0;
 }
@@ -222,7 +222,7 @@ void FalconDevice::stop() {
   if (stopped_) return;
   stopped_ = true;
   words_ = {};
-  // StopAndDelete and the destructor both call it: the pipe is told once.
+  // StopAndDelete and the destructor both call it: the pipe is stopped once.
   pipe_->stop(encode(kLastCommand));
 }
 

@@ -29,7 +29,7 @@ namespace tact::hal::falcon {
 inline constexpr std::uint8_t kFalconStart = 0x3C, kFalconEnd = 0x3E;
 inline constexpr std::uint8_t kFalconZero = 0x41;  // the byte of nibble 0
 inline constexpr std::size_t kFalconPacketSize = 16;
-inline constexpr int kFalconMotorMax = 4095;  // larger words are accepted by nobody who measured
+inline constexpr int kFalconMotorMax = 4095;  // no measured device accepts a larger word
 
 inline constexpr std::uint8_t kFalconHomingRequest = 0x1;
 inline constexpr std::uint8_t kFalconGreen = 0x2, kFalconBlue = 0x4, kFalconRed = 0x8;
@@ -72,10 +72,11 @@ std::optional<FalconReport> decode_falcon_report(std::span<const std::uint8_t> b
 /// May a report have this byte at this place, 0..15?
 bool falcon_report_may_have(std::uint8_t byte, std::size_t place) RT_SAFE;
 
-/// Whole reports out of the bytes as they come: cut, damaged, with strays between. A start byte
-/// cannot occur inside a packet, so each one begins a new packet, whatever came before; a byte that
-/// cannot stand at its place drops what was gathered up to and with it. So a report is never put
-/// together from two, none that arrived whole is lost, and each byte costs the same time.
+/// Whole reports out of the bytes as they come: cut, damaged, with other bytes between. A start
+/// byte cannot occur inside a packet, so each one begins a new packet; a byte that is wrong at
+/// its place drops what was gathered, itself included. So a
+/// report is never put together from two, none that arrived whole is lost, and each byte costs the
+/// same time.
 class FalconStream {
  public:
   /// The report that this byte completes, if any.

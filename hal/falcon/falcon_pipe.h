@@ -4,8 +4,8 @@
 // One I/O thread waits for the bus and hands the newest report over; the loop never waits. A pipe
 // that has ended stays so: a device that comes back is opened again. It brings no reports any more,
 // but carries commands as long as the device is there: a Falcon may hold its last motor words for
-// ever, so somebody must be able to send it zeros. A stall of the command endpoint is cleared for
-// that (USB 2.0, 9.4.5).
+// ever, so another process must be able to send it zeros. A stall of the command endpoint is
+// cleared for that (USB 2.0, 9.4.5).
 #pragma once
 
 #include <cstdint>
@@ -51,7 +51,7 @@ class FalconPipe {
   virtual bool submit(const FalconPacket& command) RT_SAFE = 0;
   /// The system call of submit, by number; none where it makes none.
   virtual std::span<const int> loop_calls() const { return {}; }
-  /// Of the open device, for USBDEVFS_BULK on the command endpoint; -1: it cannot be told.
+  /// Of the open device, for USBDEVFS_BULK on the command endpoint; -1: it is not known.
   virtual int descriptor() const { return -1; }
   /// The newest report, or false when there is none since the last call. Loop thread.
   virtual bool newest(FalconReply& reply) RT_SAFE = 0;

@@ -28,7 +28,7 @@ std::string line_text(std::uint32_t errors) {
          "again";
 }
 
-// What and remedy, by FalconTrouble; {} is what part_of tells.
+// What and remedy, by FalconTrouble; {} is the text of part_of.
 constexpr std::array kTexts{
     "",
     "the Falcon is not homed (axis {}): pull the grip all the way out, then push it in until the "

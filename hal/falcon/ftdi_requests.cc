@@ -33,7 +33,7 @@ std::optional<FtdiRead> ftdi_strip(std::span<const std::uint8_t> transfer,
     // Forward, and never past what is read: `data` may begin where the transfer does.
     for (const std::uint8_t byte : packet.subspan(kFtdiStatusSize)) data[out.size++] = byte;
   }
-  // An error of an earlier packet is told, although the last one no longer shows it.
+  // An error of an earlier packet is reported, although the last one no longer shows it.
   out.line = static_cast<std::uint8_t>(out.line | errors);
   return out;
 }

@@ -46,7 +46,7 @@ constexpr FtdiRequest ftdi_divisor(std::uint16_t code) RT_SAFE { return ftdi_req
 constexpr FtdiRequest ftdi_latency_ms(std::uint8_t latency_ms) RT_SAFE {
   return ftdi_request(9, latency_ms == 0 ? 1 : latency_ms);
 }
-/// The chip hands over what it has as soon as this byte arrives, whatever its latency timer (FP-5).
+/// The chip hands over what it has as soon as this byte arrives, before its latency timer (FP-5).
 constexpr FtdiRequest ftdi_event_character(std::uint8_t character) RT_SAFE {
   return ftdi_request(6, static_cast<std::uint16_t>(0x0100 | character));
 }

@@ -113,7 +113,7 @@ Result<falcon::FalconBoot> boot_falcon(std::unique_ptr<FalconUsb>& usb,
 
 Result<std::unique_ptr<falcon::FalconDevice>> open_falcon_device(
     const falcon::FalconSettings& settings) {
-  // First: a wrong file is told before the device is touched.
+  // First: a wrong file is reported before the device gets a byte.
   const auto image = load_falcon_image(settings.firmware_path, settings.firmware_sha256);
   if (!image) return image.error();
   auto usb = FalconUsb::open(settings.bus_path);

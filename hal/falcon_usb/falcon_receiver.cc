@@ -29,7 +29,7 @@ void FalconReceiver::finish(falcon::FalconPipeEnd end, int error) RT_SAFE {
   std::uint32_t open = 0;
   const std::uint32_t code =
       static_cast<std::uint32_t>(end) | static_cast<std::uint32_t>(error & 0xFFFF) << 8;
-  // Before end_, and whatever ended first: gone also stops commands, which other ends do not.
+  // Before end_, also after another cause: only gone also stops commands.
   if (end == falcon::FalconPipeEnd::kUnplugged) gone_.store(true, std::memory_order_release);
   // One word for end and errno: a reader never meets one without the other. The first is the cause.
   end_.compare_exchange_strong(open, code, std::memory_order_acq_rel);

@@ -11,7 +11,7 @@
 #include "hal/falcon/falcon_packets.h"
 #include "hal/falcon/falcon_pipe.h"
 #include "hal/falcon/ftdi_requests.h"
-#include "hal/latest_slot.h"
+#include "hal/threads/latest_slot.h"
 
 namespace tact::hal::falcon_usb {
 
@@ -36,7 +36,7 @@ class FalconReceiver {
  private:
   falcon::FalconStream stream_;
   std::uint64_t bad_transfers_ = 0;
-  LatestSlot<falcon::FalconReply> slot_;
+  threads::LatestSlot<falcon::FalconReply> slot_;
   std::atomic<std::uint32_t> end_{0};  // FalconPipeEnd, and errno above it
   std::atomic<bool> gone_{false};
   std::atomic<std::uint64_t> dropped_bytes_{0};

@@ -10,8 +10,6 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include "hal/falcon/falcon_boot.h"
 #include "hal/falcon/falcon_device.h"

@@ -12,7 +12,7 @@
 namespace tact::hal::falcon_usb {
 
 std::optional<model::Error> UsbThread::start(std::function<void()> body) {
-  auto thread = start_thread("tact-usb", [this, body = std::move(body)] {
+  auto thread = threads::start_thread("tact-usb", [this, body = std::move(body)] {
     const sched_param fifo{.sched_priority = kUsbThreadPriority};
     // Not checked: a refusal leaves normal priority, which still works, only later.
     pthread_setschedparam(pthread_self(), SCHED_FIFO, &fifo);

@@ -11,7 +11,7 @@
 #include <functional>
 #include <optional>
 
-#include "hal/thread.h"
+#include "hal/threads/thread.h"
 
 namespace tact::hal::falcon_usb {
 
@@ -32,7 +32,7 @@ class UsbThread {
  private:
   std::atomic<bool> ended_{false};
   std::atomic<int> last_policy_{-1};
-  Thread thread_;
+  threads::Thread thread_;
 };
 
 void usb_pause_ns(std::int64_t pause_ns);

@@ -47,7 +47,7 @@ UsbfsNode::UsbfsNode(int fd, int interface, bool mapped) : fd_(fd), interface_(i
   mapped_ = memory != MAP_FAILED;
   if (!mapped_) own_ = std::make_unique<std::uint8_t[]>(kUsbfsBuffer_bytes);
   buffer_ = mapped_ ? static_cast<std::uint8_t*>(memory) : own_.get();
-  // Touches the page before the loop could fault on it.
+  // Writes to the page, so that the loop does not fault on it.
   std::memset(buffer_, 0, kUsbfsBuffer_bytes);
 }
 

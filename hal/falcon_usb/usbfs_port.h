@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // usbfs_port.h - one USB interface through the kernel's usbfs: transfers without a library.
 //
-// The node is opened again, by nobody else's descriptor: transfers and claims belong to the open
+// The node is opened again, by a descriptor of its own: transfers and claims belong to the open
 // file. Buffers are mapped from the kernel when it allows that, so it copies nothing. Source:
 // UB-2, linux/usbdevice_fs.h and the kernel's Documentation/driver-api/usb/usb.rst.
 #pragma once

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // device_types.h - which of Force Dimension's devices tact knows, and how strong each may be.
 //
-// A gripper has a motor and tells its angle, 0 closed (FD-4); its sign is that of
+// A gripper has a motor and reports its angle, 0 closed (FD-4); its sign is that of
 // the hand it is built for. All other types have a user button.
 //
 // Forces and radii are the defaults of CHAI3D (FD-1, chai3d.org, devices/CDeltaDevices.cpp), where

@@ -12,8 +12,8 @@ namespace {
 constexpr double kDelay_s = 0.75e-3;  // a cycle of the thread before the loop, one after, and USB
 constexpr const char* kOldType =
     "; needs a library that still knows this type; tact has met no such device";
-constexpr const char* kWeightFelt =
-    "; its weight is felt, as the library balances it only where the base stands as delivered";
+constexpr const char* kUnbalanced =
+    "; its weight acts on the hand: the library balances it only if mounted as delivered";
 constexpr const char* kDampingKey = "device.force_dimension.damping_Ns_per_m";
 
 DeviceInfo info_of(const SdkSession& session, const ForceDimensionSettings& settings) {
@@ -28,12 +28,12 @@ DeviceInfo info_of(const SdkSession& session, const ForceDimensionSettings& sett
           .grip = {grip_of(session), grip_of(session) == GripKind::kForce ? kGripperForce_N : 0.0},
           .turns_with_base = type.wrist,
           .at_tool = model::DeviceAtTool{.damping_Ns_per_m = settings.damping_Ns_per_m,
-                                         .friction_N = 0.0,  // the vendor tells none
+                                         .friction_N = 0.0,  // the vendor states none
                                          .position_step_m = type.resolution_m,
                                          .delay_s = kDelay_s},
           .damping_key = kDampingKey,
           .caution = std::string(vendor_sdk::kNoGuardian) +
-                     (session.balances_weight ? "" : kWeightFelt) + (type.old ? kOldType : "") +
+                     (session.balances_weight ? "" : kUnbalanced) + (type.old ? kOldType : "") +
                      vendor_sdk::assumed_damping_text(settings.damping_Ns_per_m,
                                                       ForceDimensionSettings{}.damping_Ns_per_m,
                                                       kDampingKey)};

@@ -4,7 +4,7 @@
 // The library is proprietary and never part of tact: these are prototypes of our own, with the
 // names and meanings of the vendor's documentation (Force Dimension SDK 3.17, dhdc.h). Every call
 // takes the device's id last (FD-2). 0 is success, 1 "no new data yet" (time guard), 2 "force
-// scaled down, direction kept"; negative is an error, whose code dhdErrorGetLast tells the same
+// scaled down, direction kept"; negative is an error, whose code dhdErrorGetLast gives the same
 // thread.
 #pragma once
 
@@ -62,7 +62,7 @@ using SdkStatusText = std::array<int, kSdkStatusTexts>;
 
 /// What happened and the remedy, of dhdErrorGetLast; never blank.
 const char* text_of_sdk_error(int code);
-/// kDeviceUnplugged when nobody answers, else kDeviceFailed.
+/// kDeviceUnplugged when no device answers, else kDeviceFailed.
 model::Fault fault_of_sdk_error(int code) RT_SAFE;
 /// Why the device switched its forces off, and the remedy; never blank.
 const char* force_off_text(int cause);

@@ -15,7 +15,7 @@ namespace {
 using model::Error;
 using model::Result;
 
-// Some hundred, so that the library touches all memory that a cycle needs; 0.1 s at its 4 kHz.
+// Some hundred, so that the library uses all memory that a cycle needs; 0.1 s at its 4 kHz.
 constexpr int kWarmUpCycles = 400;
 constexpr double kWatchdogUnit_s = 125e-6;
 
@@ -49,7 +49,7 @@ Result<char> open_device(const SdkFunctions& sdk, int wanted,
 /// What the device itself lacks, with the remedy.
 std::optional<Error> find_shortfall(const SdkSession& s) {
   SdkStatusText status{};
-  if (s.sdk.status(status.data(), s.id) < 0) return failed(s.sdk, "tell its status");
+  if (s.sdk.status(status.data(), s.id) < 0) return failed(s.sdk, "report its status");
   if (status[kSdkPower] == 0)
     return Error{fmt::format("the {} has no power; switch its supply on", s.type.name)};
   if (status[kSdkError] != 0)
@@ -99,7 +99,7 @@ std::optional<Error> configure(const SdkSession& s, const ForceDimensionSettings
 std::optional<Error> warm_up(const SdkSession& s) {
   double x_m = 0.0, y_m = 0.0, z_m = 0.0, rotation[3][3] = {};
   for (int i = 0; i < kWarmUpCycles; ++i) {
-    if (s.sdk.pose(&x_m, &y_m, &z_m, rotation, s.id) < 0) return failed(s.sdk, "tell its pose");
+    if (s.sdk.pose(&x_m, &y_m, &z_m, rotation, s.id) < 0) return failed(s.sdk, "report its pose");
     if (s.sdk.set_force(0, 0, 0, 0, 0, 0, 0, s.id) < 0) return failed(s.sdk, "take a zero force");
   }
   return std::nullopt;
@@ -117,7 +117,7 @@ GripKind grip_of(const SdkSession& s) {
   if (s.type.grip == GripKind::kButton)
     return s.sdk.button_mask != nullptr ? GripKind::kButton : GripKind::kNone;
   if (s.sdk.gripper_angle == nullptr) return GripKind::kNone;
-  // Without the gap nobody could judge what energy the fingers get.
+  // Without the gap the energy given to the fingers would be unknown.
   return s.sdk.gripper_gap != nullptr ? s.type.grip : GripKind::kAngle;
 }
 
@@ -157,7 +157,7 @@ Result<SdkSession> open_sdk_session(const ForceDimensionSettings& settings, bool
   return session;
 }
 
-/// No answer is looked at: each step is tried, whatever became of the one before.
+/// No answer is looked at: each step is tried, also if the one before failed.
 void close_sdk_session(const SdkSession& s) {
   s.sdk.set_force(0, 0, 0, 0, 0, 0, 0, s.id);
   s.sdk.enable_force(0, s.id);

@@ -20,8 +20,8 @@ struct SdkSession {
   char id = 0;
   ForceDimensionType type;
   double gripper_open_rad = kGripperOpen_rad;
-  bool balances_weight = true;  // the library, for a base that stands as delivered
-  int serial_number = 0;        // 0: the library does not tell
+  bool balances_weight = true;  // the library, for a base mounted as delivered
+  int serial_number = 0;        // 0: the library does not report it
 };
 
 /// How the hand closes the jaws: what type and library have for it.

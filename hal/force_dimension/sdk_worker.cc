@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "hal/monotonic.h"
-#include "hal/thread.h"
+#include "hal/threads/thread.h"
 #include "hal/vendor_sdk/rotation.h"
 #include "model/time_ns.h"
 
@@ -24,8 +24,8 @@ using model::Vec3;
 using vendor_sdk::LibraryForce;
 using vendor_sdk::LibraryPose;
 
-// 4 kHz, the rate that the vendor claims: the pose is young, and the watchdog fed, whatever the
-// loop's rate.
+// 4 kHz, the rate that the vendor claims: the pose is young, and the watchdog fed, at any
+// rate of the loop.
 constexpr std::int64_t kLongestCycle_ns = 250'000;
 constexpr std::int64_t kMinPause_ns = 50'000;  // a slow library must not starve the PC
 constexpr int kTimeGuard = 1;                  // pose: nothing new
@@ -81,7 +81,7 @@ model::Result<std::shared_ptr<SdkWorker>> SdkWorker::start(const SdkSession& ses
   for (const Part part :
        {Part{"tact-fd", &SdkWorker::run}, Part{"tact-fd-status", &SdkWorker::watch}}) {
     // Each thread keeps the worker alive: one that hangs in the library outlives its device.
-    auto thread = start_thread(part.name, [worker, part] {
+    auto thread = threads::start_thread(part.name, [worker, part] {
       (worker.get()->*part.body)();
       worker->thread_ends();
     });
@@ -146,7 +146,7 @@ bool SdkWorker::read_grip(LibraryPose& pose) {
   }
   double angle_rad = 0.0;
   if (session_.sdk.gripper_angle(&angle_rad, session_.id) < 0) return fail(SdkTroubleSource::kGrip);
-  // Not std::clamp: an angle that is no number stays one, and the loop tells it.
+  // Not std::clamp: an angle that is no number stays one, and the loop reports it.
   const double open = std::abs(angle_rad) / session_.gripper_open_rad;
   pose.grip_ratio = open < 1.0 ? 1.0 - open : 0.0 * open;
   if (grip_ == GripKind::kForce && session_.sdk.gripper_gap(&pose.grip_gap_m, session_.id) < 0)

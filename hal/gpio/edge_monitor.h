@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // edge_monitor.h - when a GPIO line rose and fell, by the kernel's clock in its interrupt: a scope
 // pin wired back to a second line of the same chip is measured without a scope. Set-up and ordinary
-// threads only; the loop never touches it.
+// threads only; the loop never uses it.
 //
 // Times are CLOCK_MONOTONIC, as Linux stamps line events since 5.7. The kernel keeps 16 edges; who
-// reads too slowly loses the newest. The thread of the line's interrupt (irq/N-tact-jitter) tells
-// rise from fall by the level that it finds: on the loop's own core, below the loop, it sees one
-// edge of a tick.
+// reads too slowly loses the newest. The thread of the line's interrupt (irq/N-tact-jitter)
+// distinguishes rise from fall by the level that it finds: on the loop's own core, below the loop,
+// it sees one edge of a tick.
 #pragma once
 
 #include <chrono>

@@ -2,10 +2,10 @@
 // gpio_chips.h - the GPIO chips of this PC, and which of them a loop may not wait for (GP-3).
 //
 // A chip behind USB, I2C, SPI or a virtual machine's queue answers after milliseconds and its
-// driver sleeps meanwhile; the kernel knows (can_sleep) but does not tell user space, so the buses
-// above the chip are read from sysfs: /sys/bus/gpio/devices/gpiochipN and the `subsystem` links of
-// its parents. All of them must be known to be fast: PCI, platform, ACPI, PnP, ISA, AMBA. A
-// platform driver that passes accesses on to another chip (gpio-aggregator) is not seen through.
+// driver sleeps meanwhile; the kernel knows (can_sleep) but does not report it to user space, so
+// the buses above the chip are read from sysfs: /sys/bus/gpio/devices/gpiochipN and the `subsystem`
+// links of its parents. All of them must be known to be fast: PCI, platform, ACPI, PnP, ISA, AMBA.
+// A platform driver that passes accesses on to another chip (gpio-aggregator) is not seen through.
 // Label and number of lines come from the chip itself (linux/gpio.h, GPIO_GET_CHIPINFO_IOCTL).
 // Set-up only.
 #pragma once

@@ -10,7 +10,6 @@
 #include <cstring>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include "hal/gpio/line_request.h"
 #include "hal/gpio/safety_logic.h"
@@ -79,7 +78,7 @@ class GpioLines final : public SafetyLines {
   std::uint8_t event_word() const RT_SAFE override { return event_word_; }
   bool enabled() const RT_SAFE override { return !is_lost() && !dropped() && logic_.enabled(); }
 
-  // libgpiod 1.6 keeps the last level of each line in plain memory that nobody reads: two threads
+  // libgpiod 1.6 keeps the last level of each line in plain memory that is not read: two threads
   // here disturb no more than that.
   void drop() RT_SAFE override {
     // Before the levels, so that a write after this cannot raise them; one under way may, hence

@@ -3,7 +3,7 @@
 // it has stood for 10 ms. Pure.
 //
 // A foot presses some five times a second at the most. A line flaps when it has not stood for 10 ms
-// within 100 ms, or when it has changed 16 times within a second: a loose wire, or a broken switch.
+// within 100 ms, or when it has changed 16 times within a second: a bad contact or a broken switch.
 #pragma once
 
 #include <array>

@@ -13,10 +13,10 @@ const char* words(LinesCause cause) {
       // in the order of LinesCause
       "",
       "the clutch line changes faster than a foot can press, and counts as pressed: a wire "
-      "is loose or the switch is broken; repair it (device.lines.clutch), then it counts "
+      "has a bad contact or the switch is broken; repair it (device.lines.clutch), then it counts "
       "again after a second",
-      "the grip line changes faster than a foot can press: a wire is loose or the switch is "
-      "broken; repair it (device.lines.grip), then reset and arm",
+      "the grip line changes faster than a foot can press: a wire has a bad contact or the switch "
+      "is broken; repair it (device.lines.grip), then reset and arm",
       "the dead-man switch is open; hold it, then reset and arm",
       "one channel of the e-stop opened for a moment: it was pressed briefly, or a wire is "
       "loose; check device.lines.estop_a and estop_b, then reset and arm",

@@ -48,7 +48,7 @@ struct SafetyOutputs {
   bool enable = false, heartbeat = false, led = false;
 };
 
-/// Why the lines stop the force. Ascending: the more telling cause replaces the one before.
+/// Why the lines stop the force. Ascending: the more specific cause replaces the one before.
 enum class LinesCause : std::uint8_t {
   kNone,
   kClutchFlaps,  // no fault
@@ -70,7 +70,7 @@ class SafetyLogic {
  public:
   explicit SafetyLogic(const SafetyWiring& wiring) : wiring_(wiring) {}
 
-  /// Levels of this tick. kNone, or what stands.
+  /// Levels of this tick. kNone, or the present fault.
   model::Fault evaluate(const SafetyLevels& levels, std::int64_t now_ns) RT_SAFE;
   /// Outputs of this tick, after evaluate().
   SafetyOutputs drive(const LinesTick& tick) RT_SAFE;
@@ -88,7 +88,7 @@ class SafetyLogic {
                                                                : LinesCause::kNone);
   }
   bool enabled() const RT_SAFE { return outputs_.enable && fault_ == model::Fault::kNone; }
-  /// The most telling cause of the fault that stands, or of the last one. Any thread.
+  /// The most specific cause of the present fault, or of the last one. Any thread.
   LinesCause cause() const RT_SAFE { return cause_.load(std::memory_order_relaxed); }
 
  private:

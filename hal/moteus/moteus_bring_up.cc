@@ -21,7 +21,7 @@ constexpr double kRest_turns = 0.02;  // of a motor while the arms shall rest
 constexpr double kAnswered = 0.8;     // of the questions
 constexpr std::uint8_t kReplyBytes = 24;
 
-/// One axis, as its frames tell it.
+/// One axis, as its frames report it.
 struct Heard {
   int node = 0;
   int asked = 0, replies = 0, stopped = 0;
@@ -77,11 +77,11 @@ class BringUp {
     if (can_.homing != can::Homing::kAbsolute) return {};
     return wrong(
         [](const Heard& a) { return a.kind->home_state != static_cast<int>(MoteusHome::kOutput); },
-        "counts its position from wherever it was switched on, or from the rotor: homing "
+        "counts its position from power-on, or from the rotor: homing "
         "\"absolute\" needs an encoder at the output; use \"jig\"");
   }
 
-  /// A fault ends with the stop, so who was in one is told.
+  /// A fault ends with the stop, so a drive that was in one is reported.
   std::optional<Error> stop_all() {
     for (std::size_t i = 0; i < 3; ++i) {
       if (!axes_[i].is_in(MoteusMode::kFault)) continue;
@@ -90,7 +90,7 @@ class BringUp {
                                     moteus_fault_message(axes_[i].last.fault.value_or(0)));
     }
     for (Heard& axis : axes_) axis.forget();
-    // The first reply tells of the time before its stop.
+    // The first reply holds the state before its stop.
     run_until(moteus_stop_and_ask, [](const Heard& a) { return a.stopped > 1; }, kStop_ms);
     for (std::size_t i = 0; i < 3; ++i) {
       const Heard& axis = axes_[i];

@@ -3,10 +3,10 @@
 //
 //     ask all three -> home state, register map -> stop -> stopped, with a position -> at rest
 //
-// Nothing that is sent here gives power. A stop clears a fault, so a drive that was in one is told
-// in `caution`; one that stays in it is refused. Refused too: a drive of another register map, one
-// that tells no position or lacks what the loop asks for, one that somebody else drives, and
-// absolute homing on a position that no output reference stands behind (MO-4). Set-up code: blocks,
+// Nothing that is sent here gives power. A stop clears a fault, so a drive that was in one is
+// reported in `caution`; one that stays in it is refused. Refused too: a drive of another register
+// map, one that reports no position or lacks what the loop asks for, one that another host drives,
+// and absolute homing without an output reference (MO-4). Set-up code: blocks,
 // at most some seconds.
 #pragma once
 

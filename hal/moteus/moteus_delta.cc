@@ -28,7 +28,7 @@ constexpr std::int64_t kSilence_ns = 100'000'000;
 constexpr int kSettledTicks = 10;    // in position mode and without torque, before a force may pass
 constexpr int kMaxIncomplete = 10;   // replies in a row
 constexpr double kIdleTorque = 0.1;  // of the largest: measured at rest, when 0 is asked for
-// Each reply moves the mean of what nobody asked for by so much: 50 ms at 1 kHz.
+// Weight of one reply in the mean of the torque that was not commanded: 50 ms at 1 kHz.
 constexpr double kUnaskedShare = 0.02;
 
 constexpr int kLowSupplyFault = 40;
@@ -62,7 +62,7 @@ class Moteuses final : public can::CanFdDrives {
       return true;
     }
     Axis& axis = axes_[at];
-    axis.mode = reply->mode.value_or(axis.mode);  // a fault is told also by who has no position
+    axis.mode = reply->mode.value_or(axis.mode);  // also without a position a fault is reported
     axis.fault = reply->fault.value_or(axis.fault);
     if (lacking_in(*reply) != nullptr) {
       ++incomplete_;
@@ -142,7 +142,7 @@ class Moteuses final : public can::CanFdDrives {
             moteus_mode_name(static_cast<int>(cause.code)));
       case MoteusCause::kUnaskedTorque:
         return fmt::format(
-            "the drive gives {:.2f} N m that nobody asked for: set servo.pid_position.ki and "
+            "the drive gives {:.2f} N m that was not commanded: set servo.pid_position.ki and "
             "ilimit to 0, and calibrate it with moteus_tool",
             1e-3 * static_cast<std::int32_t>(cause.code));
       case MoteusCause::kIncomplete:
@@ -169,7 +169,7 @@ class Moteuses final : public can::CanFdDrives {
       return is_in(MoteusMode::kFault) && fault == kLowSupplyFault;
     }
 
-    /// A reply tells of the moment before its command (MO-2), so of the torque asked before that.
+    /// A reply holds the state before its command (MO-2), so the torque commanded before that.
     /// Less than that is a limit of the drive's own; more, or another way, is an integral term that
     /// winds up towards position 0, or a wrong calibration.
     void compare(bool ready) RT_SAFE {
@@ -180,7 +180,7 @@ class Moteuses final : public can::CanFdDrives {
     }
   };
 
-  /// Of the loop, when a tick's judging begins.
+  /// Of the loop, when a tick's evaluation begins.
   struct Asked {
     std::int64_t ns;
     bool is_ready, is_late;
@@ -190,7 +190,7 @@ class Moteuses final : public can::CanFdDrives {
   void evaluate(Loop& loop, std::size_t i, const Asked& before) const RT_SAFE {
     const Axis& axis = axes_[i];
     const auto mode = static_cast<std::uint32_t>(axis.mode);
-    // The first reply after a stop may still tell of the time before it.
+    // The first reply after a stop may still hold the state before it.
     const bool asked = before.ns != 0 && loop.axes[i].heartbeat_ns > before.ns;
     if (asked && axis.has_low_supply() && !loop.has_shown_force)
       return loop.wait_for_power(i, MoteusCause::kLowSupply, kLowSupplyFault);
@@ -220,7 +220,7 @@ class Moteuses final : public can::CanFdDrives {
   std::uint64_t old_ = 0;         // replies from before the last read
   std::uint64_t extra_ = 0;       // a second reply of a drive in one tick: the newer one is taken
   std::uint64_t incomplete_ = 0;  // replies that lack what was asked for
-  std::uint64_t limited_ = 0;     // replies that tell of a limit that cuts the torque
+  std::uint64_t limited_ = 0;     // replies that report a limit that cuts the torque
 };
 
 }  // namespace
@@ -238,7 +238,7 @@ Result<std::unique_ptr<Device>> start_moteus_delta(std::unique_ptr<can::CanFdBus
   const auto& delta = settings.of<can::DeltaSettings>();
   auto start = bring_up_moteus(*bus, can);
   if (!start) return start.error();
-  // A reply tells of the moment before its command (MO-2), so a position is one period old when it
+  // A reply holds the state before its command (MO-2), so a position is one period old when it
   // is used; then all frames of a tick on the bus, at most.
   const auto period_ns = static_cast<double>(model::period_ns(rate_Hz));
   const double bus_s = can::bus_time_s(moteus_cycle_bits(can), bus->rate());

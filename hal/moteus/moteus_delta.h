@@ -6,9 +6,9 @@
 //
 // Each tick asks each drive and commands it in one frame; its reply is read in the next tick, so a
 // position is one period old. Each command is valid for 10 ms: without the loop the drive ends its
-// torque itself (what it does then is its servo.timeout_mode, which CAN does not tell), and only a
-// stop brings it back (MO-3). A fault sends stop to all three, and a stop is the last word too. The
-// device itself is in can_device.h.
+// torque itself (what it does then is its servo.timeout_mode, which CAN does not report), and only
+// a stop brings it back (MO-3). A fault sends stop to all three, and a stop is the last word too.
+// The device itself is in can_device.h.
 #pragma once
 
 #include <memory>

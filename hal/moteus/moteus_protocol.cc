@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hal/moteus/moteus_protocol.h"
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>

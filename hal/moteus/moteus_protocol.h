@@ -75,7 +75,7 @@ std::optional<can::CanFdFrame> moteus_ask_kind(int node) RT_SAFE;
 
 // --- From the drive. ---
 
-/// What a frame tells; empty: not told, or not known to the drive.
+/// The content of a frame; empty: not in it, or not known to the drive.
 struct MoteusReply {
   std::optional<int> mode{}, fault{}, home_state{}, register_map{};
   std::optional<double> position_turns{}, velocity_turns_per_s{}, torque_Nm{};

@@ -36,7 +36,7 @@ constexpr MoteusFaultText kWords[] = {
     {44, "The power stage cannot be enabled: check the supply, restart the drive."},
     {46, "The firmware missed its own time: restart the drive, update it if that comes back."},
     {47, "servo.bemf_feedforward is set without an acceleration limit: set it to 0."},
-    {48, "servopos.position_min or position_max lie outside what it can tell: set both to nan."},
+    {48, "servopos.position_min or position_max lie beyond its range: set both to nan."},
     {49, "servo.fault_position_error acts, but tact sends no position: set it to nan."},
     {50, "servo.fault_velocity_error acts, but tact sends no velocity: set it to nan."},
 };

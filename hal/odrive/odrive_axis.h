@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // odrive_axis.h - one ODrive in the loop: its state, and whether a position is taken.
 //
-// CANSimple numbers no message. What can be told of a position: that a newer one has come already
+// CANSimple numbers no message. What is known of a position: that a newer one has come already
 // (by the kernel's stamp); that it is the last one again, bit for bit, while its velocity says that
 // the motor has moved; that it is too far from the last one for its velocities:
 //
 //     |p - p_last - (v + v_last) T / 2| > 0.02 turn + |v| 2 ms + 1000 turn/s^2 T^2
 //
-// The same value twice at rest is legal. What an adapter swaps within one tick cannot be told.
+// The same value twice at rest is legal. What an adapter swaps within one tick cannot be detected.
 #pragma once
 
 #include <bit>

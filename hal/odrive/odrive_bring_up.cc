@@ -4,7 +4,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "hal/can/can_delta.h"
 #include "hal/odrive/odrive_listener.h"
@@ -68,7 +67,7 @@ class BringUp {
     if (!all && std::any_of(drives_.axes.begin(), drives_.axes.end(), answered)) {
       return drives_.wrong(
           [&](const Axis& a) { return !answered(a); },
-          "does not tell its version while another drive does: give all three the same "
+          "does not report its version while another drive does: give all three the same "
           "firmware, 0.5.x or 0.6.x");
     }
     return drives_.wrong(
@@ -81,7 +80,7 @@ class BringUp {
   std::optional<Error> clear_errors() {
     drives_.each([](int node) { return odrive_clear_errors(node, false); });
     drives_.forget_heartbeats();
-    // The first heartbeat may have been on its way; the second one tells.
+    // The first heartbeat may have been on its way; the second one counts.
     const auto reported = [](const Axis& a) { return a.heartbeats > 1; };
     const bool all_reported = drives_.run_until(reported, kIdleWait_ms);
     if (auto error = slow_heartbeat()) return error;
@@ -200,7 +199,7 @@ class BringUp {
     if (good) return {};
     const auto words = odrive_error_message(OdriveGeneration::k05, axis.error, axis.parts);
     return Error{fmt::format(
-        "{} tells position 0 while its encoder counts {}: firmware 0.5 tells its position only "
+        "{} reports position 0 while its encoder counts {}: firmware 0.5 reports its position only "
         "after it has entered closed loop once, and it does not: {}",
         can::can_arm_name(i, can_),
         axis.shadow_count ? fmt::format("{}", *axis.shadow_count) : std::string("unknown"),
@@ -262,10 +261,10 @@ Result<OdriveStart> bring_up_odrives(can::CanBus& bus, const model::DeviceSettin
                              kOdriveLargestNode)};
   }
   if (!(rate_Hz <= kMaxRate_Hz)) {
-    return Error{
-        fmt::format("rate_Hz is {}, but three drives on one CAN bus tell their positions {} times "
-                    "a second; set rate_Hz to {} or less",
-                    rate_Hz, kMaxRate_Hz, kMaxRate_Hz)};
+    return Error{fmt::format(
+        "rate_Hz is {}, but three drives on one CAN bus report their positions {} times "
+        "a second; set rate_Hz to {} or less",
+        rate_Hz, kMaxRate_Hz, kMaxRate_Hz)};
   }
   return BringUp(bus, settings, rate_Hz).run();
 }

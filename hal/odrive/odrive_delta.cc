@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <utility>
 
 #include "hal/can/can_device.h"
@@ -178,7 +177,7 @@ class Odrives final : public can::CanDrives {
     const auto beat = decode_odrive_heartbeat(frame, node);
     if (!beat || !loop.axes[at].beat(arrival_ns)) return;
     axes_[at].state = beat->axis_state;
-    // Between opening and the first tick nobody fed the watchdogs; the first batch clears that.
+    // Between opening and the first tick the watchdogs got no frame; the first batch clears that.
     const bool was_silent =
         arrival_ns < loop.first_ns + kOdriveSilence_ns && loop.power != CanPower::kReady;
     const bool is_06 = generation_ == OdriveGeneration::k06;

@@ -18,7 +18,7 @@ namespace tact::hal::odrive {
 
 OdriveTorqueLength odrive_torque_length(const OdriveSettings& settings);
 
-/// One axis, as its frames tell it.
+/// One axis, as its frames report it.
 struct OdriveHeard {
   int node = 0;
   int heartbeats = 0;

@@ -31,7 +31,7 @@ enum class OdriveCommand : std::uint8_t {
   kClearErrors = 0x18,
 };
 
-/// All that make a drive of 0.5 or 0.6 act or change, those above included: nobody but one host may
+/// All that make a drive of 0.5 or 0.6 act or change, those above included: only one host may
 /// send them. Among them position, velocity, gains, reboot, parameters (0x04, 0.6).
 inline constexpr std::array<std::uint8_t, 17> kOdriveActs{0x02, 0x04, 0x06, 0x07, 0x0B, 0x0C,
                                                           0x0D, 0x0E, 0x0F, 0x10, 0x11, 0x12,
@@ -109,7 +109,7 @@ struct OdriveEstimates {
 std::optional<OdriveEstimates> decode_odrive_estimates(const can::CanFrame& frame,
                                                        int node) RT_SAFE;
 
-struct OdriveCount05 {  // 0.5: of the encoder itself, whatever the estimates say
+struct OdriveCount05 {  // 0.5: of the encoder itself, not of the estimates
   std::int32_t shadow;  // since power-on, or absolute; over turns
 };
 std::optional<OdriveCount05> decode_odrive_count_05(const can::CanFrame& frame, int node) RT_SAFE;

@@ -66,7 +66,7 @@ model::Result<std::string> check_odrive_velocity_limit(const model::DeviceSettin
   }
   if (!own) {
     return fmt::format(
-        "the ODrives keep their own velocity limit, which CAN does not tell; the vendor's 2 turn/s "
+        "the ODrives keep their own velocity limit, which CAN does not show; the vendor's 2 turn/s "
         "{}, and {}: {}",
         at_rest, trips, remedy);
   }

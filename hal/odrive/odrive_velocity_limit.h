@@ -5,7 +5,7 @@
 //     |v| > 1.2 V  stops the drive                while enable_overspeed_error is on
 //
 // The vendor's defaults: both on, V = 2 turn/s, g = 1/6 N m/(turn/s). CANSimple sets V (Set_Limits)
-// and reads none of these back, so tact judges V as if the first were on: it may be (OD-4).
+// and reads none of these back, so tact evaluates V as if the first were on: it may be (OD-4).
 #pragma once
 
 #include <string>

@@ -79,7 +79,7 @@ unsigned take_hd_errors(const HdFunctions& hd);
 
 /// What happened and the remedy; never blank.
 std::string text_of_hd_error(unsigned code);
-/// kDeviceUnplugged when nobody answers, kForceOff when the forces were too much for the device,
+/// kDeviceUnplugged when no device answers, kForceOff when the forces were too much for the device,
 /// else kDeviceFailed.
 model::Fault fault_of_hd_error(unsigned code);
 

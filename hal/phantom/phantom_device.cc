@@ -16,10 +16,10 @@ constexpr const char* kDampingKey = "device.phantom.damping_Ns_per_m";
 std::string caution_of(const PhantomSession& session, const PhantomSettings& settings) {
   const std::string for_long = session.continuous_force_N > 0.0
                                    ? fmt::format("{:g} N", session.continuous_force_N)
-                                   : "not told, so choose limits.continuous_force_N yourself";
+                                   : "not known, so choose limits.continuous_force_N yourself";
   const std::string stiffness = session.max_stiffness_N_per_m > 0.0
                                     ? fmt::format("{:g} N/m", session.max_stiffness_N_per_m)
-                                    : "not told";
+                                    : "not known";
   return fmt::format(
       "{}; what its motors bear for long: {}; the stiffest law that its vendor advises: {}{}",
       vendor_sdk::kNoGuardian, for_long, stiffness,
@@ -40,7 +40,7 @@ DeviceInfo info_of(const PhantomSession& session, const PhantomSettings& setting
           .grip = GripKind::kButton,
           .turns_with_base = session.wrist,
           .at_tool = model::DeviceAtTool{.damping_Ns_per_m = settings.damping_Ns_per_m,
-                                         .friction_N = 0.0,  // the library tells none
+                                         .friction_N = 0.0,  // the library reports none
                                          .position_step_m = settings.position_step_m,
                                          .delay_s = kDelay_s},
           .damping_key = kDampingKey,

@@ -37,7 +37,7 @@ int whole_of(const HdFunctions& hd, unsigned what) {
 
 bool is_positive(double value) { return std::isfinite(value) && value > 0.0; }
 
-/// What the device tells of itself; an error when tact could not hold it to its limits.
+/// What the device reports of itself; an error when tact could not hold it to its limits.
 std::optional<Error> ask_limits(PhantomSession& s) {
   s.model = text_of(s.hd, kHdModel);
   s.serial_number = text_of(s.hd, kHdSerialNumber);
@@ -55,12 +55,12 @@ std::optional<Error> ask_limits(PhantomSession& s) {
   s.radius_m = std::min(half_m.y, half_m.z);
   s.half_length_m = half_m.x;
   if (const unsigned code = take_hd_errors(s.hd); code != 0)
-    return Error{fmt::format("the PHANTOM does not tell its limits: {}", text_of_hd_error(code))};
+    return Error{fmt::format("the PHANTOM does not report its limits: {}", text_of_hd_error(code))};
   // NaN in one corner is a NaN here, which std::min may pass over.
   if (!is_finite(half_m) || !is_finite(s.middle_m) || !is_positive(s.max_force_N) ||
       !is_positive(s.radius_m) || !is_positive(s.half_length_m))
     return Error{fmt::format(
-        "the PHANTOM tells {:g} N and a workspace of {:g} x {:g} m, which cannot be: install the "
+        "the PHANTOM reports {:g} N and a workspace of {:g} x {:g} m, which cannot be: install the "
         "driver of this device, and configure it by the vendor's Touch_Setup",
         s.max_force_N, 2.0 * s.radius_m, 2.0 * s.half_length_m)};
   return std::nullopt;

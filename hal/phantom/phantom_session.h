@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// phantom_session.h - a PHANTOM or a Touch, opened, with what its library tells of it.
+// phantom_session.h - a PHANTOM or a Touch, opened, with what its library reports of it.
 //
 // W is the device's frame with its axes renamed (kAxisOfDevice). Its origin is the middle of the
 // box in which the vendor promises forces (HD-5). Set-up code only; tact
@@ -18,9 +18,9 @@ namespace tact::hal::phantom {
 struct PhantomSession {
   HdFunctions hd;
   HdDevice id = kHdNoDevice;
-  std::string model, serial_number;  // empty: the library does not tell
+  std::string model, serial_number;  // empty: the library does not report it
   double max_force_N = 0.0;
-  double continuous_force_N = 0.0, max_stiffness_N_per_m = 0.0;  // 0: it does not tell
+  double continuous_force_N = 0.0, max_stiffness_N_per_m = 0.0;  // 0: it does not report it
   model::Vec3 middle_m;  // origin of W, from the device's origin, along the axes of W
   double radius_m = 0.0, half_length_m = 0.0;  // of the cylinder within that box
   bool wrist = false;                          // it measures an orientation

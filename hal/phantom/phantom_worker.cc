@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -54,7 +53,7 @@ model::Result<std::shared_ptr<PhantomWorker>> PhantomWorker::start(const Phantom
   if (const unsigned code = take_hd_errors(hd); code != 0) {
     hd.unschedule(scheduled);
     hd.disable_device(session.id);
-    worker->self_.reset();  // nobody calls: the scheduler has not been started
+    worker->self_.reset();  // no call comes: the scheduler has not been started
     return does_not_start(code);
   }
   hd.start_scheduler();
@@ -117,7 +116,7 @@ bool PhantomWorker::cycle() {
   // In a cycle of its own after a trouble, as the library takes one frame in each.
   let_go();
   cycles_ended();
-  // When nobody has waited so long, this thread is the last to know the worker.
+  // If no thread waits for so long, this one is the last to use the worker.
   const std::shared_ptr<PhantomWorker> last = std::move(self_);
   thread_ends();  // a thread that waits may close the device now
   return false;
@@ -182,7 +181,7 @@ void PhantomWorker::send(const Vec3& force_N) {
   session_.hd.end_frame(session_.id);
 }
 
-/// No answer is looked at: each step is tried, whatever became of the one before.
+/// No answer is looked at: each step is tried, also if the one before failed.
 void PhantomWorker::let_go() {
   session_.hd.begin_frame(session_.id);
   send({});

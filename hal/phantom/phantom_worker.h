@@ -2,10 +2,11 @@
 // phantom_worker.h - what the library's own thread does for tact, 1000 times a second.
 //
 // The library drives its device from a thread of its own, its scheduler (HD-3), and calls
-// `on_cycle` there: take the device's state, judge it, set the newest force, send it, pass the pose
-// on. The thread becomes "tact-phantom", SCHED_FIFO 78, below the loop. What it shares with the
-// loop, and what follows from a trouble: library_worker.h. Any error of the library is a trouble,
-// and so are forces that are off, a calibration that is lost, and a pose that is no number.
+// `on_cycle` there: take the device's state, evaluate it, set the newest force, send it, pass the
+// pose on. The thread becomes "tact-phantom", SCHED_FIFO 78, below the loop. What it shares with
+// the loop, and what follows from a trouble: library_worker.h. Any error of the library is a
+// trouble, and so are forces that are off, a calibration that is lost, and a pose that is no
+// number.
 //
 // A frame with a trouble carries zero force. The force output is switched only after a frame that
 // carried zero.
@@ -55,7 +56,7 @@ class PhantomWorker final : public vendor_sdk::LibraryWorker {
   std::shared_ptr<PhantomWorker> self_;  // while the library may call
   bool entered_ = false;                 // the library's thread, as the next two
   bool wanted_on_ = false, output_on_ = false;
-  std::atomic<unsigned> calibration_{0};  // what the library told last; 0: nothing yet
+  std::atomic<unsigned> calibration_{0};  // what the library reported last; 0: nothing yet
   std::atomic<bool> calibrated_{false};   // once
 };
 

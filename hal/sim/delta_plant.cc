@@ -112,20 +112,20 @@ void DeltaPlant::add_stop(double dt_s, Implicit& step) const RT_SAFE {
 model::Vec3 DeltaPlant::with_friction(const model::Vec3& free_mps, const model::Mat3& k,
                                       const model::Mat3& a_inverse, double most_Nms) const RT_SAFE {
   if (!(most_Nms > 0.0)) return free_mps;
-  const model::Mat3 give =
+  const model::Mat3 mobility =
       a_inverse * transpose(k);  // column i: velocity for a unit impulse on joint i
-  const model::Mat3 compliance_columns = transpose(give);
+  const model::Mat3 columns = transpose(mobility);
   model::Vec3 velocity_mps = free_mps;
   delta::Joints impulse_Nms{};
   for (int sweep = 0; sweep < kFrictionSweeps; ++sweep) {
     for (std::size_t i = 0; i < 3; ++i) {
-      const double compliance = dot(k.row[i], compliance_columns.row[i]);
-      // A joint in line with its rod has a row of zeros: nothing can be told of it.
-      if (!(compliance > 0.0)) continue;
+      const double mobility_ii = dot(k.row[i], columns.row[i]);
+      // A joint in line with its rod has a row of zeros: it is not observable.
+      if (!(mobility_ii > 0.0)) continue;
       // the impulse that would stop joint i, as far as friction can give it
-      const double wanted_Nms = impulse_Nms[i] - dot(k.row[i], velocity_mps) / compliance;
+      const double wanted_Nms = impulse_Nms[i] - dot(k.row[i], velocity_mps) / mobility_ii;
       const double next_Nms = std::clamp(wanted_Nms, -most_Nms, most_Nms);
-      velocity_mps += (next_Nms - impulse_Nms[i]) * compliance_columns.row[i];
+      velocity_mps += (next_Nms - impulse_Nms[i]) * columns.row[i];
       impulse_Nms[i] = next_Nms;
     }
   }

@@ -28,17 +28,18 @@ bool is_sound(const HandTarget& target) RT_SAFE {
 }
 
 Result<std::unique_ptr<HandSocket>> HandSocket::start(const std::string& path,
-                                                      LatestSlot<HandTarget>& newest) {
+                                                      threads::LatestSlot<HandTarget>& newest) {
   const auto descriptor = model::io::bind_socket(path, SOCK_DGRAM | SOCK_CLOEXEC);
   if (!descriptor) return descriptor.error();
   std::unique_ptr<HandSocket> hand(new HandSocket(*descriptor, path, newest));
-  auto thread = start_thread("tact-hand", [&hand = *hand] { hand.listen(); });
+  auto thread = threads::start_thread("tact-hand", [&hand = *hand] { hand.listen(); });
   if (!thread) return thread.error();
   hand->thread_ = std::move(*thread);
   return hand;
 }
 
-HandSocket::HandSocket(int descriptor, const std::string& path, LatestSlot<HandTarget>& newest)
+HandSocket::HandSocket(int descriptor, const std::string& path,
+                       threads::LatestSlot<HandTarget>& newest)
     : descriptor_(descriptor), path_(path), file_(path), newest_(newest) {}
 
 HandSocket::~HandSocket() { stop(); }

@@ -11,9 +11,9 @@
 #include <memory>
 #include <string>
 
-#include "hal/latest_slot.h"
 #include "hal/sim/hand_target.h"
-#include "hal/thread.h"
+#include "hal/threads/latest_slot.h"
+#include "hal/threads/thread.h"
 #include "model/io/socket_file.h"
 #include "model/result.h"
 
@@ -26,7 +26,7 @@ class HandSocket {
  public:
   /// Listens at `path` until stop(). The slot must outlive this.
   static model::Result<std::unique_ptr<HandSocket>> start(const std::string& path,
-                                                          LatestSlot<HandTarget>& newest);
+                                                          threads::LatestSlot<HandTarget>& newest);
   HandSocket(const HandSocket&) = delete;
   HandSocket& operator=(const HandSocket&) = delete;
   ~HandSocket();
@@ -36,15 +36,15 @@ class HandSocket {
   const std::string& path() const { return path_; }
 
  private:
-  HandSocket(int descriptor, const std::string& path, LatestSlot<HandTarget>& newest);
+  HandSocket(int descriptor, const std::string& path, threads::LatestSlot<HandTarget>& newest);
   void listen();
 
   int descriptor_;
   std::string path_;
   model::io::SocketFile file_;
-  LatestSlot<HandTarget>& newest_;
+  threads::LatestSlot<HandTarget>& newest_;
   std::atomic<bool> stopping_{false};
-  Thread thread_;  // last: it uses the others
+  threads::Thread thread_;  // last: it uses the others
 };
 
 }  // namespace tact::hal::sim

@@ -8,7 +8,6 @@
 #include <limits>
 #include <numbers>
 #include <utility>
-#include <vector>
 
 #include "hal/delta/delta_at_tool.h"
 #include "hal/saturation.h"
@@ -87,7 +86,7 @@ DeviceInfo SimDelta::info() const {
   info.name = "IDEAL simulated delta, to look at alone";
   info.caution =
       "device.kind \"sim-ideal\" is ideal: no friction, no delay, and damped as no real device is; "
-      "judge no stability by it";
+      "do not evaluate stability with it";
   info.at_tool->damping_Ns_per_m += hand_.settings().damping_Ns_per_m;
   info.damping_key.clear();
   return info;

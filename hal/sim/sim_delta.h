@@ -15,12 +15,12 @@
 #include "hal/delta/delta_kinematics.h"
 #include "hal/device.h"
 #include "hal/device_facts.h"
-#include "hal/latest_slot.h"
 #include "hal/mounting.h"
 #include "hal/sim/delta_plant.h"
 #include "hal/sim/hand_target.h"
 #include "hal/sim/sim_hand.h"
 #include "hal/sim/sim_wrist.h"
+#include "hal/threads/latest_slot.h"
 #include "hal/velocity_observer.h"
 #include "model/result.h"
 
@@ -68,8 +68,8 @@ inline constexpr SimDeviceSettings kIdeal{.counts_per_turn = 1e8,
 class SimDelta final : public Device {
  public:
   /// Settings as checked by make_sim_delta().
-  /// The hand is led in W. Its base stands as mounted, and MountedDevice turns what it tells; how
-  /// the handle is turned stays as the scene says.
+  /// The hand is led in W. Its base is posed as mounted, and MountedDevice turns what it reports;
+  /// how the handle is turned stays as the scene says.
   SimDelta(const SimDeviceSettings& device, const model::HandSettings& hand,
            const Mounting& mounting = {});
 
@@ -84,7 +84,7 @@ class SimDelta final : public Device {
   void stop() override;
 
   /// For the thread that receives steering (hand_socket.h).
-  LatestSlot<HandTarget>& hand_targets() { return hand_targets_; }
+  threads::LatestSlot<HandTarget>& hand_targets() { return hand_targets_; }
   SimFaults& faults() { return faults_; }
   /// The truth behind the encoders, in the axes of its base.
   const DeltaPlant& plant() const { return plant_; }
@@ -132,7 +132,7 @@ class SimDelta final : public Device {
   bool powered_ = true;           // until stop()
   bool permitted_ = true;         // by the safety lines, in this tick
   std::uint64_t sequence_ = 0;
-  LatestSlot<HandTarget> hand_targets_;
+  threads::LatestSlot<HandTarget> hand_targets_;
   SimFaults faults_;
 };
 

@@ -10,8 +10,6 @@
 // so the origin of W is the middle of the cylinder, which reaches from D z = 0.195 m to 0.495 m.
 #pragma once
 
-#include <numbers>
-
 #include "hal/delta/delta_dynamics.h"
 #include "hal/delta/delta_frame.h"
 #include "hal/delta/delta_kinematics.h"

@@ -53,7 +53,7 @@ void SimHand::step(double dt_s) RT_SAFE {
   if (!(dt_s > 0.0)) return;
   if (is_steered()) {
     unsteered_s_ += dt_s;
-    // The script's time stands still meanwhile: the hand comes back to where it was led away.
+    // The script's time stops meanwhile: the hand comes back to where it was led away.
     on_script_ = false;
     walk_to(steered_, dt_s);
     return;

@@ -4,7 +4,7 @@
 //     F = k (x_h - x) + b (v_h - v)        x_h, v_h from here; x, v of the handle, W
 //
 // The script is a path of waypoints (model/hand_path.h). While a person steers, the
-// script's time stands still and x_h walks to the mouse with at most 0.5 m/s and 5 m/s^2; a second
+// script's time stops and x_h walks to the mouse with at most 0.5 m/s and 5 m/s^2; a second
 // after the last steering it walks back the same way and the script goes on. A script that jumps,
 // as a repeated one may, is joined by such a walk too: x_h never jumps.
 #pragma once

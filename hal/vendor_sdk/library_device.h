@@ -4,7 +4,7 @@
 // The loop only exchanges slots with the thread that calls the library (library_worker.h): no
 // system call in read or write. Velocities come from the shared observer. A sample is fresh when it
 // is new, younger than 5 ms, and the forces are on whenever they may be: while power is not
-// permitted the device still tells its pose, so that a fault can be reset.
+// permitted the device still reports its pose, so that a fault can be reset.
 #pragma once
 
 #include <atomic>

@@ -2,10 +2,11 @@
 // library_trust.h - which file may be loaded as a vendor SDK.
 //
 // A scene names it, and a scene may come from anybody; what is loaded runs with all that tactd may
-// do. So the file, and every folder on its way, belongs to root and can be written by nobody else,
-// and it lies where software is installed. A name without a path is looked for in the system's
-// folders alone, whatever LD_LIBRARY_PATH says; where the libraries that it needs itself are found
-// is the loader's matter, and that variable counts there. --trust-library leaves all of this out.
+// do. So the file, and every folder on its way, belongs to root and is written by no other user,
+// and it lies where software is installed. A name without a path is looked for in the
+// system's folders alone, independent of LD_LIBRARY_PATH; where the libraries that it needs itself
+// are found is the loader's matter, and that variable counts there. --trust-library leaves all of
+// this out.
 #pragma once
 
 #include <sys/types.h>

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <thread>
 
 #include "hal/loop_gone.h"
@@ -51,7 +50,7 @@ void LibraryWorker::publish(LibraryPose pose) {
 }
 
 std::optional<LibraryForce> LibraryWorker::next_force(std::int64_t now_ns) {
-  // Nothing new keeps the last one; its age then tells that the loop is late.
+  // Nothing new keeps the last one; its age then shows that the loop is late.
   commands_.read(command_);
   const std::int64_t age_ns = now_ns - command_.stamp_ns;
   if (!follow_power(command_.powered && age_ns <= kLoopGone_ns)) return std::nullopt;

@@ -10,7 +10,7 @@
 //   they come back through 2 ms of zero force, so that no step goes into the hand.
 //
 // The first trouble is kept. After it: zero force, then forces off, then not one call more. A
-// library that does not return can be helped by nobody here: the last force may stay in the motors,
+// library that does not return cannot be ended from here: the last force may stay in the motors,
 // and all that is left is to say so.
 #pragma once
 
@@ -21,7 +21,7 @@
 #include <string>
 
 #include "hal/fault_latch.h"
-#include "hal/latest_slot.h"
+#include "hal/threads/latest_slot.h"
 #include "model/types.h"
 
 namespace tact::hal::vendor_sdk {
@@ -58,8 +58,8 @@ class LibraryWorker {
   LibraryWorker& operator=(const LibraryWorker&) = delete;
   virtual ~LibraryWorker() = default;
 
-  LatestSlot<LibraryPose>& poses() RT_SAFE { return poses_; }
-  LatestSlot<LibraryCommand>& commands() RT_SAFE { return commands_; }
+  threads::LatestSlot<LibraryPose>& poses() RT_SAFE { return poses_; }
+  threads::LatestSlot<LibraryCommand>& commands() RT_SAFE { return commands_; }
   /// Its kind is that of the device's folder, its code the library's.
   FaultCause first_trouble() const RT_SAFE { return trouble_.cause(); }
   /// For a person: the first trouble, and a library that has fallen silent; empty without either.
@@ -79,7 +79,7 @@ class LibraryWorker {
   static void enter_fifo(const char* name);
 
   // The thread of the cycle.
-  /// Passes on what the library told in this cycle.
+  /// Passes on what the library reported in this cycle.
   void publish(LibraryPose pose);
   /// Switches the forces as the loop wants them; the force of this cycle, or nothing when the
   /// forces did not switch.
@@ -110,8 +110,8 @@ class LibraryWorker {
   bool follow_power(bool wanted);
 
   std::int64_t cycle_ns_, command_life_ns_;
-  LatestSlot<LibraryPose> poses_;
-  LatestSlot<LibraryCommand> commands_;
+  threads::LatestSlot<LibraryPose> poses_;
+  threads::LatestSlot<LibraryCommand> commands_;
   LibraryCommand command_;  // the thread of the cycle, as the next three
   std::uint64_t sequence_ = 0;
   std::int64_t zero_cycles_ = 0;

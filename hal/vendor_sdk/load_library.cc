@@ -11,11 +11,11 @@ namespace tact::hal::vendor_sdk {
 using model::Error;
 using model::Result;
 
-void* LoadedLibrary::address_of(const char* symbol) const { return dlsym(library_, symbol); }
+void* LoadedLibrary::address_of(const char* symbol) const { return dlsym(handle_, symbol); }
 
 std::optional<Error> LoadedLibrary::lacks() {
   if (missing_ == nullptr) return std::nullopt;
-  dlclose(library_);
+  dlclose(handle_);
   return Error{fmt::format(
       "{} has no function {}, so it is not {} library or too old a one; let {} name {} of a "
       "current SDK",

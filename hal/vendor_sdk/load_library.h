@@ -43,10 +43,10 @@ class LoadedLibrary {
   friend model::Result<LoadedLibrary> load_library(const std::string& name, bool trusted,
                                                    const VendorSdk& of);
   LoadedLibrary(void* library, std::string name, const VendorSdk& of)
-      : library_(library), name_(std::move(name)), of_(of) {}
+      : handle_(library), name_(std::move(name)), of_(of) {}
   void* address_of(const char* symbol) const;
 
-  void* library_;
+  void* handle_;
   std::string name_;
   VendorSdk of_;
   const char* missing_ = nullptr;

@@ -19,7 +19,7 @@ constexpr double kBackHeight = 0.630, kOriginHeight = 0.600;
 constexpr double kHeadRadius = 0.044;
 
 // Chosen, so that the right hand reaches the device and the face looks at the tool.
-constexpr double kStandsAt_m = 0.40;  // x of the pelvis, for 1.75 m
+constexpr double kPelvisAt_m = 0.40;  // x of the pelvis, for 1.75 m
 constexpr double kLooksDown_rad = 0.75;
 
 }  // namespace
@@ -47,7 +47,7 @@ Pose standing_pelvis(const BodyPlan& plan) {
   const double h = plan.height_m;
   // A little lower than with straight legs, so that the knees are bent and the hips can move; a
   // little to the left, so that the right hand is in front of the body.
-  return {.position_m = {kStandsAt_m * h / 1.75, -0.05 * h, (kHip - kOriginHeight - 0.018) * h}};
+  return {.position_m = {kPelvisAt_m * h / 1.75, -0.05 * h, (kHip - kOriginHeight - 0.018) * h}};
 }
 
 Vector3d standing_ankle_m(const BodyPlan& plan, bool right) {

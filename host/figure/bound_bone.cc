@@ -7,11 +7,11 @@
 namespace tact::host::figure {
 namespace {
 
-constexpr double kSlack_m = 0.02, kSlack_rad = 0.1;  // of one step, for noise
+constexpr double kTolerance_m = 0.02, kTolerance_rad = 0.1;  // of one step, for noise
 
 bool is_step_too_fast(const Pose& from, const Pose& to, double dt_s) {
-  return (to.position_m - from.position_m).norm() > kFadeAbove_mps * dt_s + kSlack_m ||
-         from.rotation.angularDistance(to.rotation) > kFadeAbove_radps * dt_s + kSlack_rad;
+  return (to.position_m - from.position_m).norm() > kFadeAbove_mps * dt_s + kTolerance_m ||
+         from.rotation.angularDistance(to.rotation) > kFadeAbove_radps * dt_s + kTolerance_rad;
 }
 
 }  // namespace

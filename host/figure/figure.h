@@ -11,7 +11,7 @@
 //     leg, ankle       knee hint and foot, left and right  TR-6, CC-10
 //     tool             not used: the device's own encoders are more accurate
 //
-// A bone is bound when its body is first tracked (TR-5), while the operator stands like the neutral
+// A bone is bound when its body is first tracked (TR-5), while the operator holds the neutral
 // figure. The figure is placed so that its right shoulder meets the tracked one, if that is within
 // kMaxPosition_m of the default. A bone without a tracker stays neutral; the head looks down at
 // the device, the feet stand. bound_bone.h describes a body that is held, lost or tracked again.

@@ -54,8 +54,8 @@ void IgtlBodies::take(BodyRole role, const pose::Pose& pose, double sent_s, doub
   std::optional<Body>& body = bodies_[static_cast<std::size_t>(role)];
   if (!body) body.emplace();
   // A constant time with a changing position is not the pose's time: from now on arrival counts.
-  const bool stands = sent_s == body->sent_s && pose.position_m != body->position_m;
-  body->has_clock = body->has_clock && sent_s > 0.0 && !stands;
+  const bool frozen = sent_s == body->sent_s && pose.position_m != body->position_m;
+  body->has_clock = body->has_clock && sent_s > 0.0 && !frozen;
   body->sent_s = sent_s;
   body->position_m = pose.position_m;
   const double time_s = body->has_clock ? sent_s : now_s;

@@ -87,10 +87,10 @@ std::optional<Error> IgtlLink::listen(const IgtlOptions& options) {
                     options.bind_address, *options.port, wrong.message())};
   }
   if (!address.is_loopback()) {
-    say_(
-        fmt::format("OpenIGTLink on {}: whoever reaches port {} sees pose and force, and can move "
-                    "the operator's figure; there is no password",
-                    options.bind_address, port()));
+    say_(fmt::format(
+        "OpenIGTLink on {}: each client that reaches port {} sees pose and force, and can move "
+        "the operator's figure; there is no password",
+        options.bind_address, port()));
   }
   return std::nullopt;
 }
@@ -115,7 +115,7 @@ void IgtlLink::stop() {
 void IgtlLink::welcome(tcp::socket socket) {
   if (clients_.size() >= kMaxClients) {
     refuse("more than 8 programs have come; one is sent away");
-    // The one that has been silent longest makes room, so that silence locks nobody out.
+    // The one that has been silent longest makes room, so that silent clients lock none out.
     const auto silent =
         std::ranges::find_if(clients_, [](const Session& one) { return !one->has_spoken(); });
     if (silent == clients_.end()) return;

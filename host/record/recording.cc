@@ -77,7 +77,7 @@ class RecordingReader {
     }
     recording_.frames.push_back(frame);
     if (recording_.operators.empty()) return;
-    recording_.operators.emplace_back();  // nobody, unless an operator follows
+    recording_.operators.emplace_back();  // none, unless an operator follows
     recording_.figures.emplace_back();
   }
 

@@ -49,11 +49,11 @@ std::optional<Error> check_patch(const firmware::protocol::FramePatch& patch,
                                  const RunHeader& header) {
   if (patch.vertex_count > firmware::protocol::kMaxPatchVertices ||
       patch.cut_count > firmware::protocol::kMaxCutsReported) {
-    return Error{"a frame tells more displaced vertices or cuts than fit"};
+    return Error{"a frame holds more displaced vertices or cuts than fit"};
   }
   // The page uses these numbers as indices into its mesh.
   if (patch.cut_total > header.organ_triangles || patch.cut_count > patch.cut_total)
-    return Error{"a frame tells more cuts than the organ has triangles"};
+    return Error{"a frame holds more cuts than the organ has triangles"};
   const auto names_only = [](std::span<const std::uint32_t> ids, std::uint32_t below) {
     return std::all_of(ids.begin(), ids.end(), [below](std::uint32_t id) { return id < below; });
   };

@@ -61,7 +61,7 @@ void add_page(CLI::App& app, Options& options) {
 void add_source(CLI::App& app, Options& options) {
   app.add_option("--socket", options.socket, "tactd's telemetry socket")->capture_default_str();
   app.add_option("--tactd-user", options.tactd_user,
-                 "user whose tactd is believed (default: nobody's but the same user's and root's)");
+                 "user whose tactd is believed (default: only the same user's and root's)");
   CLI::Option* open = app.add_option(
       "--open", options.open, "replay this recording, or a black box of tactd, instead of tactd");
   app.add_option("--record", options.record, "write all frames to this new file")->excludes(open);
@@ -80,7 +80,7 @@ void add_operator(CLI::App& app, Options& options) {
       "--tracking", options.tracking, "description of the operator's tracker, SCENE.tracking.toml");
   CLI::Option* registration =
       app.add_flag("--register", options.registration,
-                   "with --tracking and a running tactd: find where the tracker stands from poses "
+                   "with --tracking and a running tactd: find the pose of the tracker from poses "
                    "of the tracked tool, write SCENE.registration.toml and leave");
   app.add_option("--poses", options.poses, "for --register")
       ->capture_default_str()

@@ -13,7 +13,6 @@
 #include <boost/system/error_code.hpp>
 #include <cerrno>
 #include <chrono>
-#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <utility>

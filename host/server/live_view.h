@@ -56,7 +56,7 @@ class LiveView {
   /// `tracked`: the operator at this frame, null without a tracker; `shown`: as in OverlaySource.
   void add(const record::Frame& frame, const tracking::TrackedOperator* tracked = nullptr,
            const figure::FigurePose* shown = nullptr);
-  /// Of a replay: recent() then gives these, the whole file, whatever has been shown.
+  /// Of a replay: recent() then gives these, the whole file, independent of what was shown.
   void keep(std::vector<std::shared_ptr<const record::KeptFrame>> frames) {
     file_ = std::move(frames);
   }

@@ -2,7 +2,6 @@
 #include "host/server/operator_figure.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
@@ -56,10 +55,10 @@ nlohmann::json OperatorFigure::begin(const record::RunHeader& header,
 std::string OperatorFigure::with(const record::Frame& frame,
                                  const tracking::TrackedOperator* tracked,
                                  const figure::FigurePose* shown) {
-  static const tracking::TrackedOperator kNobody{};
+  static const tracking::TrackedOperator kNone{};
   const double time_s = static_cast<double>(frame.time_ns) * 1e-9;
   // A recording's figure is shown as recorded, not posed again.
-  reported_ = shown ? *shown : figure_.update(time_s, pose_of(frame), tracked ? *tracked : kNobody);
+  reported_ = shown ? *shown : figure_.update(time_s, pose_of(frame), tracked ? *tracked : kNone);
   const bool head_tracked =
       tracked && (*tracked)[tracking::BodyRole::kHead].state == tracking::BodyState::kTracked;
   return figure_json(reported_, frame.tick, head_tracked);

@@ -5,7 +5,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -86,7 +85,7 @@ bool PoseCollector::add(double now_s, const Vector3d& device_m, double speed_mps
     return false;
   }
   // A slow drift stays below kStill_mps, so the distance is checked, too.
-  if (!is_still_ || !((device_m - began_at_m_).norm() <= kStray_m)) begin(now_s, device_m);
+  if (!is_still_ || !((device_m - began_at_m_).norm() <= kRestTolerance_m)) begin(now_s, device_m);
   if (now_s - still_since_s_ < kSettle_s || !is_new_sample) return false;
   sum_.tracked_m += *tracked_m;
   sum_.device_m += device_m;

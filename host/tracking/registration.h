@@ -52,7 +52,7 @@ class PoseCollector {
   static constexpr double kSettle_s = 0.2;   // discarded: the tracker lags behind
   static constexpr double kAverage_s = 1.5;  // averaged after that, at least
   static constexpr std::size_t kLooks = 40;  // observations, at least: 3 mm of noise become 0.5
-  static constexpr double kStray_m = 0.001;  // a larger distance from the start is not rest
+  static constexpr double kRestTolerance_m = 0.001;  // a larger distance from the start is not rest
   static constexpr double kApart_m = 0.015;
 
   /// One frame of telemetry; `tracked_m` if the tracker sees the tool now. Equal numbers in

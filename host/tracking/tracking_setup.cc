@@ -241,7 +241,7 @@ Result<TrackingSetup> load_tracking_setup(const std::string& path) {
       out.shoulder_m = read_point(in, "shoulder_m", kFarthestShoulder_m, "right, device's frame",
                                   Need::kRequired);
     };
-    k.section("operator", "where the figure stands", shoulder, Need::kOptional);
+    k.section("operator", "the place of the figure", shoulder, Need::kOptional);
     read_registration(k, Need::kOptional, path, out);
   });
   if (error) return *error;

@@ -10,7 +10,7 @@
 //   inside    no force: the sphere was inside the organ at the start or after a loss of contact;
 //             ends when the whole sphere is outside
 //
-//   force on the tool  F = -grad W,   torque = sum (c - origin) x F,   c: centre of the sphere
+//   force on the tool  P = -grad W,   torque = sum (c - origin) x P
 //
 // A contact begins only from outside. It ends when the sphere is outside again: on the side where
 // it entered or, beyond the law's range, on any side.
@@ -22,9 +22,7 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 
@@ -65,8 +63,8 @@ class Contact {
   void reset() RT_SAFE;
   /// No sphere is in contact, and no force is left to ramp down.
   bool is_clear() const RT_SAFE;
-  /// Begins where `before` is, which is clear and has the same surface and spheres: a tissue with
-  /// other numbers takes the place of one that nothing touches.
+  /// Takes over the state of `before`, which is out of contact and has the same surface and
+  /// spheres: for a tissue with other numbers.
   void continue_from(const Contact& before) RT_SAFE;
 
   /// See ContactLaw::shape.

@@ -29,7 +29,7 @@ inline constexpr double kMaxStiffness_ratio = 3.0;
 
 struct ContactLawResponse {
   law::LawResponse law;
-  Vec3 slope_N{};  // F_s, tangential to the touched triangle
+  Vec3 slope_N{};  // F_s, tangential to the triangle of the surface point
 };
 
 /// MC-2: displacement of one contact point under a unit force at another, m/N.
@@ -38,9 +38,9 @@ struct ContactCoupling {
   double structural_m_per_N = 0.0;  // by bending of the organ along one axis
 };
 
-/// MC-5: G = c / a I + S, m/N, a the radius of the contact, m.
+/// MC-5: G = B / a I + S, m/N, a the radius of the contact, m.
 struct TangentCompliance {
-  double contact_m2_per_N = 0.0;  // c
+  double contact_m2_per_N = 0.0;  // B
   Tensor2 rest_m_per_N;           // S
 
   Tensor2 at(double contact_radius_m) const RT_SAFE {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/contact/contact_point.h"
 
-#include <cmath>
-
 #include "model/contact/nearest.h"
 
 namespace tact::model::contact {
@@ -16,8 +14,8 @@ struct Spot {
 };
 
 /// The point with its squared distance to p: comparisons need no root.
-Nearest at(const Spot& q, const Vec3& p, std::uint32_t t, Feature f, std::uint32_t i) RT_SAFE {
-  return {q.point_m, dot(p - q.point_m, p - q.point_m), {t, q.weight}, f, i};
+Nearest at(const Spot& x, const Vec3& p, std::uint32_t t, Feature f, std::uint32_t i) RT_SAFE {
+  return {x.point_m, dot(p - x.point_m, p - x.point_m), {t, x.weight}, f, i};
 }
 
 void try_triangle(const SurfaceView& s, std::uint32_t t, const Vec3& p, Nearest& best) RT_SAFE {
@@ -80,7 +78,7 @@ ContactPoint facing(ContactPoint contact_point, const Vec3& p_m, bool is_outside
   const double length_m = norm(away);
   // At edges and corners a face normal could give the wrong sign.
   const double sign = is_outside || dot(away, contact_point.outward) >= 0.0 ? 1.0 : -1.0;
-  constexpr double kOnSurface_m = 1e-9;  // below this the direction of p - q is rounding noise
+  constexpr double kOnSurface_m = 1e-9;  // below this the direction of p - x is rounding noise
   contact_point.normal = length_m > kOnSurface_m ? (sign / length_m) * away : contact_point.outward;
   contact_point.distance_m = sign * length_m;
   return contact_point;

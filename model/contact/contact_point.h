@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// contact_point.h - the point of a surface nearest to a probe centre p, followed from tick to tick.
+// contact_point.h - the point of a surface nearest to a point p, followed from tick to tick.
 //
 //     phi   signed distance of p to the undeformed surface, m, positive outside
-//     q     nearest surface point      n = grad phi = sign (p - q) / |p - q|
+//     x     nearest surface point      n = grad phi = sign (p - x) / |p - x|
 //
 // The search steps to a neighbouring triangle while the distance falls, at most kMaxWalkSteps times
 // per call: its cost does not depend on the size of the mesh. It finds the local minimum near its
@@ -34,10 +34,10 @@ inline bool is_on_surface(const SurfacePoint& surface_point, const SurfaceView& 
 }
 
 struct ContactPoint {
-  SurfacePoint surface_point;  // of q
-  Vec3 point_m;                // q
+  SurfacePoint surface_point;  // of x
+  Vec3 point_m;                // x
   Vec3 normal;                 // n, unit
-  Vec3 outward;                // pseudo-normal of the surface in q, unit
+  Vec3 outward;                // pseudo-normal of the surface in x, unit
   double distance_m = 0.0;     // phi
 };
 

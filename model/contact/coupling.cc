@@ -93,8 +93,8 @@ bool is_solved(ContactLaw& law, const Coupling& c, std::span<PressingSphere> sph
 }  // namespace
 
 double coupling_m_per_N(const ContactCoupling& c, const Vec3& n_i, const Vec3& n_j) RT_SAFE {
-  const double x = dot(n_i, n_j);
-  return x * c.near_field_m_per_N + 0.5 * x * (3.0 - x * x) * c.structural_m_per_N;
+  const double o = dot(n_i, n_j);
+  return o * c.near_field_m_per_N + 0.5 * o * (3.0 - o * o) * c.structural_m_per_N;
 }
 
 double coupled_m(const Coupling& c, std::span<const PressingSphere> spheres,

@@ -11,12 +11,12 @@
 //     C_ij  displacement of contact point i under a unit force at contact point j, m/N; symmetric,
 //           C_ii = 0
 //
-//     MC-2   C_ij = x h + x (3 - x^2) / 2 b,   x = n_i . n_j
+//     MC-2   C_ij = o h + o (3 - o^2) / 2 b,   o = n_i . n_j
 //            h   near field of the ContactCoupling, m/N: half-space plus the organ's correction
 //            b   its structural part, m/N: bending of the organ
 //
 // The structural part was measured along the two normals, which lie on both sides of the bending
-// axis. So b is nearly constant at x near 1 and changes its sign on the other side of a lobe.
+// axis. So b is nearly constant at o near 1 and changes its sign on the other side of a lobe.
 //
 // With constant C, W is a potential: no stroke returns more energy than it took. The forces are
 // unique if diag(1 / F'(e_i)) + C is positive definite for the largest F' of each contact point's
@@ -38,7 +38,7 @@ using Coupling = std::array<std::array<double, kMaxSpheres>, kMaxSpheres>;
 
 /// One sphere of a tool. in.indentation_m is e: a guess before press_together, then the solution.
 struct PressingSphere {
-  bool presses = false;  // touches or is held; else the other members are unused
+  bool presses = false;  // in contact or held; else the other members are unused
   double depth_m = 0.0;  // d
   Indentation in;
   ContactLawResponse response;  // at e

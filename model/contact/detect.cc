@@ -24,11 +24,11 @@ void begin_from_outside(const ContactScene& scene, OrganContact& organ, Sphere& 
   if (-sphere.clear_m > most_m + kRounding_m)
     return leave(scene, organ, sphere, ContactState::kInside);
   // If it is known to have been clear, its motion explains all of the depth.
-  const double paid_m =
+  const double explained_m =
       is_new_place ? std::max(0.0, -dot(moved_m, contact_point.normal)) : kAnywhere_m;
   sphere.clear_m = 0.0;
   sphere.state = ContactState::kTouching;
-  organ.begin(sphere, contact_point, std::min(paid_m, norm(moved_m)));
+  organ.begin(sphere, contact_point, std::min(explained_m, norm(moved_m)));
 }
 
 // Locates a sphere whose last position is not known.
@@ -54,7 +54,7 @@ void step(const ContactScene& scene, OrganContact& organ, Sphere& sphere,
     case ContactState::kTouching:
     case ContactState::kHeld:
       const Step done = organ.step(sphere, moved_m);
-      if (done == Step::kTouches) return;
+      if (done == Step::kStays) return;
       if (done == Step::kLost) return find(scene, organ, sphere);
       leave(scene, organ, sphere, ContactState::kFree);
       return begin_from_outside(scene, organ, sphere, moved_m);

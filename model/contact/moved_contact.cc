@@ -58,7 +58,7 @@ const OrganSphere* MovedContact::find(std::size_t sphere) const RT_SAFE {
 
 // Starts a contact on the organ as displaced by the other spheres.
 void MovedContact::begin(const Sphere& sphere, const ContactPoint& contact_point,
-                         double paid_m) RT_SAFE {
+                         double explained_m) RT_SAFE {
   OrganSphere& b = organ_.sphere[organ_.count++];
   b = {};
   is_changed_ = true;
@@ -80,7 +80,7 @@ void MovedContact::begin(const Sphere& sphere, const ContactPoint& contact_point
   couple();
   fill_matrices(organ_);
   b.height_m = local_position(b.at, b.y_m).height_m;
-  b.depth_offset_m = std::max(0.0, b.radius_m - b.height_m - paid_m);
+  b.depth_offset_m = std::max(0.0, b.radius_m - b.height_m - explained_m);
 }
 
 void MovedContact::leave(std::size_t sphere) RT_SAFE {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // moved_contact.h - contact of a tool's spheres with an organ that they displace, tick by tick.
 //
-// State of each touching sphere: a surface point s (the god object), and y, t, v of the last tick
+// State of each sphere in contact: a surface point s (the god object), and y, z, v of the last tick
 // (moved_organ.h). In each tick the surface points follow y: without friction completely, with
 // friction by the part outside of Coulomb's cone, held not at all. At most kMaxNewtonSteps Newton
 // steps on y solve ML-5; a residual below 10 um is left to the next tick. Otherwise the surface
@@ -13,14 +13,12 @@
 // permitted up to the energy that slides lost earlier (at most 5 % of W) plus 2 % of W. The excess
 // is dissipated:
 //
-//     ML-9   brake_i = -rho F_i dc_i / |dc_i|,   rho = excess / sum F_i |dc_i|
+//     ML-9   brake_i = -rho |P_i| dc_i / |dc_i|,   rho = excess / sum |P_i| |dc_i|
 //
-//     F_i |f_i| of ML-6, N   dc_i displacement in this tick, m   excess  energy above that limit, J
+//     P_i of ML-6, N   dc_i displacement in this tick, m   excess  energy above that limit, J
 #pragma once
 
 #include <array>
-#include <cstdint>
-#include <span>
 
 #include "model/contact/contact_scene.h"
 #include "model/contact/moved_organ.h"
@@ -53,7 +51,7 @@ class MovedContact final : public OrganContact {
 
   void reset() RT_SAFE override;
   void begin(const Sphere& sphere, const ContactPoint& contact_point,
-             double paid_m) RT_SAFE override;
+             double explained_m) RT_SAFE override;
   void leave(std::size_t sphere) RT_SAFE override;
   Step step(Sphere& sphere, const Vec3& moved_m) RT_SAFE override;
   void move(const Sphere& sphere) RT_SAFE override;

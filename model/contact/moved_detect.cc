@@ -25,7 +25,7 @@ Step MovedContact::step(Sphere& sphere, const Vec3&) RT_SAFE {
   if (b.is_held || b.indentation_m > 0.0) {
     if (!b.is_pressing) sphere.clear_m = -kAnywhere_m;  // from now on for the organ at rest
     b.is_pressing = true;
-    return Step::kTouches;
+    return Step::kStays;
   }
   if (b.is_pressing) sphere.clear_m = -kAnywhere_m;
   b.is_pressing = false;
@@ -33,7 +33,7 @@ Step MovedContact::step(Sphere& sphere, const Vec3&) RT_SAFE {
   sphere.clear_m -= norm(b.shift_m - b.seen_shift_m);
   b.seen_shift_m = b.shift_m;
   if (sphere.lets_go) return Step::kLeaves;
-  if (sphere.clear_m > 0.0) return Step::kTouches;
+  if (sphere.clear_m > 0.0) return Step::kStays;
   const double within_m = (1.0 + kAhead_ratio) * b.radius_m;
   const Vec3 y_m = b.y_m + (sphere.centre_m - b.centre_m);
   const ContactPoint on_organ = nearest_contact_point(scene_.tree, scene_.surface, y_m, within_m,
@@ -41,7 +41,7 @@ Step MovedContact::step(Sphere& sphere, const Vec3&) RT_SAFE {
   sphere.clear_m = std::min(on_organ.distance_m, within_m) - b.radius_m;
   const bool is_elsewhere = norm(on_organ.point_m - b.at.point_m) > b.radius_m;
   const bool leaves = sphere.clear_m > 0.0 ? is_free_at_rest(scene_, sphere) : is_elsewhere;
-  return leaves ? Step::kLeaves : Step::kTouches;
+  return leaves ? Step::kLeaves : Step::kStays;
 }
 
 bool MovedContact::is_beyond(const OrganSphere& b) const RT_SAFE {

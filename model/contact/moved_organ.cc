@@ -2,7 +2,6 @@
 #include "model/contact/moved_organ.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace tact::model::contact {
 namespace {
@@ -23,7 +22,7 @@ Mat3 matrix_of(const SineCosine& by, const Vec3& axis) RT_SAFE {
 
 bool presses(const OrganSphere& b) RT_SAFE { return b.tip.force_N > 0.0 || b.is_held; }
 
-// ML-1   l_i = F(d_i) n_i - k_w w_i
+// ML-1   l_i = F(e_i) n_i - k_t t_i
 void fill_load(ContactLaw& law, OrganSphere& b) RT_SAFE {
   const LocalPosition at = local_position(b.at, b.y_m);
   b.height_m = at.height_m;
@@ -51,25 +50,25 @@ double pass(MovedOrgan& organ) RT_SAFE {
   double change_m = 0.0;
   for (std::size_t i = 0; i < organ.count; ++i) {
     OrganSphere& b = organ.sphere[i];
-    Vec3 t, v_m;
+    Vec3 z, v_m;
     for (std::size_t j = 0; j < organ.count; ++j) {
       const OrganSphere& o = organ.sphere[j];
       const Vec3 load_N = o.organ_N + o.crept_N;
-      t += organ.slope_per_N[i][j] * load_N;
+      z += organ.slope_per_N[i][j] * load_N;
       v_m += organ.compliance_m_per_N[i][j] * load_N +
              times_transposed(organ.slope_per_N[j][i], o.moment_Nm);
     }
-    const double now_m = std::max(norm(v_m - b.shift_m), b.radius_m * norm(t - b.slope));
+    const double now_m = std::max(norm(v_m - b.shift_m), b.radius_m * norm(z - b.slope));
     if (!(now_m <= change_m)) change_m = now_m;  // NaN is not small
-    b.slope = t, b.shift_m = v_m;
+    b.slope = z, b.shift_m = v_m;
   }
   return change_m;
 }
 
 // dl/dy, of a point that sticks:
-//     -K n n' - k_w (1 - n n')
-// of one that slides, B = dn/dy, e = w / |w|, the last two terms with friction mu alone:
-//     -K n n' + F B + (mu K e + k_w n) n' - k_w (1 - e e')
+//     -K n n' - k_t (1 - n n')
+// of one that slides, u = t / |t|, the last two terms with friction mu alone:
+//     -K n n' + F dn/dy + (mu K u + k_t n) n' - k_t (1 - u u')
 Mat3 load_slope(const OrganSphere& b) RT_SAFE {
   if (!presses(b)) return {};
   const Vec3& n = b.at.normal;
@@ -77,9 +76,9 @@ Mat3 load_slope(const OrganSphere& b) RT_SAFE {
   const Mat3 push = outer(-k_N_per_m * n, n);
   if (!b.slides) return push + outer(side_N_per_m * n, n) + diagonal(-side_N_per_m);
   const Mat3 normal_turns = b.tip.force_N * normal_slope_per_m(b.at, b.height_m);
-  const double w_m = norm(b.tangential_m);
-  if (!(b.friction_ratio > 0.0 && w_m > 0.0)) return push + normal_turns;
-  const Vec3 along = b.tangential_m / w_m;
+  const double t_m = norm(b.tangential_m);
+  if (!(b.friction_ratio > 0.0 && t_m > 0.0)) return push + normal_turns;
+  const Vec3 along = b.tangential_m / t_m;
   return push + normal_turns + outer((b.friction_ratio * k_N_per_m) * along + side_N_per_m * n, n) +
          outer(side_N_per_m * along, along) + diagonal(-side_N_per_m);
 }
@@ -93,7 +92,7 @@ void put(SmallLu<kMaxUnknowns>& a, std::size_t i, std::size_t j, const Mat3& m) 
 }
 
 // dc_i/dy_j = Q_i delta_ij - (Q_i^k G_ij + A_i T_ij) Q_j^(1-k) dl_j/dy_j, with
-// A dt = (n x dt) x (k Q^k v + Q (y - p)); without the second order of the rotations.
+// A dz = (n x dz) x (k Q^k v + Q (y - x)); without the second order of the rotations.
 void fill_slope(MovedOrgan& organ) RT_SAFE {
   for (std::size_t j = 0; j < organ.count; ++j) {
     const OrganSphere& b = organ.sphere[j];
@@ -104,7 +103,7 @@ void fill_slope(MovedOrgan& organ) RT_SAFE {
     of.load_N_per_m = -1.0 * (matrix_of(q.rest, q.axis) * load_slope(b));
     const Vec3 lever_m =
         organ.chord_ratio * (of.chord * b.shift_m) + of.whole * (b.y_m - b.at.point_m);
-    // (n x dt) x L = dt (n . L) - n (dt . L)
+    // (n x dz) x lever = dz (n . lever) - n (dz . lever)
     of.tilt_m = diagonal(dot(q.normal, lever_m)) + outer(-1.0 * q.normal, lever_m);
   }
   for (std::size_t i = 0; i < organ.count; ++i)
@@ -119,17 +118,17 @@ void fill_slope(MovedOrgan& organ) RT_SAFE {
 
 }  // namespace
 
-// Goes to 0 where r falls below a tenth of the tip's compliance: b / r is unbounded there.
+// Goes to 0 where G_n falls below a tenth of the tip's compliance: b / G_n is unbounded there.
 double structural_ratio(const MovedOrgan& organ, std::size_t i, std::size_t j,
                         double structural_m_per_N) RT_SAFE {
   const auto normal_m_per_N = [](const SurfaceFrame& at) RT_SAFE {
     return dot(at.normal, at.compliance_m_per_N * at.normal);
   };
-  const double r_1 = normal_m_per_N(organ.sphere[i].at), r_2 = normal_m_per_N(organ.sphere[j].at);
-  const double less = std::min(r_1, r_2);
+  const double g_i = normal_m_per_N(organ.sphere[i].at), g_j = normal_m_per_N(organ.sphere[j].at);
+  const double less = std::min(g_i, g_j);
   const double least = 0.05 / (organ.contact_modulus_Pa * organ.sphere[i].radius_m);
   if (!(less > 0.0 && structural_m_per_N > 0.0)) return 0.0;
-  return std::min(2.0 * structural_m_per_N / (r_1 + r_2), 1.0) * std::min(less / least, 1.0);
+  return std::min(2.0 * structural_m_per_N / (g_i + g_j), 1.0) * std::min(less / least, 1.0);
 }
 
 void fill_matrices(MovedOrgan& organ) RT_SAFE {
@@ -196,14 +195,14 @@ bool newton_step(MovedOrgan& organ, double max_step_m, double share) RT_SAFE {
   return true;
 }
 
-// ML-7   W = sum (U(d_i) + k_w w_i^2 / 2 + (a_i . v_i + m_i . t_i) / 2)
+// ML-7   W = sum (U(e_i) + k_t t_i^2 / 2 + (L_i . v_i + m_i . z_i) / 2)
 double stored_energy_J(const MovedOrgan& organ) RT_SAFE {
   double sum_J = 0.0;
   for (std::size_t i = 0; i < organ.count; ++i) sum_J += stored_energy_J(organ, i);
   return sum_J;
 }
 
-// The creep loads b are not part of the instantaneous energy; each creep term has its own.
+// The creep loads L' are not part of the instantaneous energy; each creep term has its own.
 double stored_energy_J(const MovedOrgan& organ, std::size_t i) RT_SAFE {
   const OrganSphere& b = organ.sphere[i];
   double twice_J = b.tangential_N_per_m * dot(b.tangential_m, b.tangential_m) +

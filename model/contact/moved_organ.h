@@ -2,24 +2,24 @@
 // moved_organ.h - an organ displaced by the spheres of one tool, with finite rotations: positions
 // of the spheres relative to the surface at rest, forces, and one potential.
 //
-// i, j: spheres. c_i: centre; p_i, n_i, G_i, T_i: of its surface point s_i (smooth_surface.h).
-// Unknown is y_i, the centre relative to the organ at rest. Its height over the surface is R - d_i,
-// with d the indentation by the tip alone; w_i is its offset across n_i, the stretch of the surface
-// by friction or a bond. Q and Q^k of rotation.h; R radius of a sphere, m.
+// Letters: README.md. x_i, n_i, G_i, T_i are those of the surface point s_i (smooth_surface.h).
+// Unknown is y_i, the centre relative to the organ at rest. Its height over the surface is r - e_i,
+// with e the indentation by the tip alone; t_i is its offset across n_i, the displacement of the
+// surface by friction or a bond.
 //
-//     ML-1   l_i = F(d_i) n_i - k_w w_i                   load on the sphere, not rotated
-//     ML-2   a_i = -Q_i^(1-k) l_i                         load on the organ
-//     ML-3   t_i = sum T_ij (a_j + b_j)                   slope of the moved surface
-//     ML-4   v_i = sum (G_ij (a_j + b_j) + T_ji' m_j)     shift of the surface point, m
-//            m_j = -d/dt_j (Q_j l_j) . (Q_j^k v_j + Q_j (y_j - p_j))   moment on the slope, N m
-//     ML-5   c_i = p_i + Q_i^k v_i + Q_i (y_i - p_i)      solved for y
-//     ML-6   f_i = Q_i l_i                                force on the tool
-//     ML-7   W = sum (U(d_i) + k_w w_i^2 / 2 + (a_i . v_i + m_i . t_i) / 2)
-//     ML-8   G_ij = h n_i n_j' + q (G_i + G_j) / 2,   T_ij = q T_i,   q = min(b / r, 1)
+//     ML-1   l_i = F(e_i) n_i - k_t t_i                   load on the sphere, not rotated
+//     ML-2   L_i = -Q_i^(1-k) l_i                         load on the organ
+//     ML-3   z_i = sum T_ij (L_j + L'_j)                  slope of the moved surface
+//     ML-4   v_i = sum (G_ij (L_j + L'_j) + T_ji' m_j)    shift of the surface point, m
+//            m_j = -d/dz_j (Q_j l_j) . (Q_j^k v_j + Q_j (y_j - x_j))   moment on the slope, N m
+//     ML-5   c_i = x_i + Q_i^k v_i + Q_i (y_i - x_i)      solved for y
+//     ML-6   P_i = Q_i l_i                                force on the tool
+//     ML-7   W = sum (U(e_i) + k_t t_i^2 / 2 + (L_i . v_i + m_i . z_i) / 2)
+//     ML-8   G_ij = h n_i n_j' + q (G_i + G_j) / 2,   T_ij = q T_i,   q = min(b / G_n, 1)
 //
-// F, U: law of the tip alone; k_w tangential stiffness, N/m; h, b of MC-2; r the mean of n' G n;
-// b_j additional load that represents creep (creep.h).
-// With the surface points fixed f = -dW/dc exactly: (v, t) follow from (a, m) by one symmetric
+// F, U: law of the tip alone; k_t tangential stiffness, N/m; h, b of MC-2; G_n the mean of n' G n;
+// L'_j additional load that represents creep (creep.h).
+// With the surface points fixed P = -dW/dc exactly: (v, z) follow from (L, m) by one symmetric
 // matrix. moved_contact.h decides how the surface points move.
 #pragma once
 
@@ -55,24 +55,24 @@ struct OrganSphere {
   SurfaceFrame at;                  // s
   Vec3 centre_m;                    // c
   double speed_mps = 0.0;           // pressing
-  double tangential_N_per_m = 0.0;  // k_w
-  Vec3 rest_m;                      // w at zero tangential force
+  double tangential_N_per_m = 0.0;  // k_t
+  Vec3 rest_m;                      // t at zero tangential force
   Vec3 y_m;                         // first a guess, then the solution
-  Vec3 slope;                       // t, likewise
+  Vec3 slope;                       // z, likewise
   Vec3 shift_m;                     // v, likewise
-  law::CreepState creep;            // of a
-  Vec3 crept_N;                     // b
+  law::CreepState creep;            // of L
+  Vec3 crept_N;                     // L'
   // Results of evaluate()
   double height_m = 0.0;
-  double indentation_m = 0.0;  // d
-  Vec3 tangential_m;           // w
+  double indentation_m = 0.0;  // e
+  Vec3 tangential_m;           // t
   law::LawResponse tip;
   Vec3 load_N;     // l
-  Vec3 organ_N;    // a
+  Vec3 organ_N;    // L
   Vec3 moment_Nm;  // m
   Rotation rotation;
   Vec3 residual_m;  // c less ML-5
-  Vec3 force_N;     // f
+  Vec3 force_N;     // P
   // Of this tick (moved_contact.h)
   Vec3 moved_m;              // dc
   double may_slide_m = 0.0;  // remaining motion of the surface point
@@ -87,7 +87,7 @@ struct OrganSphere {
 /// Parts of dc/dy of one sphere.
 struct SphereSlope {
   Mat3 whole, chord, tilt_m;  // of c: Q, Q^k, and A of the slope
-  Mat3 load_N_per_m;          // of a
+  Mat3 load_N_per_m;          // of L
 };
 
 struct MovedOrgan {

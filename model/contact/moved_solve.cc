@@ -17,12 +17,12 @@ constexpr double kNearly_m = 1e-5, kNearlyFixed_m = 5e-5;
 constexpr double kMaxStep_m = 5e-4;
 constexpr double kMaxFixedStep_m = 2e-3;
 
-// The part of w beyond the friction limit |w| <= mu F / k_w.
+// The part of t beyond the friction limit |t| <= mu F / k_t.
 Vec3 beyond_friction(const OrganSphere& b, const Vec3& tangential_m) RT_SAFE {
   constexpr double kRounding = 1e-9;
   const double cap_m = b.friction_ratio * b.tip.force_N / b.tangential_N_per_m;
-  const double w_m = norm(tangential_m);
-  return w_m > cap_m * (1.0 + kRounding) ? (1.0 - cap_m / w_m) * tangential_m : Vec3{};
+  const double t_m = norm(tangential_m);
+  return t_m > cap_m * (1.0 + kRounding) ? (1.0 - cap_m / t_m) * tangential_m : Vec3{};
 }
 
 }  // namespace
@@ -50,19 +50,19 @@ void MovedContact::couple() RT_SAFE {
     }
 }
 
-// k_w = a / c of MC-5. With friction it stiffens as the contact grows and keeps its force (MC-7):
+// k_t = a / B of MC-5. With friction it stiffens as the contact grows and keeps its force (MC-7):
 // the surface point moves nearer.
 void MovedContact::stiffen(OrganSphere& b) RT_SAFE {
   constexpr double kMinGrowth = 1.01, kMinRadius_ratio = 0.1;
   if (b.is_held) return;
   const double nu = scene_.organ->poisson_ratio;
-  const double c = (2.0 - nu) / (4.0 * (1.0 - nu) * scene_.organ->contact_modulus_Pa);
+  const double b_m2_per_N = (2.0 - nu) / (4.0 * (1.0 - nu) * scene_.organ->contact_modulus_Pa);
   const double indentation_m = std::max(b.indentation_m, 0.0);
   const double a_m =
       std::clamp(std::sqrt(b.radius_m * indentation_m), kMinRadius_ratio * b.radius_m, b.radius_m);
   const double now = scene_.parameters.sliding_stiffness_N_per_m > 0.0
                          ? scene_.parameters.sliding_stiffness_N_per_m
-                         : a_m / c;
+                         : a_m / b_m2_per_N;
   const double before = b.tangential_N_per_m;
   b.friction_ratio = scene_.parameters.friction_ratio;
   if (!(indentation_m > 0.0) || before == 0.0) {
@@ -110,8 +110,8 @@ bool MovedContact::follow_foot(OrganSphere& b) const RT_SAFE {
   if (has_moved) fill_compliance(surface, b.at);
   // The surface point may not move farther, but the force must stay in the friction cone.
   if (!(b.may_slide_m > 0.0)) {
-    const Vec3 w_m = local_position(b.at, b.y_m).tangential_m - b.rest_m;
-    const Vec3 slip_m = has_friction ? beyond_friction(b, w_m) : w_m;
+    const Vec3 t_m = local_position(b.at, b.y_m).tangential_m - b.rest_m;
+    const Vec3 slip_m = has_friction ? beyond_friction(b, t_m) : t_m;
     const double length_m = norm(slip_m), now_m = std::min(length_m, b.may_slip_m);
     if (now_m > 0.0) b.rest_m += (now_m / length_m) * slip_m;
     b.may_slip_m -= now_m;
@@ -180,12 +180,12 @@ bool MovedContact::solve_fixed() RT_SAFE {
   return before_m < kNearlyFixed_m;
 }
 
-// ML-9   brake_i = -rho F_i dc_i / |dc_i|,   rho = excess / sum F_i |dc_i|
+// ML-9   brake_i = -rho |P_i| dc_i / |dc_i|,   rho = excess / sum |P_i| |dc_i|
 // Lost energy: work of the spheres in this tick, by the trapezium rule, minus the change of W.
 void MovedContact::brake() RT_SAFE {
   constexpr double kFree_J = 2e-7;                               // permitted per contact
   constexpr double kTank_ratio = 0.05, kTolerated_ratio = 0.02;  // of W
-  constexpr double kMaxBrake_ratio = 0.1;                        // of F
+  constexpr double kMaxBrake_ratio = 0.1;                        // of |P|
   constexpr double kMaxChange_N = 5e-4;                          // a tick
   double braked_J = 0.0, way_J = 0.0, press_N = 0.0, work_J = 0.0;
   for (std::size_t i = 0; i < organ_.count; ++i) {

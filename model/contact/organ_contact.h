@@ -6,7 +6,6 @@
 // each sphere, must_let_go, respond, release, hold, finish, report, advance.
 #pragma once
 
-#include <array>
 #include <cstddef>
 
 #include "model/contact/sphere.h"
@@ -19,18 +18,18 @@ struct OrganForce {
   Vec3 resistance_N;  // LW-3, ML-9: by its motion, not part of the potential
 };
 
-/// What a step did to a sphere that touches: kLost is to be found again.
-enum class Step : std::uint8_t { kTouches, kLeaves, kLost };
+/// Result of a step for a sphere in contact; kLost: detect it again.
+enum class Step : std::uint8_t { kStays, kLeaves, kLost };
 
 class OrganContact {
  public:
   virtual ~OrganContact() = default;
   /// Ends all contacts.
   virtual void reset() RT_SAFE = 0;
-  /// Begins a contact near a contact point of the organ at rest. Depth beyond `paid_m`, which the
-  /// motion explains, is offset.
+  /// Begins a contact near a contact point of the organ at rest. Depth beyond `explained_m`, which
+  /// the motion explains, is offset.
   virtual void begin(const Sphere& sphere, const ContactPoint& contact_point,
-                     double paid_m) RT_SAFE = 0;
+                     double explained_m) RT_SAFE = 0;
   virtual void leave(std::size_t sphere) RT_SAFE = 0;
 
   /// One step of the centre of a touching sphere.

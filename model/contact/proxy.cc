@@ -18,37 +18,38 @@ void Proxy::restart(const ContactPoint& contact_point, double radius_m) RT_SAFE 
   lengthened_m_ = 0.0;
 }
 
-void Proxy::follow(const SurfaceView& surface, const Vec3& p_m, const Vec3& moved_m,
+void Proxy::follow(const SurfaceView& surface, const Vec3& centre_m, const Vec3& moved_m,
                    double radius_m) RT_SAFE {
   const double before_m = radius_m - contact_point_.distance_m;
   const Vec3 normal_before = contact_point_.normal;
   const bool lagged = lags_;
-  move_to(surface, p_m, norm(tangential(moved_m, normal_before)), radius_m);
-  // Without lag the depth is a function of p alone. With lag the explained part is that of the
+  move_to(surface, centre_m, norm(tangential(moved_m, normal_before)), radius_m);
+  // Without lag the depth is a function of c alone. With lag the explained part is that of the
   // work, by the trapezium rule with both normals.
   const double led_m = -0.5 * dot(normal_before + contact_point_.normal, moved_m);
   lengthened_m_ = lagged || lags_ ? radius_m - contact_point_.distance_m - before_m - led_m : 0.0;
 }
 
-void Proxy::move_to(const SurfaceView& surface, const Vec3& p_m, double across_m,
+void Proxy::move_to(const SurfaceView& surface, const Vec3& centre_m, double across_m,
                     double radius_m) RT_SAFE {
-  const ContactPoint nearest = contact::follow(surface, contact_point_.surface_point.triangle, p_m);
+  const ContactPoint nearest =
+      contact::follow(surface, contact_point_.surface_point.triangle, centre_m);
   const Vec3 goal_m = nearest.point_m + radius_m * nearest.normal;
   const double most_m = kSlide_ratio * across_m;
   if (norm(goal_m - offset_m_) <= most_m + kRounding_m) return restart(nearest, radius_m);
   slide(surface, goal_m, most_m, radius_m);
   const ContactPoint from_here =
-      contact::follow(surface, contact_point_.surface_point.triangle, p_m);
-  const Vec3 line_m = outward_of(from_here, depth_m(p_m), radius_m);
+      contact::follow(surface, contact_point_.surface_point.triangle, centre_m);
+  const Vec3 line_m = outward_of(from_here, depth_m(centre_m), radius_m);
   const double length_m = norm(line_m);
   contact_point_.distance_m = radius_m - length_m;
   contact_point_.normal = length_m > 0.0 ? line_m / length_m : outward_;
   lags_ = true;
 }
 
-// The line from p to g without a component into the organ.
-Vec3 Proxy::depth_m(const Vec3& p_m) const RT_SAFE {
-  const Vec3 line_m = offset_m_ - p_m;
+// The line from c to g without a component into the organ.
+Vec3 Proxy::depth_m(const Vec3& centre_m) const RT_SAFE {
+  const Vec3 line_m = offset_m_ - centre_m;
   return tangential(line_m, outward_) + std::max(dot(line_m, outward_), 0.0) * outward_;
 }
 

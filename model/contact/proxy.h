@@ -3,16 +3,16 @@
 //
 // The proxy g is a point at the distance r from the surface, outside, r the radius of the sphere
 // [C. Zilles, J. Salisbury, IROS 1995; D. Ruspini, K. Kolarov, O. Khatib, SIGGRAPH 1997]. The
-// sphere's depth is |g - p|, p its centre, and the force points from p to g. The goal of g is the
-// point of that offset surface nearest to p; the search starts at the last g, so g never passes
+// sphere's depth is |g - c|, c its centre, and the force points from c to g. The goal of g is the
+// point of that offset surface nearest to c; the search starts at the last g, so g never passes
 // through the organ. Its motion in a step is bounded:
 //
-//     PX-1   |g' - g| <= kSlide_ratio |s|,   s the part of p' - p that is across g - p
+//     PX-1   |g' - g| <= kSlide_ratio |across|,   across: the part of c' - c normal to g - c
 //
 // If the nearest point moves faster (at an edge, beyond the middle of a thin part), g lags: it
 // slides along the offset surface towards that point, so the force turns at a bounded rate, and not
-// at all during a push straight in. While it lags, the outward component of g - p is at least 0, at
-// g and at the point nearest to p, so a lagging proxy never pulls the sphere in.
+// at all during a push straight in. While it lags, the outward component of g - c is at least 0, at
+// g and at the point nearest to c, so a lagging proxy never pulls the sphere in.
 #pragma once
 
 #include "model/contact/contact_point.h"
@@ -20,7 +20,7 @@
 namespace tact::model::contact {
 
 /// Chosen: at depth d in a body of curvature radius R the goal of g moves (R + r) / (R + r - d)
-/// times as far as p.
+/// times as far as c.
 inline constexpr double kSlide_ratio = 2.0;
 
 class Proxy {
@@ -35,14 +35,14 @@ class Proxy {
 
   /// Starts at this contact point, for a sphere that comes from outside.
   void restart(const ContactPoint& contact_point, double radius_m) RT_SAFE;
-  /// The sphere's centre is now at p and has moved by moved_m since the last call.
-  void follow(const SurfaceView& surface, const Vec3& p_m, const Vec3& moved_m,
+  /// The sphere's centre has moved by moved_m since the last call.
+  void follow(const SurfaceView& surface, const Vec3& centre_m, const Vec3& moved_m,
               double radius_m) RT_SAFE;
 
  private:
-  void move_to(const SurfaceView& surface, const Vec3& p_m, double across_m,
+  void move_to(const SurfaceView& surface, const Vec3& centre_m, double across_m,
                double radius_m) RT_SAFE;
-  Vec3 depth_m(const Vec3& p_m) const RT_SAFE;
+  Vec3 depth_m(const Vec3& centre_m) const RT_SAFE;
   Vec3 outward_of(const ContactPoint& nearest, const Vec3& line_m, double radius_m) const RT_SAFE;
   void slide(const SurfaceView& surface, const Vec3& goal_m, double way_m, double radius_m) RT_SAFE;
 

@@ -2,7 +2,6 @@
 #include "model/contact/rest_contact.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "model/contact/detect.h"
 
@@ -36,13 +35,13 @@ void RestContact::reset() RT_SAFE {
 }
 
 void RestContact::begin(const Sphere& sphere, const ContactPoint& contact_point,
-                        double paid_m) RT_SAFE {
-  constexpr double kUnpaidRounding_m = 1e-12;
+                        double explained_m) RT_SAFE {
+  constexpr double kRounding_m = 1e-12;
   RestSphere& s = sphere_[sphere.index];
   s.centre_m = sphere.centre_m;
   s.proxy.restart(contact_point, sphere.radius_m);
-  const double unpaid_m = sphere.radius_m - contact_point.distance_m - paid_m;
-  s.unpaid_m = unpaid_m > kUnpaidRounding_m ? unpaid_m : 0.0;
+  const double unexplained_m = sphere.radius_m - contact_point.distance_m - explained_m;
+  s.unexplained_m = unexplained_m > kRounding_m ? unexplained_m : 0.0;
   s.is_new = pressing_[sphere.index].presses = true;
 }
 
@@ -55,13 +54,13 @@ void RestContact::leave(std::size_t i) RT_SAFE {
 Step RestContact::step(Sphere& sphere, const Vec3& moved_m) RT_SAFE {
   RestSphere& s = sphere_[sphere.index];
   s.proxy.follow(scene_.surface, sphere.centre_m, moved_m, sphere.radius_m);
-  s.unpaid_m += s.proxy.lengthened_m();
-  if (s.is_held) return Step::kTouches;
+  s.unexplained_m += s.proxy.lengthened_m();
+  if (s.is_held) return Step::kStays;
   const PressingSphere& pressing = pressing_[sphere.index];
   if (sphere.lets_go && !(pressing.in.indentation_m > 0.0)) return Step::kLeaves;
   // The offset cancels all of the depth: the sphere may be at another part of the organ.
   const bool is_all_offset = s.depth_offset_m > 0.0 && !(pressing.depth_m > 0.0);
-  return s.proxy.contact_point().distance_m < sphere.radius_m && !is_all_offset ? Step::kTouches
+  return s.proxy.contact_point().distance_m < sphere.radius_m && !is_all_offset ? Step::kStays
                                                                                 : Step::kLeaves;
 }
 
@@ -81,12 +80,13 @@ void RestContact::move(const Sphere& sphere) RT_SAFE {
   } else {
     move_to_proxy(i);
     // d = r - phi - offset
-    s.depth_offset_m = std::clamp(s.depth_offset_m + s.unpaid_m, 0.0, std::max(s.reach_m, 0.0));
+    s.depth_offset_m =
+        std::clamp(s.depth_offset_m + s.unexplained_m, 0.0, std::max(s.reach_m, 0.0));
     pressing.depth_m = s.reach_m - s.depth_offset_m;
     if (pressing.response.law.status != law::LawStatus::kSaturated)
       s.within_law_m = pressing.in.indentation_m;
   }
-  s.unpaid_m = 0.0;
+  s.unexplained_m = 0.0;
   shift_m_[i] = shift_m_[i] + s.axes.of(sphere.moved_m);
   pressing.in.indentation_m += pressing.depth_m - before_m;
 }
@@ -163,8 +163,8 @@ void RestContact::couple_new_spheres() RT_SAFE {
       else if (!before[i] || !before[j])
         couple_pair(i, j);
   shear_.solve();
-  // MC-4 for f_i = 0:  t_i <- t_i + sum over j != i of c_ij P_ij f_j, by the forces f of the tick
-  // before; then exactly  t_i <- t_i - K_ii^-1 f_i,  f = K t,  K = (diag(G) + c P)^-1
+  // MC-4 for f_i = 0:  t_i <- t_i + sum over j != i of (h + b) A_ij f_j, by the forces f of the
+  // tick before; then exactly  t_i <- t_i - K_ii^-1 f_i,  f = K t,  K = (diag(G) + (h + b) A)^-1
   for (std::size_t i = 0; i < count(); ++i)
     if (is_coupled_[i] && !before[i]) {
       shift_m_[i] = shift_m_[i] + shear_.unloaded_m(shear_N_, i);
@@ -201,7 +201,7 @@ void RestContact::press() RT_SAFE {
   energy_J_ = press_together(*scene_.law, coupling_, pressing());
 }
 
-// MC-6   C <- q C,   slack_i <- slack_i + (1 - q) sum over j of C_ij F_j
+// MC-6   C <- q C,   offset_i <- offset_i + (1 - q) sum over j of C_ij F_j
 // With contact points too stiff for their coupling there could be two solutions at some depth. Then
 // C is reduced, and pressing spheres get an offset, so that forces stay and no energy is added.
 void RestContact::keep_definite() RT_SAFE {
@@ -229,13 +229,13 @@ void RestContact::keep_definite() RT_SAFE {
 
 // Friction is last, as its cap depends on the normal force.
 void RestContact::finish() RT_SAFE {
-  if (is_held_anew_) press();
-  is_held_anew_ = false;
+  if (is_newly_held_) press();
+  is_newly_held_ = false;
   stiffen();
   resist_sliding();
 }
 
-// F = (F(e) + b d') n - f - dU/ds
+// P = (F(e) + D d') n - f - dU/ds
 OrganForce RestContact::report(const Sphere& sphere, SphereContact& reported) const RT_SAFE {
   const std::size_t i = sphere.index;
   const RestSphere& s = sphere_[i];

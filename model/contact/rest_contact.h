@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // rest_contact.h - contact of a tool's spheres with an organ whose surface stays at rest.
 //
-// One potential for each sphere (c: centre, r: radius, phi: signed distance of c to the surface,
-// n = grad phi; of the surface at the proxy, proxy.h):
+// One potential for each sphere (letters: README.md; phi and n of the surface at the proxy,
+// proxy.h):
 //
 //   touching  W = U(e, s) + f . t / 2,   d = r - phi - offset,   |f| <= mu F  (Coulomb cap)
 //   held      W = U(e, s) + f . t / 2,   d, s and t relative to the frame at the moment of
@@ -16,7 +16,7 @@
 //
 // The input of the law is the indentation e: d minus the coupled displacement by the other spheres
 // (coupling.h). The coupling of two spheres is constant from the first touch until one leaves.
-// Damping (LW-3) is added last: b at the indentation times the speed of the sphere's depth, so that
+// Damping (LW-3) is added last: D at the indentation times the speed of the sphere's depth, so that
 // each sphere dissipates energy.
 //
 // rest_contact.cc: depth and normal force. rest_grip.cc: hold and release. rest_slide.cc:
@@ -36,8 +36,8 @@ struct RestSphere {
   bool is_held = false, is_new = false;  // new: since this tick
   Vec3 centre_m, moved_m, velocity_mps;  // of this tick
   Proxy proxy;
-  double unpaid_m = 0.0;  // depth since the last tick that no motion explains
-  double reach_m = 0.0;   // r - phi
+  double unexplained_m = 0.0;  // depth since the last tick that no motion explains
+  double reach_m = 0.0;        // r - phi
   double depth_offset_m = 0.0;
   double within_law_m = 0.0;  // e of the last tick within the range of the law
   // Frame of d and t
@@ -56,7 +56,7 @@ class RestContact final : public OrganContact {
 
   void reset() RT_SAFE override;
   void begin(const Sphere& sphere, const ContactPoint& contact_point,
-             double paid_m) RT_SAFE override;
+             double explained_m) RT_SAFE override;
   void leave(std::size_t i) RT_SAFE override;
   Step step(Sphere& sphere, const Vec3& moved_m) RT_SAFE override;
   void move(const Sphere& sphere) RT_SAFE override;
@@ -98,7 +98,7 @@ class RestContact final : public OrganContact {
   Shear shear_;
   Shear::Shifts shift_m_{}, shear_N_{};  // t, f
   double energy_J_ = 0.0;                // of all presses
-  bool is_held_anew_ = false;            // in this tick
+  bool is_newly_held_ = false;           // in this tick
 };
 
 }  // namespace tact::model::contact

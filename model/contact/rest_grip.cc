@@ -15,7 +15,7 @@ bool RestContact::hold(std::size_t i) RT_SAFE {
   s.held_centre_m = s.centre_m;
   s.compliance_triangle = kNoTriangle;  // the compliance of held tissue is smaller
   s.held_depth_m = pressing_[i].depth_m;
-  s.is_held = is_held_anew_ = true;
+  s.is_held = is_newly_held_ = true;
   return true;
 }
 

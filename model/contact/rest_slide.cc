@@ -11,15 +11,15 @@ namespace {
 
 constexpr double kSettled_ratio = 1e-4;  // excess over the cap at which steps and sweeps end
 
-// Limits f by Coulomb's law at the stiffness K, so that f' is parallel to the slip g f':
+// Limits f by Coulomb's law at the stiffness K, so that f' is parallel to the slip p f':
 //
-//     MC-9   f' = f - K g f',   |f'| = mu F,   g > 0
+//     MC-9   f' = f - K p f',   |f'| = mu F,   p > 0
 //
-// Newton on 1 / |f'|, which is nearly linear in g: g grows by
+// Newton on 1 / |f'|, which is nearly linear in p: p grows by
 //
-//     (|f'| / (mu F) - 1) |f'|^2 / (f' . (I + g K)^-1 K f')
+//     (|f'| / (mu F) - 1) |f'|^2 / (f' . (I + p K)^-1 K f')
 //
-// 1 / |f'| is concave, so g rises to the solution from below and |f'| does not fall below mu F:
+// 1 / |f'| is concave, so p rises to the solution from below and |f'| does not fall below mu F:
 // setting the length then shortens f'. With f' . K^-1 f' <= f . K^-1 f the slip loses energy after
 // any number of steps.
 Vec2 slipping_N(const Vec2& f_N, const Tensor2& stiffness_N_per_m, double cap_N) RT_SAFE {
@@ -28,7 +28,7 @@ Vec2 slipping_N(const Vec2& f_N, const Tensor2& stiffness_N_per_m, double cap_N)
   constexpr double kOfExcess_ratio = 1e-3;
   if (!(cap_N > 0.0)) return {};
   const Tensor2& k = stiffness_N_per_m;
-  Tensor2 m{.xx = 1.0, .yy = 1.0};  // I + g K
+  Tensor2 m{.xx = 1.0, .yy = 1.0};  // I + p K
   Vec2 left_N = f_N;
   double g_m_per_N = 0.0, length_N = norm(f_N);
   const double settled_N =
@@ -122,7 +122,7 @@ void RestContact::stiffen() RT_SAFE {
 // Limits |f| to mu F by slip of t; held tissue has no cap. Slip of one sphere changes the forces of
 // the others: kMaxSweeps sweeps at most, until no sphere was above its cap by more than
 // kSettled_ratio. A remaining excess is removed from the force only, and slips in the next tick.
-// Each slip loses energy: W falls by (f + f') . K^-1 (f - f') / 2, whatever the other spheres do.
+// Each slip loses energy: W falls by (f + f') . K^-1 (f - f') / 2, however the others move.
 void RestContact::resist_sliding() RT_SAFE {
   constexpr int kMaxSweeps = 5;
   constexpr double kRounding_N = 1e-12;  // without friction the cap is 0

@@ -2,9 +2,9 @@
 // rotation.h - rotation of a surface point of a bending organ: the whole rotation, the part of it
 // that gives the direction of the displacement, and the moment of a load on the slope.
 //
-//     Q = exp(theta u),   Q^k = exp(k theta u),   theta = atan|t|,   u = n x t / |t|
+//     Q = exp(theta u),   Q^k = exp(k theta u),   theta = atan|z|,   u = n x z / |z|
 //
-//     n  normal at rest   t  slope of the moved surface, across n: Q turns n to (n + t) / |n + t|
+//     n  normal at rest   z  slope of the moved surface, across n: Q turns n to (n + z) / |n + z|
 //     k  chord ratio      exp(theta u) the rotation about u by theta, rad
 #pragma once
 
@@ -20,9 +20,9 @@ struct SineCosine {
 
 struct Rotation {
   Vec3 normal;                            // n
-  Vec3 slope;                             // t
+  Vec3 slope;                             // z
   Vec3 axis;                              // u, or 0 without a slope
-  double tangent = 0.0, angle_rad = 0.0;  // |t|, theta
+  double tangent = 0.0, angle_rad = 0.0;  // |z|, theta
   SineCosine whole, chord, rest;          // of theta, k theta and (1 - k) theta
 };
 
@@ -58,7 +58,7 @@ inline Vec3 jacobian_transposed(const SineCosine& of, double angle_rad, const Ve
   return s * z + ((1.0 - s) * dot(axis, z)) * axis - c * cross(axis, z);
 }
 
-/// Moment on the slope, N m: -d/dt of load . (Q^k shift + Q arm) at a fixed load. All three vectors
+/// Moment on the slope, N m: -d/dz of load . (Q^k shift + Q arm) at a fixed load. All three vectors
 /// are after rotation: the load on the tool, Q^k shift and Q arm.
 inline Vec3 moment_on_slope(const Rotation& q, double chord_ratio, const Vec3& load_N,
                             const Vec3& turned_shift_m, const Vec3& turned_arm_m) RT_SAFE {
@@ -67,11 +67,11 @@ inline Vec3 moment_on_slope(const Rotation& q, double chord_ratio, const Vec3& l
   const Vec3 on_arm =
       jacobian_transposed(q.whole, q.angle_rad, q.axis, cross(load_N, turned_arm_m));
   const Vec3 m = chord_ratio * on_chord + on_arm;
-  // d(theta u) = g n x dt + (dg/dx) / x (t . dt) n x t,   g = atan(x) / x,   x = |t|
+  // d(theta u) = s n x dz + (ds/dx) / x (z . dz) n x z,   s = atan(x) / x,   x = |z|
   const double x = q.tangent;
-  const double g = x > 1e-6 ? q.angle_rad / x : 1.0;
-  const double bend = x > 1e-3 ? (1.0 / (1.0 + x * x) - g) / (x * x) : -2.0 / 3.0 + 0.8 * x * x;
-  return g * cross(m, q.normal) + (bend * dot(m, x * q.axis)) * q.slope;
+  const double s = x > 1e-6 ? q.angle_rad / x : 1.0;
+  const double bend = x > 1e-3 ? (1.0 / (1.0 + x * x) - s) / (x * x) : -2.0 / 3.0 + 0.8 * x * x;
+  return s * cross(m, q.normal) + (bend * dot(m, x * q.axis)) * q.slope;
 }
 
 }  // namespace tact::model::contact

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // shear.h - tangential springs of spheres on the same tissue, one per sphere, coupled.
 //
-//     MC-4   t_i = G_i f_i + sum over j != i of c_ij P_ij f_j        W = sum f_i . t_i / 2
+//     MC-4   t_i = G_i f_i + sum over j != i of (h + b) A_ij f_j,   W = sum f_i . t_i / 2
 //            |f_i| <= mu F_i unless held (Coulomb)
 //
 //     t_i   tangential displacement of contact point i, m     f_i   its force, N: in two axes each
 //     G_i   MC-5, m/N, a tensor: depends on the direction, and falls while the contact grows
-//     c     h + b of MC-2, limited so that diag(G) + c P is positive definite: by a third of 0.9 of
-//           each of the two springs, and all of a sphere's by 0.9 of its spring
-//     P_ij  projects the axes of j on those of i
+//     h, b  of MC-2; their sum is limited so that diag(G) + (h + b) A is positive definite: by a
+//           third of 0.9 of each of the two springs, and all of a sphere's by 0.9 of its spring
+//     A_ij  projects the axes of j on those of i
 //
 // On a half-space h is exact across the line between two contact points; along it a factor of
 // 1 / (1 - nu) is neglected [Johnson, Contact Mechanics (1985), 3.6]. b is that of the normal
 // motion, as the compliance map has no tangential coupling. The axes of a contact point turn with
-// its normal, G and c P with them.
+// its normal, G and A with them.
 #pragma once
 
 #include <array>

@@ -2,14 +2,14 @@
 // smooth_surface.h - a triangle mesh as one smooth surface, and the compliance of the organ at any
 // of its points.
 //
-// b: weights of the corners x_i, q = sum b_i x_i. Value and slope are known at every corner. The
+// w: weights of the corners x_i, x_0 = sum w_i x_i. Value and slope are known at every corner. The
 // linear interpolation plus half of the change by the slopes interpolates both and is exact for a
 // quadratic.
 //
-//     SF-1   x = q + sum b_i ((x_i - q) . n_i) n_i / 2          surface point, m
-//     SF-2   n = sum b_i n_i / |sum b_i n_i|                    normal
-//     SF-3   G = sum b_i (G_i + (x - x_i) . dG_i / 2)           compliance, 3 by 3, m/N
-//     SF-4   T = -(1 - n n') (sum b_i dG_i) n / 2               slope of the surface per load, 1/N
+//     SF-1   x = x_0 + sum w_i ((x_i - x_0) . n_i) n_i / 2      surface point, m
+//     SF-2   n = sum w_i n_i / |sum w_i n_i|                    normal
+//     SF-3   G = sum w_i (G_i + (x - x_i) . dG_i / 2)           compliance, 3 by 3, m/N
+//     SF-4   T = -(1 - n n') (sum w_i dG_i) n / 2               slope of the surface per load, 1/N
 //
 // All are continuous over the edges. n . dx is of second order in the angle between the corners'
 // normals, so a frictionless sphere that slides over x with a force along n does almost no work.
@@ -86,7 +86,7 @@ struct LocalPosition {
 };
 LocalPosition local_position(const SurfaceFrame& frame, const Vec3& point_m) RT_SAFE;
 
-/// Least displacement of the point x + h n over that of x; 0 at a centre of curvature.
+/// Least displacement of the point x + height n over that of x; 0 at a centre of curvature.
 double offset_ratio(const SurfaceFrame& frame, double height_m) RT_SAFE;
 
 /// Displacement of the surface point that makes `tangential_m` zero: one Newton step.

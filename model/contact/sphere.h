@@ -2,7 +2,6 @@
 // sphere.h - one probe sphere of a tool: geometry, state, and the contact that is reported.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>

@@ -91,7 +91,7 @@ TipState ComplianceCurve::exact(double depth_m) const RT_SAFE {
         tip_.radius_m * (t + s * (1.0 - t * t)) * (1.0 + at.stiffness_N_per_m * regular_m_per_N_);
     double next = s + miss_m / slope_m;
     // Newton where it stays in the bracket, else the middle:
-    // so the bracket shrinks whatever the slope.
+    // so the bracket shrinks for any slope.
     if (!(next > low && next < high)) next = 0.5 * (low + high);
     const bool done = std::abs(next - s) <= 4e-16 * next;
     s = next;

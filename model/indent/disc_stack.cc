@@ -80,7 +80,7 @@ DiscStackState DiscStack::with_flat_layers(std::size_t flat, double flattening_m
 
 DiscStackState DiscStack::at_limit() const RT_SAFE {
   DiscStackState out = with_flat_layers(layers_ - 1, disc_.travel_m);
-  // Sum and product round differently: a stack at its limit gives exactly the limit that it tells.
+  // Sum and product round differently: a stack at its limit gives exactly its limit.
   out.force_N = force_limit_N();
   out.depth_m = depth_limit_m();
   return out;

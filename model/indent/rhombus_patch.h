@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// rhombus_patch.h - parallel rhombus chains under a round tip, which touches more of them with
+// rhombus_patch.h - parallel rhombus chains under a round tip, which covers more of them with
 // growing depth.
 //
-// One chain stands for the area A of the surface, f and u are its force and energy, and the tip is
+// One chain represents the area A of the surface, f and u are its force and energy, and the tip is
 // r^2 / (2 R) above the surface at the radius r:
 //
 //     RC-15  F(d) = (1/A) integral of f(d - gap) 2 pi r dr = (2 pi R / A) u(d)

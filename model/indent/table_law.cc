@@ -110,14 +110,14 @@ Result<double> check_unloading(Rows rows, Rows loading, bool is_left_out) {
   });
   if (!falls && after.size() <= loading.size() / 20) return 0.0;
   const double taken_J = work_J(loading),
-               given_J = falls ? -work_J(rows.subspan(loading.size() - 1)) : 0.0;
-  const double lost_ratio = 1.0 - given_J / taken_J;
-  if (given_J > taken_J)
+               returned_J = falls ? -work_J(rows.subspan(loading.size() - 1)) : 0.0;
+  const double lost_ratio = 1.0 - returned_J / taken_J;
+  if (returned_J > taken_J)
     return blame(after.front(),
                  fmt::format("the unloading from here on gives back {:.3g} mJ, the "
                              "loading took {:.3g} mJ; no passive tissue does that; is "
                              "the order of the rows turned round?",
-                             1e3 * given_J, 1e3 * taken_J));
+                             1e3 * returned_J, 1e3 * taken_J));
   if (is_left_out) return lost_ratio;
   return blame(
       after.front(),
@@ -215,7 +215,7 @@ void visit(ParameterVisitor& v, TableParameters& p) {
   v.number("force_ratio", {0.001, 1000.0}, "times the measured force", p.force_ratio,
            Need::kOptional);
   constexpr std::array kUnloading{Choice{"refuse", "a file that has it"},
-                                  Choice{"leave_out", "the loading alone is felt"}};
+                                  Choice{"leave_out", "the loading alone gives force"}};
   v.choice("unloading", kUnloading, "rows after the deepest one", p.leaves_unloading,
            Need::kOptional);
 }

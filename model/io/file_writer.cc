@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <climits>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 
@@ -19,7 +18,7 @@
 namespace tact::model::io {
 namespace {
 
-// Chosen: one call for many ticks; what tells a format fits into 16 bytes.
+// Chosen: one call for many ticks; what identifies a format fits into 16 bytes.
 constexpr std::size_t kBuffer_bytes = 1 << 16, kBeginning_bytes = 16;
 // Of one process in one folder at a time.
 constexpr int kMaxParts = 100;
@@ -104,11 +103,11 @@ Result<Target> target_of(const std::string& path, std::string_view beginning) {
                   "file, or remove this one");
 }
 
-/// A temporary that nobody else has, beside the target.
+/// A temporary file of this process alone, in the folder of the target.
 Result<std::pair<std::string, int>> open_part(const std::string& path, const Target& target) {
   for (int n = 0; n < kMaxParts; ++n) {
-    // In the same folder: only then a rename is one step. O_EXCL and O_NOFOLLOW: nobody else's
-    // file, and no link that somebody laid there.
+    // In the same folder: only then a rename is one step. O_EXCL and O_NOFOLLOW: neither another's
+    // file nor a link that another user placed there.
     std::string part = fmt::format("{}.{}-{}.part", target.path, getpid(), n);
     const int fd =
         open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, kNewMode);
@@ -122,10 +121,10 @@ Result<std::pair<std::string, int>> open_part(const std::string& path, const Tar
 }
 
 Result<int> open_straight(const std::string& path, const Target& target) {
-  // Not blocking: a pipe that nobody reads would be waited for.
+  // Not blocking: open() would wait for a reader of a pipe.
   const int fd = open(target.path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
   if (fd < 0 && errno == ENXIO)
-    return error_of(path, "nobody reads this pipe; start its reader first");
+    return error_of(path, "this pipe has no reader; start its reader first");
   if (fd < 0 || fcntl(fd, F_SETFL, O_WRONLY) != 0) return cannot_write(path, errno);
   return fd;
 }

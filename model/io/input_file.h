@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// input_file.h - the one way to read a file: regular files only, up to a size, errors told.
+// input_file.h - the one way to read a file: regular files only, up to a size, errors reported.
 //
 // A pipe, a socket or a device is refused before it is opened: opening one can wait for ever or
 // change it. A read that fails is an error, never a shorter text.

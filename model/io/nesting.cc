@@ -51,7 +51,7 @@ std::optional<std::size_t> too_deep(std::string_view text, bool is_toml) {
       continue;
     }
     if (c == '[' || c == '{') ++depth;
-    // Too many closing ones are for the parser to tell.
+    // The parser reports too many closing ones.
     if ((c == ']' || c == '}') && depth > 0) --depth;
     // Dots add up over one key, blanks between its parts included.
     if (is_toml && c == '.')

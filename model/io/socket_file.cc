@@ -36,7 +36,7 @@ Error system_error(const std::string& path, const char* what) {
                "; choose a folder that you may write to with --socket"};
 }
 
-bool somebody_listens(const sockaddr_un& address, int type) {
+bool is_in_use(const sockaddr_un& address, int type) {
   // Asked by a connection: a file alone says nothing, as it stays when its process is killed.
   const int probe = socket(AF_UNIX, type | SOCK_NONBLOCK, 0);
   const bool alive = probe >= 0 && (connect(probe, plain(address), sizeof address) == 0 ||
@@ -53,7 +53,7 @@ std::optional<Error> clear_the_way(const std::string& path, const sockaddr_un& a
     return system_error(path, "cannot look at it");
   }
   if (!S_ISSOCK(info.st_mode)) return Error{path + ": is no socket; choose another --socket"};
-  if (somebody_listens(address, type))
+  if (is_in_use(address, type))
     return Error{path + ": another tactd is running there; stop it, or choose another --socket"};
   if (unlink(path.c_str()) != 0) return system_error(path, "cannot replace the old socket");
   return std::nullopt;
@@ -69,8 +69,8 @@ Result<std::string> runtime_directory() {
   if (mkdir(path.c_str(), 0700) != 0 && errno != EEXIST)
     return Error{path + ": " + std::strerror(errno) + "; set XDG_RUNTIME_DIR to a folder of yours"};
   struct stat info{};
-  // lstat: in /tmp somebody may have laid a link of that name.
-  // 027: nobody but its owner writes, no stranger looks.
+  // lstat: in /tmp another user may have placed a link of that name.
+  // 027: only its owner writes, others do not read.
   if (lstat(path.c_str(), &info) != 0 || !S_ISDIR(info.st_mode) || info.st_uid != getuid() ||
       (info.st_mode & 027) != 0)
     return Error{path +
@@ -93,9 +93,9 @@ std::optional<Error> check_socket_folder(const std::string& path, const Trust& t
   const std::string parent = std::filesystem::path(path).parent_path().string();
   const std::string folder = parent.empty() ? "." : parent;
   struct stat info{};
-  // Nobody can put anything into what is not there.
+  // A folder that does not exist cannot be written to.
   if (stat(folder.c_str(), &info) != 0) return std::nullopt;
-  // With the sticky bit, as /tmp has it, nobody replaces what is another's.
+  // With the sticky bit, as /tmp has it, users cannot replace the files of others.
   const bool others_write = (info.st_mode & 022) != 0 && (info.st_mode & S_ISVTX) == 0;
   if (S_ISDIR(info.st_mode) && is_trusted(info.st_uid, trust) && !others_write) return std::nullopt;
   return Error{folder +

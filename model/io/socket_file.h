@@ -14,7 +14,7 @@
 
 namespace tact::model::io {
 
-/// Who is trusted besides the user of this process and root; nobody, unless somebody names them.
+/// Who is trusted besides the user of this process and root; none unless named.
 struct Trust {
   std::optional<uid_t> user;
   std::optional<gid_t> group;  // whose members may be at the other end; no folder is theirs
@@ -33,7 +33,7 @@ inline const sockaddr* plain(const sockaddr_un& address) {
 }
 
 /// Error: in the folder of `path` another user than this one, root and the trusted one could put a
-/// socket of that name. No error where there is no such folder: who binds or connects there is told
+/// socket of that name. No error where there is no such folder: bind() or connect() reports that
 /// that.
 std::optional<Error> check_socket_folder(const std::string& path, const Trust& trust = {});
 
@@ -45,8 +45,8 @@ bool is_trusted(uid_t user, const Trust& trust = {});
 bool has_trusted_peer(int socket, const Trust& trust = {});
 
 /// A new local socket of this type (as SOCK_SEQPACKET | SOCK_CLOEXEC), bound to `path`: its
-/// descriptor. From the first moment nobody but its user may connect (0600). The socket that an
-/// ended process left there is replaced. Error: somebody listens there, another user could put one
+/// descriptor. From the first moment only its user may connect (0600). The socket that an
+/// ended process left there is replaced. Error: a process listens there, another user could put one
 /// there, or none can be made.
 Result<int> bind_socket(const std::string& path, int type);
 

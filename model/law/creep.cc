@@ -7,7 +7,7 @@
 namespace tact::model::law {
 namespace {
 
-constexpr double kSlowest_per_tick = 1e-9;  // stands for 0, where all of the force fades
+constexpr double kSlowest_per_tick = 1e-9;  // used for 0, where all of the force fades
 
 // CP-2: g_0 - sum g_i x / (p_i - x), p and x per tick.
 double modulus_at(const Relaxation& r, double x) {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "model/law/law_bounds.h"
 
@@ -20,7 +19,7 @@ constexpr int kMaxIterations = 100;
 SeriesLaw::SeriesLaw(const Law& law, double compliance_m_per_N, const Law& shape)
     : law_(&law), shape_(&shape), compliance_m_per_N_(compliance_m_per_N) {
   const LawRange own = law.range();
-  // A give above zero deepens the pair, but no place saturates
+  // A compliance above zero deepens the pair, but no place saturates
   // deeper than the law alone; one below zero shortens it.
   range_ = {.pull_m = std::max(own.pull_m, depth_of(own.pull_m)),
             .press_m = std::min(own.press_m, depth_of(own.press_m))};
@@ -64,7 +63,7 @@ LawResponse SeriesLaw::respond(double depth_m) const RT_SAFE {
   return beyond_limit(out, inside_m, depth_m);
 }
 
-// SL-4. A give below zero would raise the damping above the law's own: it counts as none.
+// SL-4. A compliance below zero would raise the damping above the law's own: it counts as none.
 double SeriesLaw::damping_Ns_per_m(double depth_m) const RT_SAFE {
   if (!(depth_m > 0.0) || !std::isfinite(depth_m)) return 0.0;
   const double indentation_m = indentation_at(std::min(depth_m, range_.press_m));
@@ -77,10 +76,11 @@ double SeriesLaw::damping_Ns_per_m(double depth_m) const RT_SAFE {
 Result<SeriesLaw> make_series_law(const Law& law, double compliance_m_per_N, const Law& shape) {
   const double most_N_per_m = stiffest_N_per_m(law, law.range().pull_m, law.range().press_m);
   if (!(1.0 + compliance_m_per_N * most_N_per_m > 0.0) || !std::isfinite(compliance_m_per_N))
-    return Error{fmt::format(
-        "law in series: a give of {:g} m/N with a law of up to {:g} N/m; allowed: finite and above "
-        "-1 / stiffness",
-        compliance_m_per_N, most_N_per_m)};
+    return Error{
+        fmt::format("law in series: a compliance of {:g} m/N with a law of up to {:g} N/m; "
+                    "allowed: finite and above "
+                    "-1 / stiffness",
+                    compliance_m_per_N, most_N_per_m)};
   return SeriesLaw(law, compliance_m_per_N, shape);
 }
 

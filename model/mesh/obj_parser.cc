@@ -29,7 +29,7 @@ bool holds(const std::array<std::string_view, n>& words, std::string_view word) 
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
 
-// At most 24 printable characters of what stands in the file, so that an error stays one line.
+// At most 24 printable characters of the file's text, so that an error stays one line.
 std::string quoted(std::string_view word) {
   std::string shown(word.substr(0, 24));
   for (char& c : shown)
@@ -121,7 +121,7 @@ class Parser {
     const char* first = word.data() + (word.size() > 1 && word[0] == '+' && word[1] != '-');
     const auto [stopped, code] = std::from_chars(first, last, number);
     const bool beyond = code == std::errc::result_out_of_range;
-    // Out of range is told of 1e-400 as of 1e400; the sign of the exponent tells which.
+    // 1e-400 and 1e400 are both "out of range"; the sign of the exponent distinguishes them.
     const bool tiny = word.find("e-") != word.npos || word.find("E-") != word.npos;
     const bool read = (code == std::errc{} || beyond) && stopped == last;
     // 0 is near enough to the tiny one; the other is made large enough to be refused below.

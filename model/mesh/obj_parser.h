@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// obj_parser.h - the text of a Wavefront OBJ file as vertices and faces, nothing judged yet.
+// obj_parser.h - the text of a Wavefront OBJ file as vertices and faces, nothing checked yet.
 //
 // Read: v (x y z; a weight after it is checked and dropped; red, green and blue of 0 to 1 after it
 // are the vertex's colour) and f (v, v/vt, v//vn, v/vt/vn; counted from 1, or from the end when

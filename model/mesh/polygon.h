@@ -5,7 +5,7 @@
 // other corner. The roundest ear goes first, roundness = 2 A / (longest edge)^2: this picks the
 // better diagonal of a quad, and leaves no flat triangle where corners lie on a straight side.
 // Works for convex and concave polygons that are about flat. A polygon without an ear (it crosses
-// itself) is cut as a fan; what comes of it is for the caller to judge. Set-up code only.
+// itself) is cut as a fan; what comes of it is for the caller to check. Set-up code only.
 #pragma once
 
 #include <cstdint>

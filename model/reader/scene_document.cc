@@ -87,7 +87,7 @@ class Override {
       if (toml::table* table = parent->as_table()) {
         child = table->get(head);
         // A section that the file does not have is made by
-        // put(); whether it may be there the keys tell.
+        // put(); whether it may be there, the keys decide.
         if (!child) return std::nullopt;
       } else {
         toml::array& entries = *parent->as_array();

@@ -44,7 +44,7 @@ void Keys::visit_root(SceneVisit& visit, const Inside& inside) {
   keys.finish();
 }
 
-/// Keeps what stands there where the value is not good.
+/// Keeps the present value where the value is not good.
 template <typename T>
 void Keys::store(const toml::node& node, std::string_view key, Result<T> value, T& out) {
   if (value)
@@ -133,7 +133,7 @@ void Keys::one_of(std::string_view key, std::span<const Choice> choices,
   const toml::node* node = take(key, names_of(choices), "");
   const std::optional<std::size_t> index =
       node ? match(key, choices, *node) : std::optional<std::size_t>{};
-  // Without the deciding key nobody knows which others belong: none is called unknown.
+  // Without the deciding key the set of valid keys is unknown: none is called unknown.
   all_named_ = index.has_value();
   if (index) further(*index);
 }
@@ -243,7 +243,7 @@ std::optional<std::size_t> Keys::match(std::string_view key, std::span<const Cho
   return std::nullopt;
 }
 
-/// Called after the key was taken, so what is allowed stands in the last known entry.
+/// Called after the key was taken, so its range is in the last known entry.
 void Keys::check(const toml::node& node, std::string_view key, std::string_view problem) {
   visit_.note(ProblemKind::kWrong, visit_.document()->position_of(node),
               fmt::format("{} {}; allowed: {}", path_to(key), problem, known_.back().allowed));

@@ -4,8 +4,8 @@
 // A scene is described by functions that visit its keys through Keys. The same visit serves twice:
 // reading, it takes values from a document and notes every problem; describing, it has no document
 // and notes one row of the reference per key. What a visit of a section did not name is unknown.
-// Of all problems one is told: wrong values before missing keys before keys that contradict each
-// other, in the order of the file, overrides first. Set-up code only.
+// Of all problems one is reported: wrong values before missing keys before keys that contradict
+// each other, in the order of the file, overrides first. Set-up code only.
 #pragma once
 
 #include <array>
@@ -43,7 +43,7 @@ class SceneVisit {
   const std::vector<ReferenceRow>& rows() const { return rows_; }
   void add(ReferenceRow row) { rows_.push_back(std::move(row)); }
   void note(ProblemKind kind, const TextPosition& position, const std::string& message);
-  /// The problem to tell, if there is one.
+  /// The problem to report, if there is one.
   std::optional<Error> problem() const;
 
  private:
@@ -123,9 +123,9 @@ class Keys final : public ParameterVisitor {
   /// All other keys of this section are for another reader: none is unknown.
   void leave_others() { all_named_ = false; }
 
-  /// Where a key stands, or else its section.
+  /// The line of a key, or else of its section.
   TextPosition position_of(std::string_view key) const;
-  /// These keys contradict each other; told at the overridden one, or else at the first.
+  /// These keys contradict each other; reported at the overridden one, or else at the first.
   void refuse(std::initializer_list<std::string_view> keys, const std::string& message) override;
 
  private:

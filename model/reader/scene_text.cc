@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <numeric>
 #include <vector>
 
@@ -33,7 +32,7 @@ bool differs_only_in_unit(std::string_view key, std::string_view known) {
   const io::UnitName* unit = io::find_unit(known);
   if (!unit || key == known) return false;
   const std::string_view stem = known.substr(0, known.size() - unit->suffix.size());
-  // Whatever stands behind the stem was meant as a unit, known or not.
+  // Any text behind the stem was meant as a unit, known or not.
   return key == stem || (key.starts_with(stem) && key[stem.size()] == '_');
 }
 

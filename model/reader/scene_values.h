@@ -30,7 +30,7 @@ std::string_view type_name(const toml::node& node);
 Result<double> as_number(const toml::node& node, Range range);
 Result<std::size_t> as_count(const toml::node& node, CountRange range);
 Result<Vec3> as_vector(const toml::node& node, Range each);
-/// `names`: one letter for each number, which an error tells.
+/// `names`: one letter for each number, which an error names.
 template <std::size_t n>
 Result<std::array<double, n>> as_numbers(const toml::node& node, Range each,
                                          const char (&names)[n + 1]);

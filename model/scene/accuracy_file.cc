@@ -84,8 +84,8 @@ std::string hash_of_forces(const Scene& scene, const TissueLaw& law) {
       site.leave(0);
     }
     if (k > 0) {
-      const auto [skin, lobe] = site.coupling(before, at, scene.tool.spheres[0].radius_m);
-      hash.add(fmt::format("{:.6g} {:.6g}", skin, lobe));
+      const auto [near, structural] = site.coupling(before, at, scene.tool.spheres[0].radius_m);
+      hash.add(fmt::format("{:.6g} {:.6g}", near, structural));
     }
     before = at;
   }
@@ -130,8 +130,8 @@ Result<Accuracy> read_accuracy(const Scene& scene) {
                              scene.path)};
   std::error_code failed;
   if (!fs::exists(path, failed))
-    return Error{fmt::format("nobody has measured it; {}", remedy(scene))};
-  // What is lacking is told from the outside inwards,
+    return Error{fmt::format("it was never measured; {}", remedy(scene))};
+  // What is lacking is reported from the outside inwards,
   // each time with the commands that make it again.
   const auto text = io::read_file(path, remedy(scene));
   if (!text) return text.error();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // accuracy_file.h - how true the force of a scene's whole tool is, as tact-lab chart measured it.
 //
-// SCENE.accuracy stands beside SCENE.toml, a table for each law. tactd --check tells it. A
+// SCENE.accuracy is next to SCENE.toml, a table for each law. tactd --check prints it. A
 // figure counts for what was measured alone: the hash is of forces, so another law, parameter,
 // organ or tool has another one, and another hand or device has not. A scene keeps its tolerance
 // where the RMS, of the peak, and the error of the own force at every place and depth are within
@@ -34,7 +34,8 @@ std::size_t worst_depth(const Accuracy& accuracy);
 bool keeps(const Accuracy& accuracy, const ToleranceSettings& tolerance);
 
 /// Of what the law answers at places and depths spread over the organ, of how they couple, and of
-/// the tool's spheres: 16 hex digits. As a linear reference judges it: compliance.large_strain off.
+/// the tool's spheres: 16 hex digits. As a linear reference evaluates it: compliance.large_strain
+/// off.
 Result<std::string> hash_of_linear_forces(const Scene& scene, std::string_view law_name);
 
 /// "model/scenes/liver.accuracy"

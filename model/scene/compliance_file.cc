@@ -125,7 +125,7 @@ std::string compliance_checksum(const std::string& path) {
   constexpr std::size_t kSum_bytes = sizeof(std::uint64_t);
   const auto bytes = io::read_file(path);
   if (!bytes || bytes->size() < kSum_bytes) return {};
-  // Not computed: it stands for the file in the hash of a scene, and read_compliance_map checks it.
+  // Not computed: it identifies the file in the hash of a scene, and read_compliance_map checks it.
   return bytes->substr(bytes->size() - kSum_bytes);
 }
 

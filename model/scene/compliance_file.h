@@ -31,7 +31,7 @@ std::string compliance_checksum(const std::string& path);
 /// Of [[elastic.inclusion]], their moduli as ratios to that of the organ; 0: there is none.
 std::uint32_t inclusions_hash(const ElasticSettings& elastic);
 
-/// Same shape, same hash, wherever the surface stands: triangles, and vertices relative to the
+/// Same shape, same hash, for any position of the surface: triangles, and vertices relative to the
 /// first one in steps of 0.1 um. 16 hex digits.
 std::string surface_hash(const contact::SurfaceView& surface);
 

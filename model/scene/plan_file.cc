@@ -70,11 +70,11 @@ Result<Plan> plan_of(const toml::table& root) {
   return plan;
 }
 
-/// Seal before meaning: a damaged plan is told as such.
+/// Seal before meaning: a damaged plan is reported as such.
 Result<Plan> parse_plan(const std::string& path) {
   const auto text = io::read_file(path, "it cannot be used");
   if (!text) return Error{text.error().message};
-  // A plan that somebody edited was never measured.
+  // An edited plan was never measured.
   if (!io::is_sealed(*text)) return Error{"damaged, its sha256 is missing or another"};
   const auto root = io::parse_toml(*text, "the plan");
   if (!root) return Error{fmt::format("damaged, {}", root.error().message)};

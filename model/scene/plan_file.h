@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // plan_file.h - the law and size that tact-lab plan chose for a scene on this machine, as a file.
 //
-// A scene with law = "auto" is felt through it. The file stands in the user's cache, named by the
+// A scene with law = "auto" is felt through it. The file is in the user's cache, named by the
 // hash of the scene, so a changed scene has none; it also names the machine that was measured. A
 // file that is missing, damaged or of another machine is an error whose remedy is to plan again;
 // then the figures of SCENE.accuracy choose, without a time.
@@ -48,7 +48,7 @@ Result<std::string> write_plan(const Plan& plan, const std::string& path);
 Result<Plan> read_plan(const std::string& path, const Scene& scene,
                        const std::vector<std::string>& overrides);
 /// The plan of this scene on this machine, from the cache. With law=auto among the overrides that
-/// may be the plan of the scene without it, whatever law stands in its file.
+/// may be the plan of the scene without it, with any law in its file.
 Result<Plan> find_plan(const Scene& scene, const std::vector<std::string>& overrides);
 /// That plan. Where this machine has none, as after a fresh clone: the law that the scene's file
 /// names, if SCENE.accuracy has its figure, else the one there with the least worst error; its

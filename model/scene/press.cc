@@ -51,7 +51,7 @@ bool is_outside(const contact::ContactScene& contact, const Tool& tool) {
   });
 }
 
-/// How far across its way the tool stands out.
+/// Half the extent of the tool across its path.
 double breadth_m(const contact::ContactScene& contact, const Vec3& inward) {
   double most_m = 0.0;
   for (const contact::ProbeSphere& sphere : contact.spheres)

@@ -71,11 +71,11 @@ struct PressResult {
   PressExtreme change_N;         // of the force vector in one step
   PressExtreme least_N;          // F
   PressExtreme energy_ratio;     // W / A - 1, less what rounding to steps explains; 0: not checked
-  bool is_not_rendered = false;  // a sphere came into the organ and feels nothing
+  bool is_not_rendered = false;  // a sphere came into the organ and has no force
   bool is_unsettled = false;     // its force would have jumped and was slowed down
 };
 
-inline constexpr double kDrawTolerance_N = 1e-3;        // of F below 0; chosen: nobody feels it
+inline constexpr double kDrawTolerance_N = 1e-3;  // of F below 0; chosen: below what a hand notices
 inline constexpr double kEnergyTolerance_ratio = 0.02;  // chosen
 
 struct PressFlaws {
@@ -111,7 +111,7 @@ class Presser {
  public:
   /// `scene` must outlive it.
   static Result<std::unique_ptr<Presser>> make(const Scene& scene, const PressSettings& settings);
-  /// The same whatever was pressed before.
+  /// Independent of earlier presses.
   PressResult press(const PressPoint& place);
   /// With the depth that is pressed, and whether the energy is checked.
   const PressSettings& settings() const { return settings_; }

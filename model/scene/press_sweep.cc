@@ -6,7 +6,7 @@
 namespace tact::model::scene {
 namespace {
 
-// On skin that is steeper against the hand the tool slides along it: cos 60 degrees.
+// On a surface that is steeper against the hand the tool slides along it: cos 60 degrees.
 constexpr double kMinFacing = 0.5;
 
 }  // namespace

@@ -76,7 +76,7 @@ void vary_on_the_own_organ_only(Scene& scene) {
   if (!map || map->mesh_hash == surface_hash(scene.organ_mesh.view())) return;
   scene.varies_by_place = false;
   scene.note = fmt::format(
-      "{}: {} is of another organ than {}, so varies_by_place is off: every place feels as a "
+      "{}: {} is of another organ than {}, so varies_by_place is off: every place acts as a "
       "half-space of this tissue; make a map: tact-lab condense {} --out FILE",
       scene.path, scene.compliance.map_path, scene.organ.mesh_path, scene.path);
 }
@@ -133,7 +133,7 @@ Result<Scene> load_scene(const std::string& path, const std::vector<std::string>
   scene.path = path;
   scene.hand_site_m = text.script.site_m;
   scene.hand_inward = normalized(text.script.inward);
-  // Strokes before meshes: what is wrong in the text is told before files are read that take long.
+  // Strokes before meshes: errors of the text are reported before files are read that take long.
   scene.hand.path = way_points(text.script, scene.tool.spheres, scene.limits, visit);
   if (auto problem = visit.problem()) return *problem;
   if (auto failed = load_meshes(text, scene)) return *failed;

@@ -71,7 +71,7 @@ struct Scene {
   LookSettings look;
   DeviceSettings device;
   HandSettings hand;
-  Vec3 hand_site_m;  // the point that the simulated hand touches, W
+  Vec3 hand_site_m;  // the point at which the simulated hand presses, W
   Vec3 hand_inward;  // its way in, unit, W
   Limits limits;
   std::vector<std::string> live;  // keys that may change on hardware while it runs (variant.h)

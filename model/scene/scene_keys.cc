@@ -33,7 +33,7 @@ void visit_tool(Keys& k, SceneText& out) {
   visit_mesh(k, out.tool_mesh);
   k.vector("handle_m", {-0.3, 0.3}, "its point at the device's reference point, tool frame",
            out.script.handle_m, kOptional);
-  k.entries("sphere", {1, contact::kMaxSpheres}, "what touches the organ", [&](Keys& sphere) {
+  k.entries("sphere", {1, contact::kMaxSpheres}, "in contact with the organ", [&](Keys& sphere) {
     contact::ProbeSphere& probe = out.scene.tool.spheres.emplace_back();
     sphere.vector("offset_m", {-0.2, 0.2}, "of the centre from the tool's origin, tool frame",
                   probe.offset_m);
@@ -162,7 +162,7 @@ void visit_scene(Keys& k, DeviceKeys device_keys, SceneText& out) {
                  kOptional);
     organ.vector("position_m", kAnywhere_m, "of the mesh's origin, in W", scene.organ.position_m);
   });
-  k.section("tool", "what touches it", visit_tool, out);
+  k.section("tool", "the tool in contact with it", visit_tool, out);
   k.section("look", "what the viewer paints; no force depends on it", visit_look, out, kOptional);
   k.section("contact", "between tool and organ", visit_contact, scene);
   k.section("device", "what the hand holds", [&](Keys& device) {

@@ -93,7 +93,7 @@ void visit_truth(Keys& k, Scene& scene) {
             [&](Keys& keys) {
               ReferenceSite& site = scene.reference_sites.emplace_back();
               keys.count("vertex", {0, kMaxSiteVertex}, "of the organ's mesh, from 0", site.vertex);
-              keys.flag("held_out", "not used by tact-lab fit, only to judge", site.held_out);
+              keys.flag("held_out", "not used by tact-lab fit, only to evaluate", site.held_out);
             });
   k.section("tolerance", "what is good enough: tact-lab plan chooses by it", visit_tolerance,
             scene.tolerance);

@@ -157,7 +157,7 @@ void visit_stroke(reader::Keys& keys, Stroke& stroke) {
     stroke.action = static_cast<Action>(index);
     switch (stroke.action) {
       case Action::kPress:
-        keys.number("depth_m", {0.0, 0.05}, "of the lowest probe sphere, 0 just touches",
+        keys.number("depth_m", {0.0, 0.05}, "of the lowest probe sphere, 0: at the surface",
                     stroke.depth_m);
         break;
       case Action::kSlide:
@@ -193,7 +193,7 @@ std::vector<HandWaypoint> way_points(const HandScript& script,
   const auto refuse = [&](const reader::TextPosition& position, const std::string& why) {
     visit.note(reader::ProblemKind::kConflict, position, why);
   };
-  // A place that the reader did not write himself is told with where it comes from.
+  // A place that the reader did not write himself is reported with its source.
   const bool apart = script.handle_m != Vec3{};
   if (const std::optional<Error> error = check_place(script.home_m + script.handle_m, limits))
     refuse(script.home_position,
@@ -208,7 +208,7 @@ std::vector<HandWaypoint> way_points(const HandScript& script,
     if (pulls && !writer.is_closed())
       refuse(stroke.position, name + " pulls with an open grip; put a grip stroke before it");
     writer.write(stroke);
-    // A release ends at home, which has been judged.
+    // A release ends at home, which has been evaluated.
     if (stroke.action == Action::kRelease) continue;
     if (const std::optional<Error> error = check_place(writer.position_m(), limits))
       refuse(stroke.position,

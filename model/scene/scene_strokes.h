@@ -5,7 +5,7 @@
 //                                                         radius_i)
 //
 //     p       where the hand wants the tool's origin, W
-//     d       how deep the lowest probe sphere would be, m; at d = 0 it just touches the contact
+//     d       how deep the lowest probe sphere would be, m; at d = 0 it is at the contact
 //     point inward  unit direction into the tissue, W;  R: how the tool is turned
 //     slid    sum of the slides since the last release, and of what turns moved the origin along
 //
@@ -16,7 +16,6 @@
 #pragma once
 
 #include <span>
-#include <string>
 #include <vector>
 
 #include "model/contact/contact.h"
@@ -53,7 +52,7 @@ struct HandScript {
 /// The keys of one [[hand.stroke]].
 void visit_stroke(reader::Keys& keys, Stroke& stroke);
 
-/// How far the tool stands out from its origin along a unit direction, m.
+/// Extent of the tool from its origin along a unit direction, m.
 double reach_m(std::span<const contact::ProbeSphere> spheres, const Vec3& inward);
 
 /// From home through every stroke. Home and the end of each stroke lie inside the workspace, a pull

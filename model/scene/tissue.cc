@@ -9,7 +9,7 @@ Result<std::unique_ptr<Tissue>> make_tissue(const Scene& scene) {
   auto law = make_tissue_law(scene, scene.law);
   if (!law) return law.error();
   const double pull_limit_N = (*law)->pull_limit_N();
-  // Else the tool would hang on the tissue, whatever the hand pulls.
+  // Else the tool would hang on the tissue, however hard the hand pulls.
   if (pull_limit_N > 0.0 && !(scene.contact.tear_force_N < pull_limit_N))
     return Error{
         fmt::format("{}: contact.tear_force_N = {:g} is never reached: the law pulls with {:g} N "

@@ -45,7 +45,7 @@ TissueLawBuilder::Step TissueLawBuilder::add_compliance() {
   return finish_field();
 }
 
-// Without a map the hand meets no more than the virtual spring, whatever the nodes do in one tick.
+// Without a map the hand meets no more than the virtual spring, however the nodes move in a tick.
 TissueLawBuilder::Step TissueLawBuilder::add_spring_patch() {
   const auto& own = scene_.laws.of<springs::SpringPatchParameters>();
   // As the patch does: a mesh may have fewer vertices.

@@ -27,7 +27,7 @@ class TissueLaw {
   /// Working range of curve(), less near the held side; of a stepped law, what its parameters say.
   law::LawRange range() const { return range_; }
   /// Largest pull it can give, at its stiffest place, N; 0: it cannot pull, or its parameters do
-  /// not tell.
+  /// not say.
   double pull_limit_N() const { return pull_limit_N_; }
   /// Largest dF/dd inside the range and short of the tear force, N/m: what device and rate must be
   /// able to render.
@@ -51,7 +51,7 @@ class TissueLaw {
  private:
   friend class TissueLawBuilder;
 
-  std::vector<std::unique_ptr<law::Law>> owned_;  // direct laws first, then what stands on them
+  std::vector<std::unique_ptr<law::Law>> owned_;  // direct laws first, then those built on them
   std::vector<const law::Law*> curves_;           // what the field reads
   std::vector<float> press_coordinate_;           // of each vertex in the family; empty: one curve
   std::vector<float> pull_coordinate_;

@@ -25,7 +25,7 @@ double stiffer_N_per_m(double a, double b) { return a >= b || std::isnan(a) ? a 
 
 }  // namespace
 
-/// One law everywhere, or in series with the give of each place.
+/// One law everywhere, or in series with the compliance of each place.
 TissueLawBuilder::Step TissueLawBuilder::finish_curve(const law::Law& curve) {
   if (scene_.varies_by_place)
     return scene_.compliance.large_strain ? bend(curve) : vary_by_place(curve);
@@ -37,7 +37,7 @@ TissueLawBuilder::Step TissueLawBuilder::finish_curve(const law::Law& curve) {
 }
 
 // The law is the tip's own indentation, the same everywhere; each curve of the family adds its
-// give, which is one of small strain.
+// compliance, which is one of small strain.
 TissueLawBuilder::Step TissueLawBuilder::vary_by_place(const law::Law& curve) {
   auto family = read_scene_family(scene_, false);
   if (!family) return family.error();

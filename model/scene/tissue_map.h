@@ -3,8 +3,6 @@
 // each vertex. Set-up code only.
 #pragma once
 
-#include <vector>
-
 #include "model/result.h"
 #include "model/scene/scene.h"
 #include "model/tissue/compliance_family.h"

@@ -36,6 +36,15 @@ std::optional<Error> change(std::vector<LawNumber>& numbers, const std::string& 
 
 }  // namespace
 
+std::vector<std::string> merged(std::vector<std::string> set, std::span<const std::string> more) {
+  const auto key_of = [](const std::string& each) { return each.substr(0, each.find('=')); };
+  for (const std::string& each : more) {
+    std::erase_if(set, [&](const std::string& old) { return key_of(old) == key_of(each); });
+    set.push_back(each);
+  }
+  return set;
+}
+
 std::vector<LawNumber> law_numbers(Scene& scene) {
   std::vector<LawNumber> out;
   const auto add = [&out](std::string_view section, const Parameter& p) {

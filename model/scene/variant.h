@@ -31,6 +31,8 @@ struct Variant {
   std::unique_ptr<Tissue> tissue;
 };
 
+/// `set` changed by `more`, each KEY=VALUE: a key of both keeps the value of `more`.
+std::vector<std::string> merged(std::vector<std::string> set, std::span<const std::string> more);
 /// The scene with these numbers, each KEY=VALUE. The error names a key that may not change, or the
 /// range of its value.
 Result<Scene> with_numbers(Scene scene, std::span<const std::string> set);

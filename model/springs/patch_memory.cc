@@ -33,7 +33,7 @@ void PatchMemory::forget(std::size_t node, const Vec3& rest_m) RT_SAFE {
   for (std::size_t i = 0; i < relaxation_.terms(); ++i) stretched_[i][node] = rest_m;
 }
 
-// X + z. Displacements are blended, so that a node at rest feels exactly that.
+// X + z. Displacements are blended, so that a node at rest has exactly that.
 Vec3 PatchMemory::blend_m(std::size_t node, const Vec3& position_m,
                           const Vec3& rest_m) const RT_SAFE {
   Vec3 z = relaxation_.share(0) * (position_m - rest_m);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// patch_memory.h - relaxation of a spring patch: what its springs feel of where its nodes are.
+// patch_memory.h - relaxation of a spring patch: the node positions that its springs use.
 //
 //     z = g_0 u + sum of g_i e_i           springs and anchors act at X + z (shares: relaxation.h)
 //     a tick   e_i += du,  z += du         the step of an integrator: elastic, nothing flows

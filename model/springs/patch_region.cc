@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/springs/patch_region.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -107,8 +106,9 @@ void PatchRegion::add(std::uint32_t vertex, std::uint32_t ring) RT_SAFE {
 }
 
 void PatchRegion::gather(std::span<const std::uint32_t> triangles) RT_SAFE {
-  // In this order: energy, while the old region stands; lips, before their slots are gone; the new
-  // region at rest; what stays from the old one; springs; and only then what all that has added.
+  // In this order: energy, while the old region exists; cut edges, before their slots are gone; the
+  // new region at rest; what stays from the old one; springs; and only then what all that has
+  // added.
   const double before_J = free_energy_J();
   std::swap(vertex_, old_vertex_);
   std::swap(position_m_, old_position_m_);

@@ -4,13 +4,13 @@
 //
 // Vertices outside stay at rest. A vertex with a neighbour outside is the rim and stays there too,
 // so every vertex that moves has all its springs. A vertex that leaves the region returns to rest,
-// except on the lips of a cut, which keep the displacement that they had. The energy that a return
+// except on the edges of a cut, which keep the displacement that they had. The energy that a return
 // adds is taken from the kinetic energy of those that stay. What that cannot cover is kept as
 // energy_deficit_J; it is small, since hardly anything moves at the rim. With relaxation
-// (patch_memory.h) a vertex that leaves also forgets how it was stretched, lips too.
+// (patch_memory.h) a vertex that leaves also forgets how it was stretched, cut edges too.
 //
 // Gathering costs the region, not the mesh. Cuts are marks on edges; the list of cut triangles and
-// of lips has a fixed capacity, and a blade that finds it full cuts no more.
+// of cut edges has a fixed capacity, and a blade that finds it full cuts no more.
 #pragma once
 
 #include <array>
@@ -45,11 +45,11 @@ class PatchRegion {
   std::size_t cut(const contact::BladeSweep& sweep) RT_SAFE;
 
   /// What is stepped; with relaxation its positions are what the springs feel, and flow() after
-  /// the last step of a tick tells the vertices where they are.
+  /// the last step of a tick sets the positions of the vertices.
   SpringNetwork network(std::span<const ProbeSpring> probes) RT_SAFE;
   void flow() RT_SAFE { memory_.flow({position_m_.data(), count_}, {rest_m_.data(), count_}); }
   bool relaxes() const RT_SAFE { return memory_.is_on(); }
-  /// How far a vertex of the region is from where its springs feel it.
+  /// How far a vertex of the region is from the position that its springs use.
   Vec3 flowed_m(std::uint32_t slot) const RT_SAFE {
     return memory_.flowed_m(slot, position_m_[slot]);
   }

@@ -16,7 +16,7 @@ std::vector<PatchEdge> edges_of(const contact::SurfaceView& mesh) {
   for (std::uint32_t t = 0; t < mesh.triangle.size(); ++t) {
     for (std::size_t e = 0; e < 3; ++e) {
       const std::uint32_t other = mesh.neighbour[t][e];
-      // The lower triangle has told it.
+      // The lower triangle has reported it.
       if (other != contact::kNoTriangle && other < t) continue;
       const auto [a, b] = std::minmax(mesh.triangle[t][e], mesh.triangle[t][(e + 1) % 3]);
       edges.push_back({.a = a,
@@ -41,7 +41,7 @@ void index_edges(PatchSurface& surface) {
       surface.edge_of[next[v]++] = i;
 }
 
-// Short waves of a net are softer than long ones: what that adds to the give, within 6 % for
+// Short waves of a net are softer than long ones: what that adds to the compliance, within 6 % for
 // anchors of k / 40 to 2 k.
 constexpr double kShortWaves = 1.2;
 

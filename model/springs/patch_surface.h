@@ -7,7 +7,7 @@
 //
 //     sideways      MA-21 for the anchor of each vertex             a tool that drags it
 //
-// p is the pretension: a cut edge no longer pulls its ends together, and the loads open the lips.
+// p is the pretension: a cut edge no longer pulls its ends together, and the loads open the cut.
 // Built once for the whole mesh; the loop changes the cut marks alone.
 #pragma once
 

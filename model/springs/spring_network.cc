@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/springs/spring_network.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstring>
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,7 +13,7 @@
 namespace tact::model::springs {
 namespace {
 
-// What moved by less than a micrometre is not seen. Lips get half of
+// What moved by less than a micrometre is not seen. Cut edges get half of
 // the room at most, or an old cut would hide the contact.
 constexpr double kShownMove_m = 1e-6;
 constexpr double kLostIndentations =
@@ -95,7 +94,7 @@ std::size_t SpringPatch::memory_bytes() const {
   return sizeof *this + region_.memory_bytes() + stepper_.memory_bytes();
 }
 
-// Broken tissue stays so until nothing touches it: a fresh patch under a pressed tool would kick.
+// Broken tissue stays so until the tool is out of contact: a fresh patch would kick.
 void SpringPatch::leave(std::size_t sphere) RT_SAFE {
   if (sphere >= contact::kMaxSpheres) return;
   contact_[sphere] = {};
@@ -106,7 +105,7 @@ void SpringPatch::leave(std::size_t sphere) RT_SAFE {
 
 contact::ContactLawResponse SpringPatch::respond(const contact::Indentation& in) RT_SAFE {
   if (in.sphere >= contact::kMaxSpheres) return {.law = {.status = law::LawStatus::kInvalid}};
-  // Whatever is answered with no force below must not be stepped either.
+  // Input that gives no force below is not stepped either.
   Touch& sphere_contact = contact_[in.sphere];
   sphere_contact = {};
   const contact::SurfaceView& mesh = region_.surface().mesh;

@@ -9,7 +9,7 @@
 //
 //     d  depth of the tool, m    q  coupling, N/m    n_i  vertex normal    x, X  position, rest, m
 //
-// The virtual spring q stands between tool and nodes: it is all the stiffness that the hand can
+// The virtual spring q is between tool and nodes: it is all the stiffness that the hand can
 // meet in one tick, it never pulls unless the contact point is held, and its reaction falls on the
 // corners with the same weights and directions with which w is read. So W is one potential for any
 // place, also across an edge, and the tool can only get back what it stored; springs and drag take
@@ -20,12 +20,12 @@
 // the tool, can be cut, and give it nothing back. A net of springs cannot be an elastic body: its
 // indentation fades within a length of its own, and its force grows with the depth, not with d^1.5.
 //
-// Without it, sideways the tool drags its place with that give, and the nodes do not move (MA-21):
-// the virtual spring and the tissue in a row, whatever the radius, since a node is the smallest
+// Without it, sideways the tool drags its place with that compliance, and the nodes do not move
+// (MA-21): the virtual spring and the tissue in a row, for any radius, since a node is the smallest
 // contact.
 //
 // Valid for |d| <= working_depth_m; beyond, the force is that of the limit and kSaturated. Cost a
-// tick: the region's nodes, whatever the mesh. Should the nodes leave the finite numbers, or an
+// tick: the region's nodes, for any mesh. Should the nodes leave the finite numbers, or an
 // indentation ten times the working depth, they are put to rest and the patch gives zero force and
 // kSingular until every sphere has left; the step check at make keeps that from happening.
 // Source: MA-1 to MA-9; coupling and cut are ours.
@@ -45,8 +45,8 @@ namespace tact::model::springs {
 struct SpringPatchParameters {
   PatchTissue tissue{};                     // k and a_mean > 0, 0 <= p <= 0.5
   double coupling_stiffness_N_per_m = 0.0;  // q, > 0
-  double node_mass_kg = 0.0;                // m, > 0; the least that the step allows feels best
-  double working_depth_m = 0.0;             // > 0
+  double node_mass_kg = 0.0;     // m, > 0; the least that the step allows is closest to tissue
+  double working_depth_m = 0.0;  // > 0
   double tick_s = 0.001;
   std::size_t spheres = 1;  // of the tool, 1 .. kMaxSpheres
   std::size_t nodes = 500;  // 16 .. kMaxPatchNodes
@@ -79,7 +79,7 @@ class SpringPatch final : public contact::ContactLaw {
   double fade_ratio() const RT_SAFE override;
   double ring_pitch_m() const RT_SAFE override { return ring_pitch_m_; }
 
-  /// Displaced vertices, lips of cuts first, then the nearest to the contact; cost bounded.
+  /// Displaced vertices, cut edges first, then the nearest to the contact; cost bounded.
   bool shape(contact::PatchShape& out) RT_SAFE override;
 
   /// Springs, anchors and virtual springs, above the intact surface at rest; a cut takes it below

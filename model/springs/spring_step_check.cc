@@ -54,7 +54,7 @@ Bounds bounds_of(const SpringNetwork& network, const ProbeLoad& probe) {
     if (square > largest) largest = square, out.fastest_node = i;
   }
   out.omega_radps = std::sqrt(largest);
-  // No spring has told a ratio: count on no damping.
+  // No spring has a damping ratio: assume no damping.
   if (std::isinf(out.low_s)) out.low_s = 0.0;
   return out;
 }

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // The integrators of integrators.h on a whole network (spring_network.h).
-#include <algorithm>
-#include <cmath>
 
 #include "model/springs/spring_network.h"
 
@@ -152,7 +150,7 @@ void SpringStepper::linearise(const SpringNetwork& network, double step_s) RT_SA
     // left out, or the matrix might not be definite.
     t.across = squeeze > 0.0 ? h * h * s.stiffness_N_per_m * squeeze : 0.0;
     // The mean of its three axes: one number a node as
-    // preconditioner, whatever way the springs point.
+    // preconditioner, for any direction of the springs.
     const double mean = (t.along + 2.0 * t.across) / 3.0;
     preconditioner_[s.i] += mean;
     preconditioner_[s.j] += mean;

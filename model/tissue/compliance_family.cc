@@ -12,20 +12,20 @@ namespace {
 constexpr std::size_t kMaxCurves = 65;
 
 /// r and r_pull of every vertex, m/N.
-struct Give {
+struct Compliances {
   std::vector<double> press_m_per_N, pull_m_per_N;
   std::size_t limited_vertices = 0;
 };
 
 /// CF-3, each limited to kMaxStiffness_ratio.
-Give give_of(const ComplianceMap& map, const indent::ElasticTip& tip) {
+Compliances compliances_of(const ComplianceMap& map, const indent::ElasticTip& tip) {
   const double disc = 1.0 / tip.pulled_stiffness_N_per_m();
   const double side = 1.0 / tip.sideways_stiffness_N_per_m();
   const double sphere = 1.0 / tip.stiffest_press_N_per_m();
   // r at which a place is kMaxStiffness_ratio times as stiff; the
-  // smaller give keeps press and pull both within it.
+  // smaller compliance keeps press and pull both within it.
   const double least = (1.0 / contact::kMaxStiffness_ratio - 1.0) * std::min(disc, sphere);
-  Give out;
+  Compliances out;
   for (std::size_t v = 0; v < map.vertices(); ++v) {
     const auto scaled = [&tip](float times_E_per_m) {
       return static_cast<double>(times_E_per_m) / tip.youngs_modulus_Pa;
@@ -80,7 +80,7 @@ std::array<float, 6> symmetric(const Mat3& m) {
 
 Mat3 square(double s, const Vec3& v) { return {{s * v.x * v, s * v.y * v, s * v.z * v}}; }
 
-/// Where a compliance stands among the curves.
+/// The position of a compliance among the curves.
 struct Scale {
   double disc_m_per_N, soft_N_per_m, span;  // c_disc; q_0; ln(q_(K-1) / q_0)
   double last;                              // K - 1
@@ -99,16 +99,16 @@ struct Scale {
 };
 
 /// From the softest press to the stiffest pull.
-Scale scale_of(const Give& give, double disc_m_per_N, std::size_t curves) {
+Scale scale_of(const Compliances& of, double disc_m_per_N, std::size_t curves) {
   Scale scale{.disc_m_per_N = disc_m_per_N,
               .soft_N_per_m = 0.0,
               .span = 0.0,
               .last = static_cast<double>(curves - 1)};
   // r_pull <= r (CF-3): the softest place presses, the stiffest one pulls.
-  scale.soft_N_per_m = scale.stiffness_N_per_m(
-      *std::max_element(give.press_m_per_N.begin(), give.press_m_per_N.end()));
-  const double stiff_N_per_m = scale.stiffness_N_per_m(
-      *std::min_element(give.pull_m_per_N.begin(), give.pull_m_per_N.end()));
+  scale.soft_N_per_m =
+      scale.stiffness_N_per_m(*std::max_element(of.press_m_per_N.begin(), of.press_m_per_N.end()));
+  const double stiff_N_per_m =
+      scale.stiffness_N_per_m(*std::min_element(of.pull_m_per_N.begin(), of.pull_m_per_N.end()));
   // An organ that gives alike everywhere has a span of 0, by which CF-2 divides.
   scale.span = std::max(std::log(stiff_N_per_m / scale.soft_N_per_m), 1e-9);
   return scale;
@@ -157,12 +157,12 @@ Result<ComplianceFamily> make_compliance_family(const ComplianceMap& map,
                                .poisson_ratio = map.poisson_ratio,
                                .radius_m = p.tip_radius_m,
                                .large_strain = p.large_strain};
-  const Give give = give_of(map, tip);
-  const Scale scale = scale_of(give, 1.0 / tip.pulled_stiffness_N_per_m(), p.curves);
+  const Compliances of = compliances_of(map, tip);
+  const Scale scale = scale_of(of, 1.0 / tip.pulled_stiffness_N_per_m(), p.curves);
   ComplianceFamily out;
-  out.limited_vertices = give.limited_vertices;
-  for (const double r : give.press_m_per_N) out.press_coordinate.push_back(scale.coordinate(r));
-  for (const double r : give.pull_m_per_N) out.pull_coordinate.push_back(scale.coordinate(r));
+  out.limited_vertices = of.limited_vertices;
+  for (const double r : of.press_m_per_N) out.press_coordinate.push_back(scale.coordinate(r));
+  for (const double r : of.pull_m_per_N) out.pull_coordinate.push_back(scale.coordinate(r));
   for (std::size_t k = 0; k < p.curves; ++k) {
     const double at = static_cast<double>(k);
     const std::vector<double> rings =

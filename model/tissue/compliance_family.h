@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // compliance_family.h - the laws of a whole organ: a few curves from soft to stiff, and where each
-// vertex stands among them.
+// vertex is among them.
 //
 //     CF-1   q = 1 / (c_disc + r)                                  pull stiffness of a place, N/m
 //     CF-2   kappa = (K - 1) ln(q / q_0) / ln(q_(K-1) / q_0)       0 .. K - 1
 //     CF-3   r_pull = r - n1^2 / (c_side + s1) - n2^2 / (c_side + s2)
 //
-// A tip pressed without friction feels r. A gripped patch is led straight outward and cannot follow
-// the organ sideways: it feels r_pull, at most r. So a vertex has two coordinates; which one counts
-// is a matter of the sign of the depth, and both give U = 0 at rest. Between curves the field
-// blends energies linearly (elastic_field.h); 17 curves keep that within 0.5 % of the force of a
-// curve made for the place, 1.5 % where the stiffer of two is at its end already
+// A tip pressed without friction has the coordinate r. A gripped patch is led straight outward and
+// cannot follow the organ sideways: it has r_pull, at most r. So a vertex has two coordinates;
+// which one counts is a matter of the sign of the depth, and both give U = 0 at rest. Between
+// curves the field blends energies linearly (elastic_field.h); 17 curves keep that within 0.5 % of
+// the force of a curve made for the place, 1.5 % where the stiffer of two is at its end already
 // (compliance_family_test.cc).
 //
 // Close to the held side the organ is stiffer than its own surface can show: r is limited so that a

@@ -5,7 +5,7 @@
 //     r(s) = C(s) - C_half          regular part of the normal compliance at the place s, m/N
 //
 // C is the finite-element displacement of the organ under a unit force spread over a patch of
-// radius a0, averaged as the patch feels it; C_half is the half-space's under the same patch
+// radius a0, averaged over the patch; C_half is the half-space's under the same patch
 // (tools/condense). The singular part, which knows only the patch, cancels: r hardly depends on a0,
 // is smooth along the surface, and belongs to the organ alone: its shape, its thickness, where it
 // is held. It scales with 1 / E, so the map holds r E, 1/m; it does depend on nu. Above 0 where a

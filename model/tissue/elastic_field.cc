@@ -15,7 +15,7 @@ namespace {
 // More than telemetry shows (32) and than any family has (kMaxComplianceRings + 1).
 constexpr std::size_t kMaxProfile = 64;
 
-// Of two parts of one force: a limit reached by either is told.
+// Of two parts of one force: a limit reached by either is reported.
 law::LawStatus worse(law::LawStatus a, law::LawStatus b) RT_SAFE {
   return b >= law::LawStatus::kSaturated && b > a ? b : a;
 }
@@ -152,7 +152,7 @@ contact::ContactCoupling ElasticField::coupling(const contact::Indentation& a,
                                                 double distance_m) const RT_SAFE {
   const double modulus_Pa = parts_.neighbours.contact_modulus_Pa;
   if (!(modulus_Pa > 0.0) || !(distance_m > 0.0)) return {};
-  // MC-2   h = 1 / (pi E* s) + min(g, 0),   b = max(g, 0)
+  // MC-2   h = 1 / (pi E* |c_i - c_j|) + min(S_ij, 0),   b = max(S_ij, 0)
   const double half_space_m_per_N = 1.0 / (std::numbers::pi * modulus_Pa * distance_m);
   const double map_m_per_N = 0.5 * (regular_m_per_N(a.surface_point, distance_m) +
                                     regular_m_per_N(b.surface_point, distance_m));
@@ -177,7 +177,7 @@ double ElasticField::stiffest_N_per_m(const contact::SurfacePoint& surface_point
     const double soft = stiffest_N_per_m_[blend.low];
     return soft + blend.fraction * (stiffest_N_per_m_[blend.low + 1] - soft);
   };
-  // Any depth below 0 stands for pull, which has coordinates of its own.
+  // Any depth below 0 means pull, which has coordinates of its own.
   return held ? std::max(at(0.0), at(-1.0)) : at(0.0);
 }
 
@@ -187,12 +187,12 @@ contact::TangentCompliance ElasticField::tangent_compliance(
   const ElasticNeighbours& near = parts_.neighbours;
   if (!(near.contact_modulus_Pa > 0.0)) return {};
   const double nu = near.poisson_ratio;
-  // MC-5  G = c/a I + S,  c = (2 - nu)/(8 mu),  mu = E* (1 - nu)/2
-  contact::TangentCompliance give{
+  // MC-5   G_i = B / a_i I + S_i,   B = (2 - nu) / (4 E* (1 - nu))
+  contact::TangentCompliance out{
       .contact_m2_per_N = (2.0 - nu) / (4.0 * (1.0 - nu) * near.contact_modulus_Pa),
       .rest_m_per_N = {}};
   if (near.tangent_times_E_per_m.empty() || !is_on_surface(surface_point, parts_.surface))
-    return give;
+    return out;
   std::array<double, 6> s{};
   for (std::size_t i = 0; i < 3; ++i) {
     const TangentTensors& both =
@@ -204,8 +204,8 @@ contact::TangentCompliance ElasticField::tangent_compliance(
   }
   const Mat3 s_m_per_N{{Vec3{s[0], s[5], s[4]}, Vec3{s[5], s[1], s[3]}, Vec3{s[4], s[3], s[2]}}};
   const Vec3 &a = axes.unit[0], &b = axes.unit[1], s_a = s_m_per_N * a, s_b = s_m_per_N * b;
-  give.rest_m_per_N = {.xx = dot(a, s_a), .xy = dot(a, s_b), .yy = dot(b, s_b)};
-  return give;
+  out.rest_m_per_N = {.xx = dot(a, s_a), .xy = dot(a, s_b), .yy = dot(b, s_b)};
+  return out;
 }
 
 std::size_t ElasticField::profile(const contact::Indentation& in,

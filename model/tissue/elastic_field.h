@@ -9,17 +9,17 @@
 //
 // so the field has one potential and no stroke along the surface makes energy. Press and pull may
 // have a coordinate each: U = 0 between them. An answer costs at most 2 (1 + terms) look-ups,
-// whatever the mesh. Two contact points, s apart, couple as those of one elastic body:
+// for any mesh. Two contact points, s apart, couple as those of one elastic body:
 //
-//     MC-2   h = 1 / (pi E* s_ij) + min(g, 0) >= 0,   b = max(g, 0),   g = (g_i + g_j) / 2
+//     MC-2   h = 1 / (pi E* |c_i - c_j|) + min(S_ij, 0) >= 0,   b = max(S_ij, 0)
 //
-// half-space and the organ's regular part, g: that of the rings of the compliance map, below 0
-// beside the held side. Sideways a contact point gives way by half-space and regular part, too, by
-// another length in each direction:
+// half-space and the organ's regular part S_ij: the mean of both points' rings of the compliance
+// map, below 0 beside the held side. Sideways a contact point gives way by half-space and regular
+// part, too, by another length in each direction:
 //
-//     MC-5   G_i = (2 - nu) / (8 mu a_i) I + S_i,   mu = E* (1 - nu) / 2
+//     MC-5   G_i = B / a_i I + S_i,   B = (2 - nu) / (4 E* (1 - nu))
 //
-//     G   m/N, 2 x 2, along the surface     S  of the map (CF-4)     a   radius of the contact, m
+//     G   m/N, 2 x 2, along the surface    S_i  of the map (CF-4)    a_i  radius of the contact, m
 #pragma once
 
 #include <algorithm>

@@ -8,9 +8,9 @@
 namespace tact::model::tissue {
 namespace {
 
-constexpr double kMinSpread = 1e-6;  // of what a disc of skin has: below, there is no plane
+constexpr double kMinSpread = 1e-6;  // of what a disc of surface has: below, there is no plane
 
-/// Moments of r over skin around a point, in two axes of its tangent plane.
+/// Moments of r over the surface around a point, in two axes of its tangent plane.
 struct Moments {
   double count = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
   double r = 0.0, xr = 0.0, yr = 0.0;
@@ -26,7 +26,7 @@ struct Moments {
 
 std::vector<Vec3> indentation_tilt(const ComplianceMap& map, const contact::SurfaceView& surface) {
   std::vector<Vec3> out(map.vertices());
-  // Sorted along x, a slab of skin moves over the organ: no vertex is held against all others.
+  // Sorted along x, a slab of surface moves over the organ: no vertex is held against all others.
   const auto x_m = [&](std::size_t v) { return surface.vertex_m[v].x; };
   std::vector<std::size_t> by_x(out.size());
   std::iota(by_x.begin(), by_x.end(), 0);
@@ -51,10 +51,10 @@ std::vector<Vec3> indentation_tilt(const ComplianceMap& map, const contact::Surf
     const double xx = m.xx - m.x * m.x / m.count, yy = m.yy - m.y * m.y / m.count;
     const double xy = m.xy - m.x * m.y / m.count, determinant = xx * yy - xy * xy;
     const double disc = m.count * kTiltReach_m * kTiltReach_m;
-    // Too few vertices, or all on a line: no slope is told.
+    // Too few vertices, or all on a line: no slope is reported.
     if (!(determinant > kMinSpread * disc * disc)) continue;
     const double xr = m.xr - m.x * m.r / m.count, yr = m.yr - m.y * m.r / m.count;
-    // CF-6  t = grad r / 2, grad r by least squares over the disc of skin
+    // CF-6  t = grad r / 2, grad r by least squares over the disc of surface
     out[v] = 0.5 / determinant * ((yy * xr - xy * yr) * e1 + (xx * yr - xy * xr) * e2);
   }
   return out;

@@ -5,13 +5,11 @@
 //     CF-5   u(x) = u(rho) + T(rho) F t . (x - s)
 //     CF-6   t = grad r / 2
 //
-//     u     displacement of the skin, m; u(rho) its mean around the contact point, the rings of the
-//           map
-//     F     force at the contact point s, N             T   the taper of the outer rings
-//           (ring_taper)
-//     r     give of a place beyond a half-space (compliance_map.h), m/N;  t   1/N
+//     u     displacement of the surface, m; u(rho) its mean around the contact point (map's rings)
+//     F     force at the contact point s, N      T   the taper of the outer rings (ring_taper)
+//     r     compliance of a place beyond a half-space (compliance_map.h), m/N;  t   1/N
 //
-// G(x, s), how far x sinks with a unit force at s, beyond a half-space, is symmetric and r(s) is
+// G(x, s), displacement of x by a unit force at s, beyond a half-space, is symmetric and r(s) is
 // G(s, s): along the surface r changes twice as fast as G does. grad r is that of the plane through
 // the r of all surface within kTiltReach_m that looks the same way.
 #pragma once

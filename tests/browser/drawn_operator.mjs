@@ -27,7 +27,7 @@ export async function watch(page, seconds) {
           hand_m: at["right fingers"],
           tool_m: window.tact.drawn_tool_m([0, 0, 0]),
           grip_m: window.tact.drawn_tool_m([0, 0, grip_m]),
-          told_error_m: window.tact.grip_error_m,
+          reported_error_m: window.tact.grip_error_m,
           camera_m: window.tact.camera_m,
           words: window.tact.tracking_words,
           shown: document.getElementById("tracking").hidden ? "" : document.getElementById("tracking").textContent,

@@ -13,7 +13,7 @@ function put_on() {
   window.emulated = new window.IWER.XRDevice(window.IWER.metaQuest3);
   window.emulated.stereoEnabled = true;
   window.emulated.installRuntime({ forceInstall: true });
-  // A headset that nobody wears asks for no pictures; iwer's goes on.
+  // A headset that is not worn asks for no pictures; iwer's goes on.
   const ask = window.XRSession.prototype.requestAnimationFrame;
   let waiting = null;
   window.lay_aside = (aside) => {

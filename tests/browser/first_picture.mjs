@@ -22,7 +22,7 @@ async function one_run(browser, number) {
   const tactd = start_tactd("liver", socket);
   await page.goto(url, { waitUntil: "commit" });
   await waits(page, () => window.tact?.first_drawn_ms);
-  const told = await page.evaluate(() => ({
+  const measured = await page.evaluate(() => ({
     drawn_ms: window.tact.first_drawn_ms,
     opened_ms: performance.timeOrigin,
     steps: performance.getEntriesByType("mark").map((mark) => [mark.name, performance.timeOrigin + mark.startTime]),
@@ -38,10 +38,10 @@ async function one_run(browser, number) {
   await stop(tactd);
   await stop(viewer);
   if (process.env.STEPS) {
-    for (const [name, at, end] of [["link printed", ready_ms], ["page opened", told.opened_ms], ...told.steps, ...told.loads])
+    for (const [name, at, end] of [["link printed", ready_ms], ["page opened", measured.opened_ms], ...measured.steps, ...measured.loads])
       console.log(`   ${Math.round(at - begin_ms)} ${end ? Math.round(end - begin_ms) : ""} ${name}`);
   }
-  return told.drawn_ms - begin_ms;
+  return measured.drawn_ms - begin_ms;
 }
 
 async function run() {

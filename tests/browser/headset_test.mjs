@@ -120,10 +120,10 @@ async function check_picture(page) {
   check(
     "the panel says state and force",
     await waits(page, () => {
-      const { told } = window.tact.headset;
-      return told.includes("armed") && told.includes("live") && told.some((line) => /^\d+\.\d\d N$/.test(line));
+      const { shown } = window.tact.headset;
+      return shown.includes("armed") && shown.includes("live") && shown.some((line) => /^\d+\.\d\d N$/.test(line));
     }),
-    headset.told.join(" | "),
+    headset.shown.join(" | "),
   );
 }
 
@@ -157,48 +157,48 @@ async function check_hands(page, sent) {
   });
   const after = await numbers(page);
   const others = sent.slice(from).filter((text) => !/^\{"seen":\d+\}$/.test(text));
-  check("controllers and hands tell tact-view nothing", sent.length > from && others.length === 0, others[0]);
+  check("controllers and hands send tact-view nothing", sent.length > from && others.length === 0, others[0]);
   check("... and change nothing on the page", state(before) === state(after) && after.headset.on);
 }
 
 async function check_silence(page, tactd) {
   tactd.kill("SIGSTOP");
   check(
-    "the panel tells a silence, and marks what is old",
+    "the panel shows a silence, and marks what is old",
     await waits(page, () => {
-      const { told, alarm } = window.tact.headset;
+      const { shown, alarm } = window.tact.headset;
       return (
         alarm &&
-        told.some((line) => line.startsWith("no news for")) &&
-        told.some((line) => line.startsWith("old: ")) &&
-        told.includes("silent") &&
-        !told.includes("armed")
+        shown.some((line) => line.startsWith("no news for")) &&
+        shown.some((line) => line.startsWith("old: ")) &&
+        shown.includes("silent") &&
+        !shown.includes("armed")
       );
     }),
-    (await numbers(page)).headset.told.join(" | "),
+    (await numbers(page)).headset.shown.join(" | "),
   );
   tactd.kill("SIGCONT");
-  check("... and its end", await waits(page, () => !window.tact.headset.alarm && window.tact.headset.told.includes("armed")));
+  check("... and its end", await waits(page, () => !window.tact.headset.alarm && window.tact.headset.shown.includes("armed")));
   await page.evaluate(() => window.lay_aside(true));
   await page.waitForTimeout(600);
   tactd.kill("SIGSTOP");
   check(
-    "with the headset laid aside the desk tells a silence all the same",
+    "with the headset laid aside the desk shows a silence all the same",
     await waits(page, () => document.getElementById("state").textContent.startsWith("no news for"), null, 5000),
   );
   tactd.kill("SIGCONT");
   await page.evaluate(() => window.lay_aside(false));
-  await waits(page, () => !window.tact.headset.alarm && window.tact.headset.told.includes("armed")); // what is frozen then
+  await waits(page, () => !window.tact.headset.alarm && window.tact.headset.shown.includes("armed")); // what is frozen then
   await page.keyboard.press("p");
   check(
-    "a frozen display is told as such",
+    "a frozen display is reported as such",
     await waits(
       page,
-      () => window.tact.headset.told.some((line) => /frozen/.test(line)) && window.tact.headset.told.includes("old: armed"),
+      () => window.tact.headset.shown.some((line) => /frozen/.test(line)) && window.tact.headset.shown.includes("old: armed"),
     ),
   );
   await page.keyboard.press("p");
-  await waits(page, () => window.tact.headset.told.includes("armed"));
+  await waits(page, () => window.tact.headset.shown.includes("armed"));
 }
 
 async function check_end(page, before) {
@@ -222,14 +222,14 @@ async function check_stop(page, tactd) {
   await waits(page, () => window.tact.headset.on);
   check("tactd ends", (await stop(tactd)) !== null);
   check(
-    "the panel tells that tactd went away",
+    "the panel shows that tactd went away",
     await waits(page, () => {
-      const { told, alarm } = window.tact.headset;
+      const { shown, alarm } = window.tact.headset;
       return (
-        alarm && told.includes("connection lost") && told.some((line) => /tactd went away/.test(line)) && !told.includes("armed")
+        alarm && shown.includes("connection lost") && shown.some((line) => /tactd went away/.test(line)) && !shown.includes("armed")
       );
     }),
-    (await numbers(page)).headset.told.join(" | "),
+    (await numbers(page)).headset.shown.join(" | "),
   );
   await look_down(page, "page_headset_stop.png");
   await page.keyboard.press("x");

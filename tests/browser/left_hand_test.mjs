@@ -36,7 +36,7 @@ async function moved_m(page) {
   return distance((await drawn_m(page))["left wrist"], before["left wrist"]);
 }
 
-/** The figure takes a tracker only when it stands: from then on the hand follows a nudge. Ends when the hand rests. */
+/** The figure takes a tracker only when it rests: from then on the hand follows a nudge. Ends when the hand rests. */
 async function follows(page, body) {
   let was_taken = false;
   for (let i = 0; i < 100; ++i) {

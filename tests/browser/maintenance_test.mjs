@@ -60,8 +60,8 @@ function check_grip(when, samples) {
     samples.blank === 0 && samples.length > 0,
     `${samples.blank} of ${samples.length + samples.blank} pictures without it`,
   );
-  const told_m = most(samples, (sample) => sample.told_error_m);
-  check("... told within 2 mm of the tool's grip", told_m < kHold_m, `worst ${mm(told_m)}`);
+  const reported_m = most(samples, (sample) => sample.reported_error_m);
+  check("... reported within 2 mm of the tool's grip", reported_m < kHold_m, `worst ${mm(reported_m)}`);
   const drawn_m = most(samples, (sample) => distance(sample.hand_m, sample.grip_m));
   check("... drawn within 2 mm of it, moving or not", drawn_m < kHold_m, `worst ${mm(drawn_m)}`);
 }
@@ -128,7 +128,7 @@ async function follow_the_recording(browser) {
   const words = new Set(samples.map((sample) => sample.words));
   for (const trouble of ["waist lost", "held (frozen)"]) {
     check(
-      `tells in words: ${trouble}`,
+      `reports as text: ${trouble}`,
       [...words].some((word) => word.includes(trouble)),
       [...words].filter((word) => word).join("; "),
     );
@@ -188,7 +188,7 @@ async function lose_the_tracker(browser) {
   const all = await start_all(browser, "udp", tracking);
   const { page, url } = all;
   await page.goto(url);
-  check("stands without a tracker", await waits(page, () => window.tact.link === "live" && window.tact.drawn_figure_m !== null));
+  check("is there without a tracker", await waits(page, () => window.tact.link === "live" && window.tact.drawn_figure_m !== null));
   const path = join(folder, "leaning.jsonl");
   write_looks_before(path, kSilent_s);
   const sent = send_looks(path, port);
@@ -221,8 +221,8 @@ async function lose_the_tracker(browser) {
   check("and stays there", path_m(rest, "head_m") < 0.01, mm(path_m(rest, "head_m")));
   check_grip("without a tracker", samples);
   // A page that has heard nothing for a while says so in the place of the state.
-  const told = after.map((sample) => sample.state).filter((state) => !state.startsWith("no news for"));
-  check("tactd stays armed", told.length > 0 && told.every((state) => state === "armed"), [...new Set(told)].join("; "));
+  const states = after.map((sample) => sample.state).filter((state) => !state.startsWith("no news for"));
+  check("tactd stays armed", states.length > 0 && states.every((state) => state === "armed"), [...new Set(states)].join("; "));
   check(
     "the forces go on",
     end.tick > before.tick && most(after, (sample) => sample.force_N) > 0.2,
@@ -235,7 +235,7 @@ async function lose_the_tracker(browser) {
 async function look_from_outside(browser) {
   const all = await start_all(browser, "picture", description);
   await all.page.goto(sharp(all.url));
-  await all.page.keyboard.press("v"); // from outside, whoever's head is tracked
+  await all.page.keyboard.press("v"); // from outside, with any tracked head
   const presses = await waits(
     all.page,
     () =>

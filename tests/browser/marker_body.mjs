@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// marker_body.mjs - one marker body before one camera, as a tracker tells of it by UDP: for the tests
+// marker_body.mjs - one marker body before one camera, as a tracker sends it by UDP: for the tests
 // and measurements that move one part of the operator alone.
 import { createSocket } from "node:dgram";
 
@@ -15,7 +15,7 @@ const kMarkers_m = [
 ];
 const kCamera_m = [-1.6, 0, -0.2]; // behind the device; it looks along +x at the operator
 const kFocus_px = 1200;
-const kNoise_px = 0.02; // without any, the tracker would be taken for one that stands
+const kNoise_px = 0.02; // without any, the tracker would be taken for a frozen one
 
 export async function free_udp_port() {
   const socket = createSocket("udp4");
@@ -37,18 +37,18 @@ export function description(role, port) {
   );
 }
 
-/** Tells where the body is, `rate_Hz` times a second, and at once when it goes elsewhere. */
+/** Sends the pose of the body, `rate_Hz` times a second, and at once when it goes elsewhere. */
 export class MarkerBody {
   constructor(port, at_m, rate_Hz = 100) {
     this.port = port;
     this.at_m = at_m;
     this.sequence = 0;
     this.socket = createSocket("udp4");
-    this.timer = setInterval(() => this.tell(), 1000 / rate_Hz);
+    this.timer = setInterval(() => this.send(), 1000 / rate_Hz);
   }
 
   /** When the observation left, ms since the epoch. */
-  tell() {
+  send() {
     const points = kMarkers_m.map((marker_m, id) => {
       const [x, y, z] = marker_m.map((m, i) => m + this.at_m[i] - kCamera_m[i]);
       const noise_px = () => 2 * kNoise_px * (Math.random() - 0.5);
@@ -72,7 +72,7 @@ export class MarkerBody {
 
   go(at_m) {
     this.at_m = at_m;
-    return this.tell();
+    return this.send();
   }
 
   stop() {

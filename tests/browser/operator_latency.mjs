@@ -3,7 +3,7 @@
 // from the instant at which its observation is sent by UDP to the first picture of a Chromium in which
 // the drawn wrist has gone half of the step. With its parts:
 //
-//     told    to the first message in which the wrist moves: UDP, pose, the wait for the next frame of
+//     sent    to the first message in which the wrist moves: UDP, pose, the wait for the next frame of
 //             tactd, WebSocket; heard by a second connection, in a thread that draws nothing
 //     filter  from there to the first message with more than half: one-euro filter (host/pose/one_euro.h)
 //     drawn   from there to the picture: the wait for it, and drawing. A monitor adds its own.
@@ -34,18 +34,18 @@ const at_share = (list, share) => [...list].sort((a, b) => a - b)[Math.floor(sha
 
 /** Hears what the page hears, in a thread that draws nothing: when which y of the left wrist came. */
 function listen_beside() {
-  const told = [];
+  const sent = [];
   let wrist = -1;
   let frames = 0;
   self.onmessage = ({ data }) => {
-    if (data === "tell") return self.postMessage(told);
+    if (data === "send") return self.postMessage(sent);
     const socket = new WebSocket(data);
     socket.onmessage = (message) => {
       const at_ms = performance.timeOrigin + performance.now();
       const { kind, figure, joint_m } = JSON.parse(message.data);
       if (kind === "status" && figure) wrist = figure.joints.indexOf("left wrist");
       if (kind === "frame") socket.send(JSON.stringify({ seen: ++frames }));
-      if (kind === "figure") told.push([at_ms, joint_m[3 * wrist + 1]]);
+      if (kind === "figure") sent.push([at_ms, joint_m[3 * wrist + 1]]);
     };
   };
 }
@@ -66,8 +66,8 @@ function watch_page(listener) {
 /** Both lists, by the page's clock. */
 function seen_in_page() {
   return new Promise((done) => {
-    window.beside.onmessage = ({ data }) => done({ told: data, drawn: window.drawn });
-    window.beside.postMessage("tell");
+    window.beside.onmessage = ({ data }) => done({ sent: data, drawn: window.drawn });
+    window.beside.postMessage("send");
   });
 }
 
@@ -82,18 +82,18 @@ async function clock_ahead_ms(page) {
   return [least, most];
 }
 
-/** Of one step, ms: told, filter, drawn and all; null if it was not seen. */
-function latency_ms({ told, drawn }, sent_ms, next_ms) {
+/** Of one step, ms: sent, filter, drawn and all; null if it was not seen. */
+function latency_ms({ sent, drawn }, sent_ms, next_ms) {
   const between = (list, from_ms, to_ms) => list.filter(([at_ms]) => at_ms > from_ms && at_ms <= to_ms);
   const mean = (list) => list.reduce((sum, [, y]) => sum + y, 0) / list.length;
-  const [before, after] = [between(told, sent_ms - 200, sent_ms), between(told, next_ms - 200, next_ms)];
+  const [before, after] = [between(sent, sent_ms - 200, sent_ms), between(sent, next_ms - 200, next_ms)];
   if (before.length === 0 || after.length === 0) return null;
   const from_m = mean(before);
   const way_m = mean(after) - from_m;
   if (Math.abs(way_m) < 0.9 * kStep_m) return null;
   const first = (list, share) => between(list, sent_ms, next_ms).find(([, y]) => (y - from_m) / way_m > share)?.[0];
-  const [moves, half, picture] = [first(told, 0.05), first(told, 0.5), first(drawn, 0.5)];
-  return picture && { told: moves - sent_ms, filter: half - moves, drawn: picture - half, all: picture - sent_ms };
+  const [moves, half, picture] = [first(sent, 0.05), first(sent, 0.5), first(drawn, 0.5)];
+  return picture && { sent: moves - sent_ms, filter: half - moves, drawn: picture - half, all: picture - sent_ms };
 }
 
 await play(async () => {
@@ -137,11 +137,11 @@ await play(async () => {
   const values = {
     steps,
     tracker_Hz: kRate_Hz,
-    frames_per_s: per_s(seen.told),
+    frames_per_s: per_s(seen.sent),
     pictures_per_s: per_s(seen.drawn),
     load: loadavg()[0],
   };
-  for (const part of ["all", "told", "filter", "drawn"]) {
+  for (const part of ["all", "sent", "filter", "drawn"]) {
     const list = good.map((one) => one[part]);
     values[part] = { median_ms: at_share(list, 0.5), p95_ms: at_share(list, 0.95) };
     console.log(`${part.padEnd(6)} median ${values[part].median_ms.toFixed(1)} ms, p95 ${values[part].p95_ms.toFixed(1)} ms`);

@@ -279,7 +279,7 @@ async function run() {
     "shows the torque of forceps that tilt, as a number and as an arc",
     () => window.tact.arc_share > 0.05 && /^[1-9][0-9.]+ of [0-9.]+ mN m$/.test(document.getElementById("torque").textContent),
   );
-  await check_scene(browser, "skin", "shows the skin dented by an injector", () => window.tact.most_m > 0.003);
+  await check_scene(browser, "skin", "shows skin dented by an injector", () => window.tact.most_m > 0.003);
   await check_scene(
     browser,
     "gum",

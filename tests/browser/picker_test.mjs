@@ -76,7 +76,7 @@ async function check_scenes(page) {
   check("... all that are shipped", offered.join() === kScenes.join(), offered.join(" "));
   check("... with the numbers of the law that runs", (await page.locator(".parameter").count()) === 7);
   await page.selectOption("#requested_scene", "heart");
-  check("what is chosen and not applied is told", (await words(page)) === "heart is not applied yet", await words(page));
+  check("what is chosen and not applied is reported", (await words(page)) === "heart is not applied yet", await words(page));
   await page.keyboard.press("Escape");
   await page.keyboard.press("p");
   await page.keyboard.press("l");
@@ -112,7 +112,7 @@ async function check_refusals(page) {
   await page.locator(`[id="${kSoft}"]`).fill("2000");
   check("... until a number is edited", (await words(page)) === "1 change not applied yet", await words(page));
   await set(page, kSoft, "1e5");
-  check("what tactd refuses is told in its words", await says(page, "law rhombus is too stiff"), await words(page));
+  check("what tactd refuses is reported in its words", await says(page, "law rhombus is too stiff"), await words(page));
   await page.reload();
   check("... and not to who comes later", await says(page, "heart runs, 1 changed"), await words(page));
   await waits(page, () => document.getElementById("pick").checkVisibility());
@@ -122,11 +122,11 @@ async function check_refusals(page) {
   await page.locator(`[id="${kSoft}"]`).fill("1,5");
   await page.click("#apply");
   check(
-    "... a decimal comma is told",
+    "... a decimal comma is reported",
     await says(page, "normal_stiffness_N_per_m: 1,5 is no number: write 1.5"),
     await words(page),
   );
-  check("... where it stands", (await page.evaluate(() => document.activeElement.id)) === kSoft && (await in_sight(page, kSoft)));
+  check("... in its place", (await page.evaluate(() => document.activeElement.id)) === kSoft && (await in_sight(page, kSoft)));
   check(
     "... and the scene before has gone on",
     await waits(
@@ -176,7 +176,7 @@ async function check_slider(page) {
   );
 }
 
-/** Where nobody could start another scene, none is offered. */
+/** Where no launcher could start another scene, none is offered. */
 async function check_nothing_offered(browser) {
   const socket = join(folder, "alone.sock");
   const { viewer, url } = await start_view(["--socket", socket]);

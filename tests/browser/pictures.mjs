@@ -8,7 +8,7 @@ import { join } from "node:path";
 import { description } from "./recorded_looks.mjs";
 import { check, folder, play, root, sharp, size, start_browser, start_tactd, start_view, stop, waits } from "./stage.mjs";
 
-/** The scene, what else tact-view is told, the keys that are pressed, and when the picture is taken. */
+/** The scene, further options of tact-view, the keys that are pressed, and when the picture is taken. */
 const kPictures = {
   page: {
     scene: "liver",
@@ -18,7 +18,7 @@ const kPictures = {
   maintenance: {
     scene: "maintenance",
     options: ["--tracking", description],
-    keys: ["v"], // from outside, whoever's head is tracked
+    keys: ["v"], // from outside, with any tracked head
     is_shown: () =>
       window.tact.figure_m !== null &&
       window.tact.tracking_words === "" &&

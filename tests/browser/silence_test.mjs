@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page in Chromium when nothing comes any more: a tactd or tact-view that stands still must not
+// The page in Chromium when nothing comes any more: a stopped tactd or tact-view must not
 // look alive.
 //
 //     node tests/browser/silence_test.mjs BUILD_DIR   (tactd, tact-view, page/)
@@ -30,31 +30,31 @@ const is_alive = (page) =>
       getComputedStyle(document.querySelector("#now .big")).filter === "none",
   );
 
-/** `child` stands still for a while: what does the page say meanwhile, and how soon? */
+/** `child` is stopped for a while: what does the page say meanwhile, and how soon? */
 async function halt(page, child, name, link_words) {
   await page.evaluate(() => {
     const state = document.getElementById("state");
     new MutationObserver(() => {
-      // to the ms, whatever the machine does besides
-      if (state.textContent.startsWith("no news")) window.told_s ??= window.tact.silence_s;
+      // to the ms, under other load
+      if (state.textContent.startsWith("no news")) window.reported_s ??= window.tact.silence_s;
     }).observe(state, { childList: true, characterData: true, subtree: true });
-    window.told_s = undefined;
+    window.reported_s = undefined;
     window.slowest_s = 0; // from picture to picture: a page that was busy has not listened
     let before_ms = performance.now();
     const picture = () => {
       window.slowest_s = Math.max(window.slowest_s, (performance.now() - before_ms) / 1000);
       before_ms = performance.now();
-      if (window.told_s === undefined) requestAnimationFrame(picture);
+      if (window.reported_s === undefined) requestAnimationFrame(picture);
     };
     requestAnimationFrame(picture);
   });
   child.kill("SIGSTOP");
-  check(`${name} that stands still is told`, await waits(page, () => window.told_s !== undefined, null, 5000));
-  const { told_s, slowest_s } = await page.evaluate(() => ({ told_s: window.told_s, slowest_s: window.slowest_s }));
+  check(`${name} that is stopped is reported`, await waits(page, () => window.reported_s !== undefined, null, 5000));
+  const { reported_s, slowest_s } = await page.evaluate(() => ({ reported_s: window.reported_s, slowest_s: window.slowest_s }));
   check(
     "... 0.3 s after the last frame",
-    told_s > 0.3 && told_s < 0.5 + 4 * slowest_s,
-    `${told_s.toFixed(2)} s, the slowest picture took ${slowest_s.toFixed(2)} s`,
+    reported_s > 0.3 && reported_s < 0.5 + 4 * slowest_s,
+    `${reported_s.toFixed(2)} s, the slowest picture took ${slowest_s.toFixed(2)} s`,
   );
   const first = await seen(page);
   check(

@@ -25,7 +25,7 @@ export function check(sentence, holds, seen = "") {
   console.log(`${holds ? "ok    " : "FAILED"} ${sentence}${seen === "" ? "" : ` (${seen})`}`);
 }
 
-/** A program of BUILD_DIR; its standard output is first_line's, or nobody's. */
+/** A program of BUILD_DIR; its standard output is first_line's, or unread. */
 export const start = (program, args) => start_at(join(build, program), args);
 
 /** One from elsewhere. */
@@ -76,7 +76,7 @@ export async function start_view(args) {
   return { viewer, url: viewer.ready.url };
 }
 
-/** The same link in full quality, whatever it costs. */
+/** The same link in full quality, at any cost. */
 export const sharp = (url) => `${url}&sharp`;
 
 /** Its pages have 2 minutes to load: on a busy machine the first one compiles its shaders for half a minute. */
@@ -103,7 +103,7 @@ export async function start_browser() {
   return browser;
 }
 
-/** What the page tells of itself. */
+/** What the page reports of itself. */
 export const numbers = (page) => page.evaluate(() => ({ ...window.tact }));
 /** True when the condition holds in time. */
 /** `condition(value)` in the page. */

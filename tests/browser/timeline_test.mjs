@@ -143,7 +143,7 @@ async function check_mouse(page) {
   await page.waitForTimeout(600);
   const ratio = (1000 * ((await seen_s(page)) - begin_s)) / (Date.now() - begin_ms);
   check("plays four times as fast", ratio > 2.5 && ratio < 5.5, ratio.toFixed(1));
-  check("tells where it is and how long it is", /^\d+\.\d of \d+\.\d s$/.test(await text(page, "at")), await text(page, "at"));
+  check("shows where it is and how long it is", /^\d+\.\d of \d+\.\d s$/.test(await text(page, "at")), await text(page, "at"));
   await page.screenshot({ path: join(build, "page_replay.png") });
   check("rests at its end", await waits(page, () => document.getElementById("play_word").textContent === "Play"));
   await page.click("#repeat");
@@ -178,7 +178,7 @@ async function check_plots(page) {
   const over = await page.locator("#plot_force .u-over").boundingBox();
   await page.mouse.move(over.x + over.width - 4, over.y + over.height / 2);
   check(
-    "pointing at one tells its values and their time",
+    "pointing at one shows its values and their time",
     await waits(page, () => /at \d+\.\d\d s: \d\.\d\d · \d\.\d\d N/.test(document.getElementById("plot_force").textContent)),
     await page.textContent("#plot_force b"),
   );
@@ -239,7 +239,7 @@ async function run() {
   page.on("pageerror", (error) => complaints.push(String(error)));
   await page.goto(replay.url);
   check(
-    "begins when somebody looks",
+    "begins with its first viewer",
     (await waits(
       page,
       () => window.tact.link === "replay" && window.tact.tick > 0 && document.getElementById("state").textContent === "was armed",

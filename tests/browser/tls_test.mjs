@@ -13,7 +13,7 @@ import { check, folder, play, root, size, start_browser, start_tactd, start_view
 
 const socket = join(folder, "tls.sock");
 
-/** A port that nobody listens on. */
+/** A port without a listener. */
 function free_port() {
   return new Promise((done) => {
     const server = createServer().listen(0, () => {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who sees the page's tissue in Chromium: who opened the link that tact-view printed, and nobody else
+// Who sees the page's tissue in Chromium: who opened the link that tact-view printed, and no other
 // of this PC.
 //
 //     node tests/browser/token_test.mjs BUILD_DIR   (tactd, tact-view, page/)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Real-time code that takes memory where the compiler was told to look away: the real-time
+// Real-time code that takes memory where the compiler does not check: the real-time
 // sanitizer must end it.
 #include "model/rt.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two threads, one plain int: the thread sanitizer must tell.
+// Two threads, one plain int: the thread sanitizer must report it.
 #include <thread>
 
 int shared = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whatever a device answers while it is woken, the start ends: ready or given up, in bounded steps,
+// For any answers of a device the start ends: ready or given up, in bounded steps,
 // and nothing but the image, the greeting, the speed lock and commands without force is ever sent.
 #include <array>
 

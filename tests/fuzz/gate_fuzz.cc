@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whatever is wanted, sampled and commanded, tick after tick, the gate keeps every rule of gate.h
+// For any force, sample and command the gate keeps every rule of gate.h
 // in every setting of gate_settings.h.
 //
 // A tick takes a byte that says what changes: 1 the armed level turns, 2 no fresh sample, 4 periods
@@ -77,7 +77,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     tests::GateRules rules(setting);
     Story story(setting);
     for (int tick = 0; tick < kMaxTicks && !input.empty(); ++tick)
-      require(rules.check(story.next(input, rules.verdict().wrench)) == nullptr);
+      require(rules.check(story.next(input, rules.limited().wrench)) == nullptr);
   }
   return 0;
 }

@@ -75,7 +75,7 @@ TEST(Mounting, WordsNameDownInTheBasesOwnAxesAndWhatIsScaled) {
   EXPECT_EQ(text_of(mounting_of(settings)),
             "the base hangs from above, its axis points down; down is (1, 0, 0) in its own axes; "
             "its origin is at (0, 0, 0.1) m of W; the tool goes 3 times the way of the handle, and "
-            "the hand feels 3 times the tool's force");
+            "the hand gets 3 times the tool's force");
   settings.base_orientation_deg = {0.0, 45.0, 0.0};
   EXPECT_NE(text_of(mounting_of(settings))
                 .find("is tilted, its axis points along (0.707, 0, "
@@ -83,7 +83,7 @@ TEST(Mounting, WordsNameDownInTheBasesOwnAxesAndWhatIsScaled) {
             std::string::npos);
 }
 
-TEST(Mounting, TheNameOfTheDeviceTellsHowItStandsAndWhatIsScaled) {
+TEST(Mounting, TheNameOfTheDeviceSaysHowItIsMountedAndScaled) {
   const auto name_of = [](const Vec3& turn_deg, double scale) {
     model::DeviceSettings settings;
     settings.base_orientation_deg = turn_deg;

@@ -20,7 +20,7 @@ TEST(Permission, ARefusalThatUdevEndsWithin200MsIsNone) {
   EXPECT_EQ(opens, 8);
 }
 
-TEST(Permission, ARefusalThatLastsIsOneAndAnotherErrorIsToldAtOnce) {
+TEST(Permission, ARefusalThatLastsIsOneAndAnotherErrorIsReportedAtOnce) {
   int opens = 0;
   EXPECT_EQ(open_when_permitted([&] { return ++opens, EACCES; }), EACCES);
   EXPECT_EQ(opens, 11);
@@ -62,7 +62,7 @@ TEST_F(PermissionOfNode, AUsbDeviceThatALibraryLooksForIsRefusedByItsNodeAlone) 
   EXPECT_FALSE(ask("2988", nullptr)) << "it is not there";
   const auto see_refusal = [&] {
     chmod(node.c_str(), 0);
-    tests::become_nobody();
+    tests::drop_privileges();
     const auto refusal = ask("1451", "0402");
     const bool reported = refusal && refusal->lacking.starts_with(node + " may not be opened");
     _exit(reported && !ask("1451", "0403") ? 7 : 8);
@@ -77,7 +77,7 @@ TEST(Permission, ADeviceWithASerialPortIsJudgedByThatPortAlone) {
   const auto see_refusals = [&] {
     usb.add_node(usb.node, 0);
     usb.add_node(port, 0666);
-    tests::become_nobody();
+    tests::drop_privileges();
     const UsbPart part{.kind = "", .vendor = "2988", .name = "", .rule = kRule};
     _exit(refused_usb_device({&part, 1}, usb.roots()) ? 8 : 7);
   };

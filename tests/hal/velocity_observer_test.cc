@@ -69,7 +69,7 @@ TEST(VelocityObserver, OneQuantumDisturbsLessThanItsBound) {
   EXPECT_GE(worst_difference_mps, 0.020);
 }
 
-TEST(VelocityObserver, AJumpIsNeverToldAsSlow) {
+TEST(VelocityObserver, AJumpIsNeverReportedAsSlow) {
   for (const double tick_s : {1e-2, 4e-3, 1e-3, 2.5e-4}) {
     VelocityObserver observer(kBandwidth_Hz, kJump_mps);
     for (int i = 0; i < 100; ++i) observer.step({0.1 * i * tick_s, 0.0, 0.0}, tick_s);
@@ -80,7 +80,7 @@ TEST(VelocityObserver, AJumpIsNeverToldAsSlow) {
 }
 
 // Gaps of samples, too: 0.8 m/s from one tick to the next, as of a hand that slips.
-TEST(VelocityObserver, AHardStartIsToldWithinKJumpAtAnyRateAndAfterAnyGap) {
+TEST(VelocityObserver, AHardStartIsReportedWithinKJumpAtAnyRateAndAfterAnyGap) {
   for (const double tick_s : {1e-2, 4e-3, 1e-3, 2.5e-4})
     for (const int missed : {0, 1, 5, 19}) {
       VelocityObserver observer(kBandwidth_Hz, kJump_mps);

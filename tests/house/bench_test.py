@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What the virtual bench judges by, without a guest: the longest tick of a law is held against all devices of its scene,
+"""What the virtual bench evaluates by, without a guest: the longest tick of a law is held against all devices of its scene,
 everything else against the device's own baseline; --once leaves out no kind of case, and other drives on CAN alone. A row of
 tools/bench that misses its goal is in the table of the front page.
 

@@ -13,7 +13,7 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-# ninja's part, played: what is another configuration's is not told.
+# ninja's part, played: what is another configuration's is not reported.
 ASK = """root=$PWD build=$PWD/build again=yes
 tracked() { git -C "$root" "$@"; }
 . "$0"
@@ -45,7 +45,7 @@ def is_program(name):
 
 
 def write(folder, name, is_new=False, revision="1a2b3c"):
-    """A file as it was when the stage passed, or as it is since; a program tells the revision."""
+    """A file as it was when the stage passed, or as it is since; a program prints the revision."""
     file = folder / name
     file.parent.mkdir(parents=True, exist_ok=True)
     changed = "changed" if is_new else "as it was"
@@ -80,23 +80,23 @@ def breaches():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         names = scratch_tree(folder)
-        if (told := ask(folder, "changed_tests")) != ".":
-            yield f"tools/changed.sh:1: nothing has passed yet: tries '{told}', not all"
+        if (output := ask(folder, "changed_tests")) != ".":
+            yield f"tools/changed.sh:1: nothing has passed yet: tries '{output}', not all"
         ask(folder, "begin_stage tests \"$(program_digests)\"; pass_stage tests")
         os.utime(folder / "build/passed.tests", (2000, 2000))
         for newer, wanted in CHANGES.items():
             for file in newer:
                 write(folder, file, is_new=True)
-            if (told := ask(folder, "changed_tests")) != wanted:
-                yield f"tools/changed.sh:1: {', '.join(newer) or 'nothing'} is newer: tries '{told}', not '{wanted}'"
+            if (output := ask(folder, "changed_tests")) != wanted:
+                yield f"tools/changed.sh:1: {', '.join(newer) or 'nothing'} is newer: tries '{output}', not '{wanted}'"
             for file in newer:
                 write(folder, file)
             for file in set(newer) - names:
                 (folder / file).unlink()
         for file in filter(lambda name: name.startswith("build/"), names):
             write(folder, file, revision="1a2b3c-dirty")
-        if told := ask(folder, "changed_tests"):
-            yield f"tools/changed.sh:1: only the revision is another: tries '{told}', not nothing"
+        if output := ask(folder, "changed_tests"):
+            yield f"tools/changed.sh:1: only the revision is another: tries '{output}', not nothing"
         if ask(folder, "program_changed tests tactd && echo yes || echo no; newer_of tests model/law/law.h") != "no":
             yield "tools/changed.sh:1: a program or a file counts as changed that is not"
         for file in ("build/tactd", "model/law/law.h"):

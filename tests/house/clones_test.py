@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""No two files say the same at length: the longest run of tokens that two of them share, whatever its names and numbers
+"""No two files say the same at length: the longest run of tokens that two of them share, for any names and numbers
 are, is shorter than LIMITS has it, or the pair is EXCUSED with its reason.
 
 Runs Debian's sim_c++ (similarity-tester) on the C++ without its #include lines and prints every breach as file:line:
@@ -39,9 +39,9 @@ def runs_in(texts, limit):
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_text(INCLUDE.sub("", text))
         names = "".join(f"{path}\n" for path in sorted(texts))
-        told = subprocess.run(["sim_c++", "-i", "-s", "-n", "-T", "-r", str(limit)], input=names, cwd=folder,
-                              capture_output=True, text=True, check=True)
-    for a, line_a, b, line_b, tokens in RUN.findall(told.stdout):
+        listed = subprocess.run(["sim_c++", "-i", "-s", "-n", "-T", "-r", str(limit)], input=names, cwd=folder,
+                                capture_output=True, text=True, check=True)
+    for a, line_a, b, line_b, tokens in RUN.findall(listed.stdout):
         yield (int(tokens), *sorted(((a, int(line_a)), (b, int(line_b)))))
 
 
@@ -92,7 +92,7 @@ def tree(tops):
 
 
 def release_lacks(package):
-    """By the lists of apt, which tells nothing of a package that there is not."""
+    """By the lists of apt, which list nothing of a package that there is not."""
     return shutil.which("apt-cache") and not subprocess.run(["apt-cache", "show", package], capture_output=True).stdout
 
 

@@ -8,7 +8,7 @@ one of tests/rig/cases or of tools/limits; a stage and a fault are those of gate
 From the sources to the table: it has every stage of the gate, every fault but 0, every property of tests/proof but its
 witnesses and contracts, every bench case with a fault, every case of tact-limits, and every test that must see a mutation
 of the groups gate and loop, or of the rooms guardian and watch.
-Across: a bench case that latches a fault stands below a requirement that names it; a property, below its stage.
+Across: a bench case that latches a fault is below a requirement that names it; a property, below its stage.
 
 Reads the tree as text, but the bench's cases, which it imports. Prints every breach as a sentence. Exit status 0 or 1.
 """
@@ -25,7 +25,7 @@ KEYS = {"hazard": ({"id", "hazard", "cause"}, {"remains"}),
         "test": ({"id", "proves", "by", "names"}, set())}
 IDS = {"hazard": r"HZ-\d\d", "requirement": r"REQ-\d\d", "test": r"TEST-\d\d\d?"}
 PROOF, BENCH, LIMITS = "tests/proof/run", "tests/rig/run", "build/tact-limits"
-SAFETY_GROUPS = ("gate", "loop")  # of tests/mutations, and whatever group names a program of
+SAFETY_GROUPS = ("gate", "loop")  # of tests/mutations, and each group that names a program of
 SAFETY_PROGRAMS = ("firmware_guardian_test", "firmware_watch_test")
 DECLARED = re.compile(r"^TEST(?:_F|_P)?\((\w+),\s*(\w+)\)", re.M)
 
@@ -50,9 +50,9 @@ class Sources:
             program = "_".join(path.parent.relative_to(root / "tests").parts) + "_test"
             self.tests.setdefault(program, set()).update(".".join(found) for found in DECLARED.findall(path.read_text()))
         proof = [path.read_text() for path in (root / "tests/proof").glob("*.[ch]")]
-        told = re.search(r"LEMMAS = \{(.*?)\}", (root / "tests/proof/run").read_text(), re.S)
+        lemmas = re.search(r"LEMMAS = \{(.*?)\}", (root / "tests/proof/run").read_text(), re.S)
         words = [word for text in proof for word in re.findall(r'"([a-z]+: [^"]+)"\)', text)]
-        words += re.findall(r': "([a-z]+: [^"]+)"', told[1]) if told else []
+        words += re.findall(r': "([a-z]+: [^"]+)"', lemmas[1]) if lemmas else []
         self.properties = {word for word in words if is_proof(word)}
         plan = (root / "tools/limits/cases/plan.cc").read_text()
         wall = re.search(r'kWallName = "([\w-]+)"', (root / "tools/limits/cases/plan.h").read_text())
@@ -85,7 +85,7 @@ def shape_breaches(table):
         for row in table.get(kind, []):
             name = row.get("id", "?")
             if not re.fullmatch(IDS[kind], name) or name in seen:
-                yield f"{kind} {name}: its id is not {IDS[kind]}, or stands twice"
+                yield f"{kind} {name}: its id is not {IDS[kind]}, or occurs twice"
             seen.add(name)
             if not needed <= set(row) <= needed | more or not all(row.values()):
                 yield f"{name}: needs {', '.join(sorted(needed))}, none of them empty, and no other key"
@@ -132,10 +132,10 @@ def orphan_breaches(table, sources):
                                 named_by(table, BENCH)),
              "the case of tact-limits": (sources.cases, named_by(table, LIMITS))}
     for what, (all_of_them, named) in there.items():
-        yield from (f"{what} {one} stands in no row" for one in sorted(all_of_them - named))
+        yield from (f"{what} {one} is in no row" for one in sorted(all_of_them - named))
     for program, pattern in sorted(sources.wanted):
         if not fnmatch.filter(named_by(table, f"build/tests/{program}"), pattern):
-            yield f"the test {pattern} of {program} sees a mutation, and stands in no row"
+            yield f"the test {pattern} of {program} sees a mutation, and is in no row"
 
 
 def cross_breaches(table, sources):
@@ -185,7 +185,7 @@ def small_table(**changes):
 def blind_rules():
     """Each rule on a breach of it: the ones not seen; and what is taken for a breach in a table in order."""
     for words, changes in {
-            "needs by": {"requirement_0_by": ""}, "stands twice": {"test_1_id": "TEST-00"},
+            "needs by": {"requirement_0_by": ""}, "occurs twice": {"test_1_id": "TEST-00"},
             "no requirement meets it": {"requirement_0_hazards": ["HZ-02"]}, "no test shows it": {
                 f"test_{i}_proves": ["REQ-02"] for i in range(4)},
             "is no stage": {"requirement_0_stages": ["jump"]}, "is no fault": {"requirement_0_faults": [8]},

@@ -3,7 +3,7 @@
 """The patches of .github/ladder/, which CONTRIBUTING.md walks through, apply to this tree.
 
 Prints every breach as file: sentence. Exit status 0 or 1. With --compile, g++ also reads each source
-that a patch touches, in a copy of the tree, and the folder that tools/run configures there has every
+that a patch changes, in a copy of the tree, and the folder that tools/run configures there has every
 target of both. With --build, the commands of the guide are run in this tree, on top of tools/run.
 """
 import pathlib
@@ -19,9 +19,9 @@ NAMES = ("hello_law.patch", "hello_device.patch")
 
 def refusal(patch):
     """What git says to a patch that does not apply; nothing when it does."""
-    told = subprocess.run(["git", "-c", "safe.directory=*", "apply", "--check", "--whitespace=error", str(patch)],
-                          cwd=ROOT, capture_output=True, text=True)
-    return told.stderr.strip() if told.returncode else ""
+    output = subprocess.run(["git", "-c", "safe.directory=*", "apply", "--check", "--whitespace=error", str(patch)],
+                            cwd=ROOT, capture_output=True, text=True)
+    return output.stderr.strip() if output.returncode else ""
 
 
 def breaches():
@@ -48,10 +48,10 @@ def not_compiled():
             patch = ROOT / ".github/ladder" / name
             subprocess.run(["git", "apply", "--include=*/*", str(patch)], cwd=copy, check=True, capture_output=True)
             for source in re.findall(r"^\+\+\+ b/(\S+\.cc)$", patch.read_text(), re.M):
-                told = subprocess.run(["g++", "-std=c++20", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "-I.", source],
-                                      cwd=copy, capture_output=True, text=True)
-                if told.returncode:
-                    yield f".github/ladder/{name}: {told.stderr.strip()}"
+                output = subprocess.run(["g++", "-std=c++20", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "-I.", source],
+                                        cwd=copy, capture_output=True, text=True)
+                if output.returncode:
+                    yield f".github/ladder/{name}: {output.stderr.strip()}"
         yield from not_declared(copy)
 
 
@@ -67,9 +67,9 @@ def not_declared(copy):
         return
     for command in commands():
         for words in re.findall(r"ninja -C build ([\w ]+)", command):
-            told = subprocess.run(["ninja", "-C", "build", "-n", *words.split()], cwd=copy, capture_output=True, text=True)
-            if told.returncode:
-                yield f".github/CONTRIBUTING.md: after tools/run, {(told.stdout + told.stderr).strip().splitlines()[-1]}"
+            output = subprocess.run(["ninja", "-C", "build", "-n", *words.split()], cwd=copy, capture_output=True, text=True)
+            if output.returncode:
+                yield f".github/CONTRIBUTING.md: after tools/run, {(output.stdout + output.stderr).strip().splitlines()[-1]}"
 
 
 def commands():
@@ -80,9 +80,9 @@ def commands():
 
 def not_built():
     for block in commands():
-        told = subprocess.run(["bash", "-exc", block], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-        if told.returncode:
-            yield f".github/CONTRIBUTING.md: {told.stdout[-2000:].strip()}"
+        output = subprocess.run(["bash", "-exc", block], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        if output.returncode:
+            yield f".github/CONTRIBUTING.md: {output.stdout[-2000:].strip()}"
 
 
 def is_blind():

@@ -24,9 +24,9 @@ FOREIGN_TO_MODEL = re.compile(
 # The emulators stand on the other side of the kernel: what they shared with a driver they could not
 # find wrong. Of ours they know the words of vectors alone.
 EMULATORS = "tests/rig/emulators/"
-CANARIES = "tests/canaries/"  # break the rules so that tests/canaries/run sees them told
+CANARIES = "tests/canaries/"  # break the rules so that tests/canaries/run sees them reported
 ALLOWED_TO_EMULATORS = [EMULATORS, "model/types.h"]
-# Where a call that the compiler or the real-time sanitizer cannot judge is vouched for.
+# Where a call that the compiler or the real-time sanitizer cannot check is vouched for.
 VOUCHES = {
     "hides a call from the compiler's check": (
         re.compile(r'ignored\s+"-Wfunction-effects"|-Wno-function-effects'),
@@ -43,14 +43,14 @@ VOUCHES = {
 BY_IO = re.compile(r"\b[io]?fstream\b|\bfopen\(|\bCLI::(Range|Bound|Number|PositiveNumber|NonNegativeNumber|ExistingFile)\b"
                    r"|\bjson::parse\(|\.dump\(|\btoml::parse(_file)?\(")
 IO = "model/io/"
-# What judges the gate shares no formula with it: a wrong one would agree with itself.
+# What evaluates the gate shares no formula with it: a wrong one would agree with itself.
 JUDGES = ("model/limit_witness.h", "model/limit_witness.cc", "tests/support/gate_rules.h", "tests/soak/energy_ledger.h",
           "tests/soak/invariants.h", "tests/soak/invariants.cc")
 OF_THE_GATE = re.compile(r"\b(limits_in_use|brake_energy_J|slew_beside_ramp_N\w*|thermal_steepness|limit_surplus"
                          r"|limit_magnitude|approach|given_energy_J)\(|\bEnergyTank\b|\bThermalLimit\b")
 # Threads start in one place, which returns an Error where the system refuses one and lets no exception out.
 BY_THREAD = re.compile(r"\bstd::j?thread\b(?!::hardware_concurrency)|\bpthread_create\(|\bstd::async\b|\bthread_pool\b")
-THREAD = ("hal/thread.h", "hal/thread.cc")
+THREAD = ("hal/threads/thread.h", "hal/threads/thread.cc")
 # What carries bytes is no business of what reads them.
 TRANSPORT = re.compile(r"\s*#include <((?:sys|linux|libusb[^/>]*)/[^>]+|(?:libusb|gpiod)[^>]*)>")
 MAX_LINES, MAX_COLUMNS = 300, 100

@@ -60,9 +60,9 @@ def digests_of(picture, tracked, read):
             "picture": hashlib.sha256(read(picture)).hexdigest()[:16]}
 
 
-def breaches(told, now):
-    for picture in sorted({*told, *now}):
-        then, today = told.get(picture), now.get(picture)
+def breaches(recorded, now):
+    for picture in sorted({*recorded, *now}):
+        then, today = recorded.get(picture), now.get(picture)
         if today is None or then is None:
             yield f"tools/pictures.json: {picture}: is in one of tools/pictures.json and SHOWN"
         elif then["picture"] != today["picture"]:
@@ -90,12 +90,12 @@ def blind_rules():
 def main():
     listed = subprocess.run(["git", "-c", "safe.directory=*", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True)
     tracked = [name for name in listed.stdout.split("\0") if (ROOT / name).is_file()]
-    told = json.loads(DIGESTS.read_text()) if DIGESTS.exists() else {}
+    recorded = json.loads(DIGESTS.read_text()) if DIGESTS.exists() else {}
     now = {picture: digests_of(picture, tracked, lambda name: (ROOT / name).read_bytes()) for picture in SHOWN}
     if sys.argv[1:2] == ["--write"]:
-        DIGESTS.write_text(json.dumps({**told, **{picture: now[picture] for picture in sys.argv[2:]}}, indent=1) + "\n")
+        DIGESTS.write_text(json.dumps({**recorded, **{picture: now[picture] for picture in sys.argv[2:]}}, indent=1) + "\n")
         return 0
-    found = list(breaches(told, now))
+    found = list(breaches(recorded, now))
     for picture, paths in SHOWN.items():
         found += [f"tests/house/pictures_test.py: {path}: no such file" for path in paths
                   if not any(name.startswith(path) for name in tracked)]

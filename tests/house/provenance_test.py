@@ -92,8 +92,8 @@ def list_versions(now):
     return [*(revisions_of(text) for status, text in texts if status == 0), revisions_of(now)]
 
 
-VERSION_AT = {  # each: the version as it stands there
-    "CITATION.cff": r'^version: "([^"]+)"$',
+VERSION_AT = {  # each: the version as written there
+    ".github/CITATION.cff": r'^version: "([^"]+)"$',
     "tools/deploy/CHANGELOG.md": r"^## (\S+)",
     "host/web/package.json": r'^  "version": "([^"]+)"',
     "tools/mcap/tact-mcap": r'^VERSION = "([^"]+)"',
@@ -107,13 +107,13 @@ def version_breaches(read):
         yield "CMakeLists.txt: has no set(TACT_VERSION ...)"
         return
     for path, pattern in VERSION_AT.items():
-        told = re.search(pattern, read(path), re.M)
-        if not told or told[1] != found[1]:
-            yield f"{path}: its version is {told[1] if told else 'missing'}, that of CMakeLists.txt is {found[1]}"
+        written = re.search(pattern, read(path), re.M)
+        if not written or written[1] != found[1]:
+            yield f"{path}: its version is {written[1] if written else 'missing'}, that of CMakeLists.txt is {found[1]}"
 
 
 def measures_a_changed_tree():
-    """Does tools/numbers run a command although git tells a change?"""
+    """Does tools/numbers run a command although git reports a change?"""
     loader = importlib.machinery.SourceFileLoader("numbers", str(ROOT / "tools/numbers"))
     numbers = importlib.util.module_from_spec(importlib.util.spec_from_loader("numbers", loader))
     loader.exec_module(numbers)
@@ -122,8 +122,8 @@ def measures_a_changed_tree():
     numbers.MEASURED = {"a": lambda: ran.append(1) or sys.exit("it measures")}
     try:
         numbers.measure("a", False)
-    except numbers.Wrong as told:
-        return bool(ran) or "model/law/law.cc" not in str(told)
+    except numbers.Wrong as written:
+        return bool(ran) or "model/law/law.cc" not in str(written)
     except SystemExit:
         pass
     return True
@@ -138,11 +138,11 @@ def blind_rules():
         return {"a": {"revision": revision, "values": {}}}
     excused = {"a": {"revision": "bad", "reason": "takes a day on a machine of its own"}}
     files = dict.fromkeys(VERSION_AT, "") | {"CMakeLists.txt": "set(TACT_VERSION 1.0.0-rc1)\n"}
-    good_files = {"CMakeLists.txt": files["CMakeLists.txt"], "CITATION.cff": 'version: "1.0.0-rc1"',
+    good_files = {"CMakeLists.txt": files["CMakeLists.txt"], ".github/CITATION.cff": 'version: "1.0.0-rc1"',
                   "tools/deploy/CHANGELOG.md": "## 1.0.0-rc1", "host/web/package.json": '  "version": "1.0.0-rc1"',
                   "tools/mcap/tact-mcap": 'VERSION = "1.0.0-rc1"', "tools/plot/tact-plot": 'VERSION = "1.0.0-rc1"'}
     cases = {
-        "a revision that nobody has": result_breaches(of("bad"), {}, known),
+        "a revision that is unknown": result_breaches(of("bad"), {}, known),
         "a changed tree": result_breaches(of("good-dirty"), {}, known),
         "a changed tree without history": result_breaches(of("good-dirty"), {}, None),
         "a row of a changed tree": result_breaches({"a": {"revision": "good", "values": [{"revision": "x-dirty of 2026"}]}},

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """README.md stays short and narrow, prose of every *.md narrow, and every relative link leads to a file and its heading.
 Every room has a README.md that names its parts, with a line `Tests: ...`, whose programs and files there are. What each
-file of a room is stands in its first lines (layering_test.py): tools/rooms prints them.
+file of a room is is in its first lines (layering_test.py): tools/rooms prints them.
 
 Reads the tree as text and prints every breach as file:line: sentence. Exit status 0 or 1.
 """
@@ -113,8 +113,8 @@ def part_breaches(files):
 
 def silent_files():
     """What tools/rooms has no sentence for, of the headers of all rooms."""
-    told = subprocess.run([str(ROOT / "tools/rooms"), *rooms.ROOMS], capture_output=True, text=True, check=True)
-    words = [line.split(maxsplit=1) for line in told.stdout.splitlines()]
+    listed = subprocess.run([str(ROOT / "tools/rooms"), *rooms.ROOMS], capture_output=True, text=True, check=True)
+    words = [line.split(maxsplit=1) for line in listed.stdout.splitlines()]
     yield from (f"tools/rooms says nothing of {row[0]}" for row in words if len(row) < 2)
     if len(words) < 200:
         yield f"tools/rooms names {len(words)} files: it does not see the rooms"

@@ -14,10 +14,10 @@ SCENE = [*SURFACE_LAWS, "model/io", "model/mesh", "model/reader", "model/scene"]
 DELTA = ["model", "hal", "hal/delta"]
 DEVICES = ["hal/sim", "hal/odrive", "hal/cia402", "hal/moteus", "hal/falcon_usb", "hal/force_dimension",
            "hal/phantom"]
-LOOP = [*CONTACT, "hal", "firmware/gate"]
+LOOP = [*CONTACT, "hal", "hal/threads", "firmware/gate"]
 OPERATOR = ["host/pose", "host/tracking", "host/figure"]
 # What a folder of hal/ may include without a row below: a device, which the registry alone may include.
-PLAIN_DEVICE = ["model", "hal"]
+PLAIN_DEVICE = ["model", "hal", "hal/threads"]
 # What a folder may include beside itself; CMake links no more than that.
 ROOMS = {
     "model": [],
@@ -31,6 +31,7 @@ ROOMS = {
     "model/reader": ["model", "model/io"],
     "model/scene": [*SURFACE_LAWS, "model/io", "model/mesh", "model/reader"],
     "hal": ["model", "model/io"],
+    "hal/threads": ["model"],
     "hal/delta": ["model", "hal"],
     "hal/gpio": ["model", "hal"],
     "hal/can": DELTA,
@@ -38,26 +39,26 @@ ROOMS = {
     "hal/cia402": [*DELTA, "hal/can"],
     "hal/moteus": [*DELTA, "hal/can"],
     "hal/falcon": DELTA,
-    "hal/falcon_usb": [*DELTA, "model/io", "hal/falcon"],
-    "hal/vendor_sdk": ["model", "hal"],
-    "hal/force_dimension": ["model", "hal", "hal/vendor_sdk"],
+    "hal/falcon_usb": [*DELTA, "model/io", "hal/threads", "hal/falcon"],
+    "hal/vendor_sdk": ["model", "hal", "hal/threads"],
+    "hal/force_dimension": ["model", "hal", "hal/threads", "hal/vendor_sdk"],
     "hal/phantom": ["model", "hal", "hal/vendor_sdk"],
-    "hal/sim": [*DELTA, "model/io", "hal/gpio"],
+    "hal/sim": [*DELTA, "model/io", "hal/threads", "hal/gpio"],
     "hal/list": ["model/io", "hal", "hal/can", "hal/gpio"],
     "hal/registry": ["model", "hal", "hal/can", "hal/falcon", *DEVICES, "model/reader", "model/scene"],
-    "firmware/pc": ["model/io", "hal", "hal/list"],
+    "firmware/pc": ["model/io", "hal", "hal/threads", "hal/list"],
     "firmware/gate": ["model", "hal"],
     "firmware/loop": LOOP,
     "firmware/embed": [*LOOP, "model/scene", "firmware/loop"],
-    "firmware/watch": ["model", "hal", "firmware/loop", "firmware/pc"],
-    "firmware/guardian": ["model", "hal", "firmware/loop"],
+    "firmware/watch": ["model", "hal", "hal/threads", "firmware/loop", "firmware/pc"],
+    "firmware/guardian": ["model", "hal", "hal/threads", "firmware/loop"],
     "firmware/protocol": ["model", "model/io", "firmware/loop"],
     "firmware/telemetry": [*LOOP, "firmware/loop", "firmware/protocol", "model/io", "model/scene"],
-    "firmware/black_box": ["model", "hal", "firmware/loop", "firmware/protocol", "firmware/telemetry"],
+    "firmware/black_box": ["model", "hal", "hal/threads", "firmware/loop", "firmware/protocol", "firmware/telemetry"],
     "firmware/console": ["model", "model/io", "hal", "firmware/loop", "firmware/watch",
                          "firmware/protocol", "firmware/telemetry"],
     "firmware/admission": ["model", "model/contact", "model/indent", "model/law", "model/mesh", "model/scene", "hal",
-                           "hal/can", "firmware/gate", "firmware/loop", "firmware/pc"],
+                           "hal/can", "hal/threads", "firmware/gate", "firmware/loop", "firmware/pc"],
     "firmware/run": [*LOOP, *SCENE, "hal/gpio", "hal/list", "hal/registry", "firmware/loop",
                      "firmware/watch", "firmware/protocol", "firmware/telemetry", "firmware/black_box", "firmware/pc",
                      "firmware/console", "firmware/guardian", "firmware/admission"],
@@ -84,7 +85,7 @@ TOOLS = {
     "lab": ["program", "report", "chart", "fit", "ground_truth", "mesh", "plan",
             "stability", "sweep"],
 }
-# The parts of a room, and what each may include of the others. What stands in the room itself, as main.cc, includes
+# The parts of a room, and what each may include of the others. What is in the room itself, as main.cc, includes
 # every part, and no part includes that. Other rooms take a room as a whole.
 PARTS = {
     "model/io": {"program": []},
@@ -121,7 +122,7 @@ PARTS = {
         "maps": ["sweep", "laws", "loop"],
     },
 }
-# The folders of the page, and what each may import of the others; what stands in src/ itself, as main.ts, imports all.
+# The folders of the page, and what each may import of the others; what is in src/ itself, as main.ts, imports all.
 PAGE = "host/web/src/"
 PAGE_FOLDERS = {
     **dict.fromkeys(["link", "document"], []),
@@ -196,7 +197,7 @@ def part_breaches(path, text):
 
 
 def page_breaches(path, text):
-    """`path` is a source of the page. An import is told from the folder that it is written in."""
+    """`path` is a source of the page. An import is written relative to its own folder."""
     folder = posixpath.dirname(path).removeprefix(PAGE)
     if path.count("/") == PAGE.count("/"):
         return

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Every equation and fact that a text names by an id, as RC-3, stands once in a SOURCES.md. Where a
-comment writes the equation out, it is the one that stands there. model/CLAIMS.md has a row for every
+"""Every equation and fact that a text names by an id, as RC-3, is listed once in a SOURCES.md. Where a
+comment writes the equation out, it is the one listed there. model/CLAIMS.md has a row for every
 error X1, X2, .., and a test that a document names, as `Suite.Name`, is there.
 
 Reads the tree as text and prints every breach as file:line: sentence. Exit status 0 or 1.
@@ -67,12 +67,12 @@ def id_breaches(texts):
         if is_source(path):
             for name, number in defined_in(text):
                 if name in places:
-                    yield f"{path}:{number}: {name} stands in {places[name]} too: keep one"
+                    yield f"{path}:{number}: {name} is in {places[name]} too: keep one"
                 places.setdefault(name, f"{path}:{number}")
     for path, text in texts.items():
         for name, number in named_in(text):
             if name not in places:
-                yield f"{path}:{number}: {name} stands in no SOURCES.md: add it, or name another"
+                yield f"{path}:{number}: {name} is in no SOURCES.md: add it, or name another"
             if not is_source(path):
                 used.add(name)
     for name, place in places.items():
@@ -85,21 +85,21 @@ def without_blanks(formula):
 
 
 def ends_a_term(formula, text):
-    """Stands in the text, and does not go on there."""
+    """Is in the text as a whole term."""
     at = text.find(formula)
     return at >= 0 and text[at + len(formula):][:1] not in ("/", "*", "+", "-", "^")
 
 
 def formula_breaches(texts):
     """Equations that a comment writes otherwise than their SOURCES.md."""
-    stands = {name: text.splitlines()[number - 1] for path, text in texts.items() if is_source(path)
+    listed = {name: text.splitlines()[number - 1] for path, text in texts.items() if is_source(path)
               for name, number in defined_in(text)}
     for path, text in texts.items():
         if not path.endswith((".h", ".cc")):
             continue
         for number, line in enumerate(text.splitlines(), 1):
             found = WRITTEN_OUT.match(line)
-            if found and not ends_a_term(without_blanks(found[2]), without_blanks(stands.get(found[1], found[2]))):
+            if found and not ends_a_term(without_blanks(found[2]), without_blanks(listed.get(found[1], found[2]))):
                 yield f"{path}:{number}: {found[1]} is another equation than in SOURCES.md: '{found[2]}'"
 
 
@@ -107,7 +107,7 @@ BARE = re.compile(rf"\s*///?\s*{ID}\.?\s*$")
 
 
 def bare_breaches(path, text):
-    """A comment that is an id alone sends the reader away: the equation stands above its line."""
+    """A comment that is an id alone sends the reader away: the equation is above its line."""
     lines = text.splitlines()
     for number, line in enumerate(lines, 1):
         goes_on = number > 1 and lines[number - 2].lstrip().startswith("//")

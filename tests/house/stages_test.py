@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """tools/stages.sh gives a second try to tests that wait for a real clock, and to no other: each ends as it must. Stages
-that run at the same time are each told and counted; a second try has no other stage beside it, and Ctrl-C ends all.
+that run at the same time are each reported and counted; a second try has no other stage beside it, and Ctrl-C ends all.
 
 Prints every breach as file:line: sentence. Exit status 0 or 1.
 """
@@ -18,7 +18,7 @@ RUN = """logs=$PWD
 tests() { inner() { ctest_twice "$PWD" -j 2 -L "$which"; }; inner; }
 begin_counts
 run_stage tests
-tell_counts tests"""
+report_counts tests"""
 # Fails as often as it says, then passes.
 COUNTS = """add_test(Suite.Waits/"a" sh "-c" "echo >>tries; test $(wc -l <tries) -gt {fails}")
 set_tests_properties(Suite.Waits/"a" PROPERTIES LABELS room{label})
@@ -32,39 +32,39 @@ ENDS = {
     (2, "+clock", "no", "."): (1, "1 passed, 1 failed", False),
     (1, "+clock", "yes", "."): (1, "1 passed, 1 failed", False),
     (1, "", "no", "."): (1, "1 passed, 1 failed", False),
-    (0, "+clock", "no", "nobody"): (1, "0 passed, 1 failed", False),
+    (0, "+clock", "no", "none"): (1, "0 passed, 1 failed", False),
 }
 
 
-# `tests` and `browser` meet, or nothing of it passes; what is told of them, in which order, and the sum.
+# `tests` and `browser` meet, or nothing of it passes; their reports, in order, and the sum.
 HEAD = """logs=$PWD long=no
 . "$0"
 meet() { touch "$1"; for i in {1..400}; do [ -e "$2" ] && return; sleep .05; done; return 1; }
 begin_counts
 """
 BESIDE = {
-    """tests() { meet a b; }; browser() { meet b a; }; run_with tests browser; tell_counts tests browser""":
+    """tests() { meet a b; }; browser() { meet b a; }; run_with tests browser; report_counts tests browser""":
         (0, "2 passed, 0 failed"),
-    """tests() { meet a b; }; browser() { meet b a; false; }; run_with tests browser; tell_counts tests browser""":
+    """tests() { meet a b; }; browser() { meet b a; false; }; run_with tests browser; report_counts tests browser""":
         (1, "1 passed, 1 failed"),
     """tests() { meet a b; false; }; browser() { meet b a; }; page() { :; }
-run_with tests page browser; tell_counts page tests browser""":
+run_with tests page browser; report_counts page tests browser""":
         (1, "2 passed, 1 failed"),
     """build() { false; }; format() { :; }; tests() { after_build true; touch tried; }; browser() { after_build true; }
-run_with build format; run_with tests browser; test ! -e tried && tell_counts build format tests browser""":
+run_with build format; run_with tests browser; test ! -e tried && report_counts build format tests browser""":
         (1, "1 passed, 3 failed"),
     # a stage that never ran
-    """tests() { :; }; run_with tests page; tell_counts tests page browser""": (1, "1 passed, 2 failed"),
+    """tests() { :; }; run_with tests page; report_counts tests page browser""": (1, "1 passed, 2 failed"),
     # each tries once more, when the other has ended or waits, too
     """try() { [ ! -e one ] || echo both >>broken; touch one; sleep .3; rm one; }
 tests() { meet a b; once_more tests try; }; browser() { meet b a; once_more browser try; sleep .3; touch ended; }
 other() { sleep .2; touch alone; }; tests2() { meet c d; once_more slow test -e ended2; }
 browser2() { meet d c; sleep .5; touch ended2; }
-run_with tests browser; run_with tests2 browser2; tell_counts tests browser tests2 browser2; test ! -e broken""":
+run_with tests browser; run_with tests2 browser2; report_counts tests browser tests2 browser2; test ! -e broken""":
         (0, "4 passed, 0 failed"),
-    # what takes the time that others leave keeps nobody from a second try
+    # what takes the time that others leave prevents no second try
     """slow() { sleep 30; }; tests() { once_more quick true; }
-run_beside --idle slow; lane=$!; run_stage tests; kill $(descendants $lane) $lane; tell_counts tests""":
+run_beside --idle slow; lane=$!; run_stage tests; kill $(descendants $lane) $lane; report_counts tests""":
         (0, "1 passed, 0 failed"),
 }
 INTERRUPTED = """trap 'kill $(descendants $$) 2>/dev/null; exit 130' INT TERM
@@ -81,10 +81,10 @@ def play(command, folder):
 def beside_breaches():
     for command, wanted in BESIDE.items():
         with tempfile.TemporaryDirectory() as folder, play(command, folder) as bash:
-            told = bash.communicate(timeout=60)[0]
-        ended = (bash.returncode, next((line for line in reversed(told.splitlines()) if " passed, " in line), ""))
+            output = bash.communicate(timeout=60)[0]
+        ended = (bash.returncode, next((line for line in reversed(output.splitlines()) if " passed, " in line), ""))
         if ended != wanted:
-            yield f"tools/stages.sh:1: {command}: {ended}, not {wanted}\n{told}"
+            yield f"tools/stages.sh:1: {command}: {ended}, not {wanted}\n{output}"
 
 
 def children(pid):
@@ -94,7 +94,7 @@ def children(pid):
 
 
 def is_running(pid):
-    """Neither gone nor a zombie that nobody asks for."""
+    """Neither gone nor a zombie that was not reaped."""
     try:
         return pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] != "Z"
     except OSError:

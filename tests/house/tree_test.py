@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Nothing strays: what stands at the top, how large a file may be, and that every stage of
+"""The tree: what is at the top, how large a file may be, and that every stage of
 tools/check runs in a workflow.
 
 Prints every breach as file: sentence. Exit status 0 or 1.
@@ -11,8 +11,7 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-# CITATION.cff is looked for at the top, and nowhere else.
-TOP = {"CITATION.cff", "CMakeLists.txt", "LICENSE", "README.md", "firmware", "hal", "host", "model", "tests", "tools"}
+TOP = {"CMakeLists.txt", "LICENSE", "README.md", "firmware", "hal", "host", "model", "tests", "tools"}
 MAX_BYTES = 1_000_000
 PUSH, NIGHT = ".github/workflows/check.yml", ".github/workflows/nightly.yml"
 
@@ -65,8 +64,8 @@ def blind_rules():
     run = "      - run: ./tools/check --long --only ${{ matrix.stage }}\n"
     night = "        stage: [tests, browser, asan, soak]\n" + run
     cases = {
-        "a stray file": top_breaches(["README.md", "notes.txt"]),
-        "a stray folder": top_breaches(["scratch/a.cc"]),
+        "an unlisted file": top_breaches(["README.md", "notes.txt"]),
+        "an unlisted folder": top_breaches(["scratch/a.cc"]),
         "a large file": size_breaches({"model/a.obj": MAX_BYTES + 1}),
         "a push without check": stage_breaches(check, "- run: true\n", night),
         "a stage that no night runs": stage_breaches(check, push, "        stage: [asan]\n" + run),
@@ -82,8 +81,8 @@ def blind_rules():
 
 
 def main():
-    told = subprocess.run(["git", "-c", "safe.directory=*", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True)
-    paths = [path for path in told.stdout.split("\0") if (ROOT / path).is_file()]
+    listed = subprocess.run(["git", "-c", "safe.directory=*", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True)
+    paths = [path for path in listed.stdout.split("\0") if (ROOT / path).is_file()]
     found = [*top_breaches(paths), *size_breaches({path: (ROOT / path).stat().st_size for path in paths}),
              *stage_breaches(*((ROOT / name).read_text() for name in ("tools/check", PUSH, NIGHT)))]
     found += [f"tests/house/tree_test.py: a breach of this rule is not seen: {rule}" for rule in blind_rules()]

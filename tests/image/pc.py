@@ -2,7 +2,7 @@
 """A PC in QEMU, as a person has it: a disk, power, and a serial console.
 
 No KVM, so the numbers are those of emulation: two cores, of which the image isolates one, on
-whatever this host gives them. Source: QEMU documentation, "System Emulation".
+with any share of this host. Source: QEMU documentation, "System Emulation".
 """
 import os
 import pathlib
@@ -24,9 +24,9 @@ class Trouble(Exception):
     """One sentence, and the end of the console."""
 
 
-def must(condition, sentence):
+def must(condition, message):
     if not condition:
-        raise Trouble(sentence)
+        raise Trouble(message)
 
 
 class Pc:
@@ -62,7 +62,7 @@ class Pc:
         return bool(heard)
 
     def wait_for(self, pattern, limit_s):
-        """The next match on the console; what stands before it is read, too."""
+        """The next match on the console; the text before it is read, too."""
         end = time.monotonic() + limit_s
         while True:
             found = re.compile(pattern).search(self.said, self.read_to)

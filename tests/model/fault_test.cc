@@ -51,7 +51,7 @@ TEST(Fault, AToolInsideAndLostContactHaveTheirWords) {
   EXPECT_STREQ(describe(Fault::kClutchPressed).name, "clutch pressed");
 }
 
-TEST(Fault, ANumberThatTheTableDoesNotHaveIsToldAsUnknown) {
+TEST(Fault, ANumberThatTheTableDoesNotHaveIsReportedAsUnknown) {
   EXPECT_EQ(describe(static_cast<Fault>(9999)).fault, Fault::kUnknown);
   EXPECT_EQ(describe(Fault::kForceLimited).fault, Fault::kForceLimited);
 }

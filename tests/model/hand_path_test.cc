@@ -101,7 +101,7 @@ TEST(HandPath, GivesAFinitePlaceForEveryTime) {
       EXPECT_TRUE(is_finite(hand_target(kPath, repeat, t).position_m)) << t << repeat;
 }
 
-TEST(HandPath, StandsStillWithOneWaypointAndAtTheOriginWithNone) {
+TEST(HandPath, RestsWithOneWaypointAndAtTheOriginWithNone) {
   const std::vector<HandWaypoint> one{{.position_m = {1_mm, 2_mm, 3_mm}}};
   for (const double t : {-1.0, 0.0, 1.0}) {
     EXPECT_EQ(hand_target(one, true, t).position_m, one[0].position_m);
@@ -109,7 +109,7 @@ TEST(HandPath, StandsStillWithOneWaypointAndAtTheOriginWithNone) {
   }
 }
 
-TEST(HandPath, NeverTouchesTheHeap) {
+TEST(HandPath, NeverUsesTheHeap) {
   const tests::NoAlloc guard;
   double sum_m = 0.0;
   for (double t = -1.0; t < 20.0; t += 0.01) sum_m += hand_target(kPath, true, t).position_m.z;

@@ -57,13 +57,14 @@ TEST_F(Witness, SumsAreThoseOfPenAndPaper) {
   tick.tool.position_m.x = 0.001;
   turn_to(0.01);
   EXPECT_EQ(once([](WrittenTick&) {}), "");
-  EXPECT_NEAR(witness.given_J(), 2.0 * 0.001 + 0.02 * 2.0 * std::sin(0.005), 1e-15);
+  EXPECT_NEAR(witness.total_given_energy_J(), 2.0 * 0.001 + 0.02 * 2.0 * std::sin(0.005), 1e-15);
   tick.fresh = false;  // 1 ms without a sample, and then the way of both: the mean force counts
   once([](WrittenTick& t) { t.written.force_N.x = 1.0; });
   tick.fresh = true;
   tick.tool.position_m.x = 0.003;
   once([](WrittenTick&) {});
-  EXPECT_NEAR(witness.given_J(), 0.002 + 0.02 * 2.0 * std::sin(0.005) + 1.5 * 0.002, 1e-15);
+  EXPECT_NEAR(witness.total_given_energy_J(), 0.002 + 0.02 * 2.0 * std::sin(0.005) + 1.5 * 0.002,
+              1e-15);
   EXPECT_TRUE(witness.is_motion_permitted());
   EXPECT_DOUBLE_EQ(witness.worst().force_N, 2.0);
   EXPECT_DOUBLE_EQ(witness.worst().step_N, 1.0);
@@ -137,7 +138,7 @@ TEST_F(Witness, SeesEnergyBeyondTheBudget) {
     return [=](WrittenTick& t, int) { t.tool.position_m.x += step_m; };
   };
   EXPECT_EQ(after(10, flee(0.0009)).substr(0, 12), "energy given");
-  EXPECT_GT(witness.given_J(), 0.01);
+  EXPECT_GT(witness.total_given_energy_J(), 0.01);
   tick.faulted = true;  // of the force that the fault has ended
   EXPECT_EQ(once([](WrittenTick& t) { t.written = {}; }),
             "energy given <= energy_J + recovery_W t");

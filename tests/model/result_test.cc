@@ -7,7 +7,7 @@
 
 namespace tact::model::result_test {
 
-TEST(Result, HasAValueOrASentence) {
+TEST(Result, HasAValueOrAMessage) {
   const Result<int> good = 7;
   ASSERT_TRUE(good);
   EXPECT_EQ(*good, 7);

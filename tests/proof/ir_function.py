@@ -46,7 +46,7 @@ def name_of(base, offset, kind):
 
 
 class Function:
-    """One function of the assembly: its text in C, and the places that it touches."""
+    """One function of the assembly: its text in C, and the places that it uses."""
 
     def __init__(self, name, signature, body, contracts):
         self.name, self.places, self.values, self.contracts = name, set(), {}, contracts

@@ -3,7 +3,7 @@
 
     translate(assembly, functions, contracts) -> C text
 
-Each place of memory that an instruction touches is a variable of its own, named by the parameter it
+Each place of memory that an instruction uses is a variable of its own, named by the parameter it
 belongs to, its offset in bytes and its type: the double at byte 592 of `%gate` is `gate_592_d`. So
 the prover sees numbers alone, no pointers. A function of `contracts` is not translated but called by
 the name and with the pointers that are given there. What is not understood raises Unknown: no

@@ -67,7 +67,7 @@ int main(void) {
         "fresh: each missed period is counted");
   CHECK(!IS_ARMED || IS_FRESH || missed + 1 + SKIPPED < 20 || (latched && is_zero),
         "fresh: the 20th missed sample latches");
-  CHECK(IS_FRESH || !IS_ARMED || ACTED(fresh) == 1, "fresh: a missed sample is told");
+  CHECK(IS_FRESH || !IS_ARMED || ACTED(fresh) == 1, "fresh: a missed sample is reported");
   CHECK(ACTED(fresh) == (MISSED > 0 || FRESH_LEVEL < 1), "fresh: the counter is right");
   CHECK(IS_ARMED || is_zero, "armed: zero unless armed");
   CHECK(ACTED(armed) == (!IS_ARMED || (latched && FAULT != 131)), "armed: the counter is right");

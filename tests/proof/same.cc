@@ -94,9 +94,9 @@ int main() {
       load_gate(bytes_of(gate));
       load_input(bytes_of(in));
       limit();
-      const LimitedForce verdict = gate.limit(in);
-      forces += norm(verdict.wrench.force_N) > 0.0;
-      if (is_same_out(bytes_of(verdict)) && is_same_gate(bytes_of(gate))) continue;
+      const LimitedForce limited = gate.limit(in);
+      forces += norm(limited.wrench.force_N) > 0.0;
+      if (is_same_out(bytes_of(limited)) && is_same_gate(bytes_of(gate))) continue;
       std::printf("not the same in run %d, tick %d\n", run, tick);
       return 1;
     }

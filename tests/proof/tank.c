@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tank.c - the energy that may still be given, whatever was measured.
+// tank.c - the energy that may still be given, for any measurements.
 #include "tests/proof/arithmetic.h"
 #include MADE
 #include LAYOUT

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Wrong variants of the gate: file, what stands there, what stands there instead, the proof that must
+"""Wrong variants of the gate: file, the text there, its replacement, the proof that must
 fail, and the property that it must lose."""
 
 GATE, LIMITER, TANK = (f"firmware/gate/{name}" for name in ("gate.cc", "limiter.h", "energy_tank.cc"))
@@ -10,7 +10,7 @@ WRONG = [
     (GATE, "if (missed_ >= kLostAfter)", "if (missed_ > kLostAfter)", "limit",
      "fresh: the 20th missed sample latches"),
     (GATE, "missed_ + 1 + input.skipped_periods", "missed_ + 1", "limit", "fresh: each missed period is counted"),
-    (GATE, "if (armed && !latches(verdict.fault)) return true;", "if (!latches(verdict.fault)) return true;", "limit",
+    (GATE, "if (armed && !latches(limited.fault)) return true;", "if (!latches(limited.fault)) return true;", "limit",
      "armed: zero unless armed"),
     (GATE, "is_inside(limits_, tool.position_m), period_s_", "!is_inside(limits_, tool.position_m), period_s_", "limit",
      "workspace: it fades outside"),
@@ -26,11 +26,11 @@ WRONG = [
      "magnitude: what the thermal limit allows is no more than the peak"),
     (LIMITER, "std::fmax(radius, length - shrink)", "std::fmax(radius, length + shrink)", "approach",
      "slew: an approach is no longer than its radius, or than the force before"),
-    (GATE, "if (step_towards(verdict.wrench, periods, most))", "if (periods > 1e9)", "limit",
+    (GATE, "if (step_towards(limited.wrench, periods, most))", "if (periods > 1e9)", "limit",
      "slew: |dF| before the ramp <= its step"),
-    (GATE, "note(Stage::kPower, Fault::kPowerExceeded, verdict);", "verdict.fault = Fault::kPowerExceeded;", "limit",
+    (GATE, "note(Stage::kPower, Fault::kPowerExceeded, limited);", "limited.fault = Fault::kPowerExceeded;", "limit",
      "power: the counter is right"),
     (GATE, "  ramp_.set(0.0);\n  written_ = {};", "  written_ = {};", "limit",
      "armed: after a fault all starts from zero"),
-    (GATE, "verdict.wrench = ramp * verdict.wrench;", "", "limit", "ramp: no force before it opens"),
+    (GATE, "limited.wrench = ramp * limited.wrench;", "", "limit", "ramp: no force before it opens"),
 ]

@@ -27,7 +27,7 @@ class EnergyAccount {
       const double done_J = (dot(impulse_.force_N, sample.tool.position_m - position_m_) +
                              dot(impulse_.torque_Nm, twice * model::Vec3{turn.x, turn.y, turn.z})) /
                             since_sample_s_;
-      given_J_ += done_J;
+      given_energy_J_ += done_J;
       lately_J_ = std::max(lately_J_ + done_J - recovery_W * since_sample_s_, 0.0);
     }
     placed_ = true;
@@ -36,9 +36,9 @@ class EnergyAccount {
     impulse_ = {};
     since_sample_s_ = 0.0;
   }
-  void start_anew() { *this = {}; }
+  void restart() { *this = {}; }
 
-  double given_J() const { return given_J_; }
+  double total_given_energy_J() const { return given_energy_J_; }
   /// The most of any stretch of time that ends now, less what came back in it.
   double lately_J() const { return lately_J_; }
   double time_s() const { return time_s_; }
@@ -46,7 +46,7 @@ class EnergyAccount {
  private:
   model::Wrench impulse_;  // N s, N m s
   double since_sample_s_ = 0.0, time_s_ = 0.0;
-  double given_J_ = 0.0, lately_J_ = 0.0;
+  double given_energy_J_ = 0.0, lately_J_ = 0.0;
   bool placed_ = false;
   model::Vec3 position_m_;
   model::Quat orientation_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// invariants.h - what must be true after each tick, whatever came in.
+// invariants.h - what must be true after each tick, for any input.
 #pragma once
 
 #include <cstdint>

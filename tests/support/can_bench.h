@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// can_bench.h - a delta on CAN with played drives, tick by tick, whatever the drives.
+// can_bench.h - a delta on CAN with played drives, tick by tick, of any kind.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -88,7 +88,7 @@ class BasicScriptedBus {
     socket_ = socket.get();
     bus_ = std::make_unique<Bus>(std::move(socket));
   }
-  /// The drives' end for somebody else, who closes it.
+  /// The drives' end for another owner, which closes it.
   int give_drives_end() { return std::exchange(drives_fd_, -1); }
 
   /// To give to the device; the socket lives with it.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// contact_rules.h - what must hold of every tick of a sphere's contact, whatever its path.
+// contact_rules.h - what must hold of every tick of a sphere's contact, for any path.
 //
 //   a  overlapping from the first tick on: kInside and no force until it has once been outside
 //   b  outside, and nothing of the body between it and its contact point: no force, after one range
@@ -232,8 +232,8 @@ class ContactRules {
     if (!s_.is_alone) return {};
     const bool is_free = is_outside_ && force_N_ == 0.0;
     if (before_ && !now.is_lost && in_stroke_) {
-      given_J_ += 0.5 * dot(now.sphere_contact.force_N + before_->sphere_contact.force_N,
-                            now.centre_m - before_->centre_m);
+      given_energy_J_ += 0.5 * dot(now.sphere_contact.force_N + before_->sphere_contact.force_N,
+                                   now.centre_m - before_->centre_m);
       most_N_ = std::max(most_N_, force_N_);
       most_m_ = std::max(most_m_, moved_m_);
       if (now.is_unsettled && !before_->is_unsettled) ++lagged_;
@@ -244,11 +244,11 @@ class ContactRules {
     if (!is_free) return {};
     const double most_J = std::max(most_N_ * most_m_, wrong_J_) +
                           lagged_ * most_N_ * most_N_ / (20.0 * s_.max_slope_N_per_m);
-    const bool is_over = in_stroke_ && given_J_ > most_J + 1e-12;
+    const bool is_over = in_stroke_ && given_energy_J_ > most_J + 1e-12;
     std::ostringstream what;
-    what << "given " << given_J_ << " J; the sum may be wrong by " << most_J << " J";
+    what << "given " << given_energy_J_ << " J; the sum may be wrong by " << most_J << " J";
     in_stroke_ = true;
-    given_J_ = most_N_ = most_m_ = wrong_J_ = 0.0;
+    given_energy_J_ = most_N_ = most_m_ = wrong_J_ = 0.0;
     lagged_ = 0;
     if (is_over) return say('h', what.str());
     return {};
@@ -286,7 +286,7 @@ class ContactRules {
   int lags_ = 0;
   bool in_stroke_ = false;
   int lagged_ = 0;
-  double given_J_ = 0.0, most_N_ = 0.0, most_m_ = 0.0, wrong_J_ = 0.0;
+  double given_energy_J_ = 0.0, most_N_ = 0.0, most_m_ = 0.0, wrong_J_ = 0.0;
 };
 
 }  // namespace tact::tests

@@ -12,15 +12,16 @@
 
 namespace tact::tests {
 
-/// `is_told(path)` of copies beside the file: 200 with a bit flipped, 30 cut off, spread over it.
-template <typename IsTold>
-void expect_all_damage_is_reported(const std::string& path, const IsTold& is_reported) {
+/// `is_reported(path)` of copies beside the file: 200 with a bit flipped, 30 cut off, spread over
+/// it.
+template <typename IsReported>
+void expect_all_damage_is_reported(const std::string& path, const IsReported& is_reported) {
   std::ifstream file(path, std::ios::binary);
   const std::string whole{std::istreambuf_iterator<char>(file), {}};
   const std::string copy = path + ".damaged";
   const auto try_with = [&](const std::string& bytes, const std::string& what) {
     std::ofstream(copy, std::ios::binary) << bytes;
-    EXPECT_TRUE(is_reported(copy)) << what << " of " << whole.size() << " bytes is not told";
+    EXPECT_TRUE(is_reported(copy)) << what << " of " << whole.size() << " bytes is not reported";
   };
   try_with(whole + "x", "a byte more");
   for (std::size_t i = 0; i < 200; ++i) {

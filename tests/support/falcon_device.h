@@ -27,7 +27,7 @@ struct FalconDevice {
   int dead_uploads = 0;                      // firmware that arrives and never answers
   int deaf_greetings = 0, deaf_reports = 0;  // answers that never come
   int wrong_greetings = 0;                   // ... that come damaged
-  int late_greetings = 0;                    // ... damaged, and when nobody listens any more
+  int late_greetings = 0;                    // ... damaged, and when no program listens any more
   bool knows_speed = true, null_first = false, clear_to_send = true;
   int spoiled_echoes = 0, swallowed_echoes = 0;  // one per upload
   int failing_actions = 0, first_failing = 0;

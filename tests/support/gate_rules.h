@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// gate_rules.h - what must hold of every tick of the gate, whatever went in: the limits by their
+// gate_rules.h - what must hold of every tick of the gate, for any input: the limits by their
 // witness (model/limit_witness.h), and what latches. Property tests and the fuzzer feed it.
 //
 // The tool turns about x alone.
@@ -37,21 +37,22 @@ class GateRules {
     GateInput& input = tick.gate;
     const double angle_rad = std::remainder(tick.angle_rad, 4.0 * std::numbers::pi);
     input.tool.orientation = {std::cos(0.5 * angle_rad), std::sin(0.5 * angle_rad), 0, 0};
-    verdict_ = gate_.limit(input);
-    const char* broken = witness_.check({.written = verdict_.wrench,
+    limited_ = gate_.limit(input);
+    const char* broken = witness_.check({.written = limited_.wrench,
                                          .tool = input.tool,
                                          .fresh = input.fresh,
                                          .armed = input.armed,
-                                         .faulted = latches(verdict_.fault),
+                                         .faulted = latches(limited_.fault),
                                          .skipped_periods = input.skipped_periods});
-    if (witness_.is_motion_permitted()) most_given_J_ = std::max(most_given_J_, witness_.given_J());
+    if (witness_.is_motion_permitted())
+      max_given_energy_J_ = std::max(max_given_energy_J_, witness_.total_given_energy_J());
     return broken != nullptr ? broken : broken_latch_rule(input);
   }
 
-  const LimitedForce& verdict() const { return verdict_; }
+  const LimitedForce& limited() const { return limited_; }
   const firmware::gate::Gate& gate() const { return gate_; }
   /// Where no step was too long for its time.
-  double most_given_J() const { return most_given_J_; }
+  double max_given_energy_J() const { return max_given_energy_J_; }
   double most_thermal_ratio() const { return witness_.rms_ratio(); }
   double most_torque_thermal_ratio() const { return witness_.rms_torque_ratio(); }
 
@@ -66,7 +67,7 @@ class GateRules {
     return limits;
   }
   const char* broken_latch_rule(const GateInput& input) const {
-    const model::Fault fault = verdict_.fault;
+    const model::Fault fault = limited_.fault;
     if (!is_finite(input.wanted) && fault == model::Fault::kNone) return "NaN and infinity latch";
     if (!is_finite(input.tool) && fault == model::Fault::kNone) return "a sample of NaN latches";
     // Samples are counted in periods: what was skipped before this tick is missing too.
@@ -81,8 +82,8 @@ class GateRules {
 
   firmware::gate::Gate gate_;
   model::LimitWitness witness_;
-  LimitedForce verdict_;
-  double most_given_J_ = 0.0;
+  LimitedForce limited_;
+  double max_given_energy_J_ = 0.0;
 };
 
 }  // namespace tact::tests

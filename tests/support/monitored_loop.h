@@ -19,7 +19,7 @@ namespace tact::firmware {
 
 inline constexpr std::int64_t kMs = 1'000'000;
 
-// What a broken device would do; the compiler must not judge it.
+// What a broken device would do; the compiler must not check it.
 #if defined(__clang__) && __clang_major__ >= 20
 #pragma clang diagnostic push
 #pragma clang diagnostic ignored "-Wfunction-effects"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// mountings.h - six ways in which the base of a delta stands, and where down is for each.
+// mountings.h - six ways to mount the base of a delta, and where down is for each.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ struct MountingCase {
 inline constexpr std::array<MountingCase, 6> kMountings{
     {{{0, 0, 0}, {0, 0, -1}, "lies on its side, its axis points towards you"},
      {{0, 90, 0}, {1, 0, 0}, "hangs from above, its axis points down"},
-     {{0, -90, 0}, {-1, 0, 0}, "stands upright, its axis points up"},
+     {{0, -90, 0}, {-1, 0, 0}, "is upright, its axis points up"},
      {{0, 0, 90}, {0, 0, -1}, "lies on its side, its axis points to the right"},
      {{90, 0, 0}, {0, -1, 0}, "lies on its side, its axis points towards you"},
      {{180, 0, 0}, {0, 0, 1}, "lies on its side, its axis points towards you"}}};

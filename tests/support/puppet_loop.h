@@ -15,7 +15,7 @@
 
 namespace tact::firmware {
 
-// A device on a string: presses the plate as told, and can be slow, silent or broken.
+// A device that a test moves: presses the plate, and can be slow, silent or broken.
 class PuppetDevice : public hal::Device {
  public:
   explicit PuppetDevice(loop::SimulatedClock& clock) : clock_(clock) {}
@@ -64,7 +64,7 @@ class PuppetDevice : public hal::Device {
   loop::SimulatedClock& clock_;
 };
 
-// Safety lines on a string, and the order in which loop and device were told.
+// Safety lines that a test sets, and the order of the calls of loop and device.
 class PuppetLines final : public hal::SafetyLines {
  public:
   model::Fault read(std::int64_t) RT_SAFE override { return fault; }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // stepped_time.h - a loop beside threads of a vendor SDK, on a machine that may be busy.
 //
-// From its first question for the time CLOCK_MONOTONIC stands still for all of the program, until
+// From its first question for the time CLOCK_MONOTONIC stops for all of the program, until
 // the loop sleeps: then it is the loop's deadline. So no sample and no command grows old while a
 // thread waits for a core. A sleep of the loop lasts until another thread has gone through two of
 // its own, and so through a whole cycle that began after this one's tick. To deadlines the others

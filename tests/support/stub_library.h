@@ -14,25 +14,25 @@ namespace tact::tests {
 class StubLibrary {
  public:
   explicit StubLibrary(const std::string& path)
-      : library_(dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL)) {
-    if (library_ == nullptr) {
+      : handle_(dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL)) {
+    if (handle_ == nullptr) {
       ADD_FAILURE() << dlerror();
       std::abort();
     }
   }
-  ~StubLibrary() { dlclose(library_); }
+  ~StubLibrary() { dlclose(handle_); }
   StubLibrary(const StubLibrary&) = delete;
   StubLibrary& operator=(const StubLibrary&) = delete;
 
  protected:
   template <typename Function>
   void find(const char* symbol, Function& function) {
-    function = reinterpret_cast<Function>(dlsym(library_, symbol));
+    function = reinterpret_cast<Function>(dlsym(handle_, symbol));
     ASSERT_NE(function, nullptr) << symbol;
   }
 
  private:
-  void* library_;
+  void* handle_;
 };
 
 }  // namespace tact::tests

@@ -41,9 +41,9 @@ class UsbFolders {
 };
 
 /// For a process that ends soon: root may open any node.
-inline void become_nobody() {
-  constexpr uid_t kNobody = 65534;
-  if (geteuid() == 0 && setreuid(kNobody, kNobody) != 0) _exit(2);
+inline void drop_privileges() {
+  constexpr uid_t kOther = 65534;
+  if (geteuid() == 0 && setreuid(kOther, kOther) != 0) _exit(2);
 }
 
 }  // namespace tact::tests

@@ -160,7 +160,7 @@ class Viewer : public ::testing::Test {
   RunHeader header_ = make_header(3, 1, 3, 1);
   std::vector<std::byte> meshes_ = TinyMeshes{}.bytes();
   std::atomic<std::uint64_t> frames_ = 0;
-  std::vector<double> silences_s_;     // as they were told; of the viewer's thread
+  std::vector<double> silences_s_;     // as they were reported; of the viewer's thread
   std::vector<std::string> warnings_;  // as well
   std::thread thread_;
   std::optional<std::string> bearer_;  // none: that of the server's token

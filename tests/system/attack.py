@@ -37,10 +37,10 @@ passed = failed = 0
 started = []
 
 
-def check(sentence, holds, seen=""):
+def check(message, holds, seen=""):
     global passed, failed
     passed, failed = passed + bool(holds), failed + (not holds)
-    print(f"{'ok    ' if holds else 'FAILED'} {sentence}{f' ({seen})' if seen != '' else ''}", flush=True)
+    print(f"{'ok    ' if holds else 'FAILED'} {message}{f' ({seen})' if seen != '' else ''}", flush=True)
 
 
 def start(program, *arguments):
@@ -160,14 +160,14 @@ def connections(view):
         with contextlib.suppress(ConnectionResetError):  # turned away, its words lost as ours came too late
             let_in += wire.recv(12) == b"HTTP/1.1 200"
     grown = (resident_bytes(view.program) - before) / MIB
-    check("of 100 downloads that nobody reads 64 are let in", 63 <= let_in <= 64, let_in)
+    check("of 100 downloads that are not read 64 are let in", 63 <= let_in <= 64, let_in)
     check("... and share their frames", grown < 64, f"{grown:.0f} MiB")
     _ = [wire.close() for wire in wires]
     time.sleep(0.3)
     slow = [view.connect() for _ in range(40)]
     for wire in slow:
         wire.sendall(b"GET / HT")
-    check("40 requests that never end hold up nobody", view.status("scene.json", view.bearer) == 200)
+    check("40 requests that never end delay no other", view.status("scene.json", view.bearer) == 200)
     _ = [wire.close() for wire in slow]
 
 
@@ -181,7 +181,7 @@ def web_sockets(view):
     for _ in range(40):
         view.live().sendall(rng.randbytes(rng.randrange(2, 2000)))
     view.live().sendall(text_frame(b"a" * 60000))
-    check("WebSockets that talk nonsense hold up nobody", view.status("scene.json", view.bearer) == 200)
+    check("WebSockets that talk nonsense delay no other", view.status("scene.json", view.bearer) == 200)
     check("... and the program that started tact-view gets no request", not select.select([view.program.stdout], [], [], 0.5)[0])
 
 
@@ -253,7 +253,7 @@ def files(folder, recording):
             raw[at] ^= 1 << rng.randrange(8)
             bad.write_bytes(raw[:at] if i % 3 == 0 else raw)
             statuses.append(run_status(*(bad if word == "{}" else word for word in command)))
-        check(f"{name} with a flipped bit or without their end are told", whole == 0 and set(statuses) <= {1, 2},
+        check(f"{name} with a flipped bit or without their end are reported", whole == 0 and set(statuses) <= {1, 2},
               (whole, statuses))
 
 
@@ -287,7 +287,7 @@ with tempfile.TemporaryDirectory(prefix="tact-attack-") as name:
     PAGE.mkdir()
     (PAGE / "index.html").write_text("<html>")
     signal.signal(signal.SIGALRM, too_long)
-    signal.alarm(LIMIT_S)  # whatever hangs
+    signal.alarm(LIMIT_S)  # against every hang
     begun_s = time.monotonic()
     try:
         run(Path(name))

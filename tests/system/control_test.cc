@@ -20,8 +20,8 @@ class Control : public Tactd {
         << "export TACT_STUB_DHD_NO_WATCHDOG=1 XDG_RUNTIME_DIR=" << in_folder("run") << "\ncd "
         << in_folder("") << "\nln -sf " << TACT_SOURCE_DIR "/model/scenes/* .\n"
         << "start() { " << program_path("tactd") << " $2 --no-telemetry --no-black-box"
-        << kStubDevice << " --json $1.json 2>$1.told & }\n"
-        << "ready() { for i in {1..200}; do grep -qs 'ready, force is off' $1.told && break; sleep "
+        << kStubDevice << " --json $1.json 2>$1.log & }\n"
+        << "ready() { for i in {1..200}; do grep -qs 'ready, force is off' $1.log && break; sleep "
            ".05; done; }\n"
         << "ctl() { " << program_path("tactctl") << " \"$@\"; echo \"status $?\"; }\n"
         << acts << "\n";
@@ -38,7 +38,7 @@ TEST_F(Control, ArmsTheTactdOfItsSceneAloneAndStopsIt) {
       "start a ./liver.toml; a=$!; start b skin.toml; b=$!; ready a; ready b\n"
       "ctl liver.toml arm; sleep .2; ctl ./skin.toml status; ctl liver.toml status\n"
       "ctl liver.toml stop; wait $a; ctl liver.toml status; ctl skin.toml stop; wait $b\n"
-      "ls run/tact; cat a.told");
+      "ls run/tact; cat a.log");
   EXPECT_TRUE(has(out, "armed, force is on\nstatus 0")) << out.output;
   // Where the stand-in's tool is by then depends on how long the start took: it may say more.
   EXPECT_TRUE(has(out, ": ready, 0.000 N")) << out.output;
@@ -66,13 +66,13 @@ TEST_F(Control, SetsNumbersOfTheLawWhileItRunsAndTheRecordReplays) {
   const Outcome out = in_bash(
       program_path("tactd") +
       " liver.toml --seconds 20 --no-telemetry --no-black-box --record run.tactlog "
-      "--json a.json 2>a.told & a=$!\n"
+      "--json a.json 2>a.log & a=$!\n"
       "until ctl liver.toml status | grep -q armed; do sleep .1; done\n"
       "ctl liver.toml set elastic.youngs_modulus_Pa 4800 rhombus.growth=6.5\n"
-      "until grep -q 'elastic.youngs_modulus_Pa=4800 rhombus.growth=6.5: set' a.told; do sleep .1; "
+      "until grep -q 'elastic.youngs_modulus_Pa=4800 rhombus.growth=6.5: set' a.log; do sleep .1; "
       "done\n"
       "ctl liver.toml set elastic.youngs_modulus_Pa=4500\n"
-      "until grep -q 'tactd: elastic.youngs_modulus_Pa=4500: set' a.told; do sleep .1; "
+      "until grep -q 'tactd: elastic.youngs_modulus_Pa=4500: set' a.log; do sleep .1; "
       "done\n"
       "ctl liver.toml set elastic.youngs_modulus_Pa=9e8; ctl liver.toml set limits.force_N=4\n"
       "ctl liver.toml stop; wait $a; " +
@@ -88,16 +88,16 @@ TEST_F(Control, AnEventIsInTheRecordOfTheTickThatTheAnswerNames) {
   const std::string tactd = program_path("tactd");
   const Outcome out = in_bash(
       tactd +
-      " liver.toml --seconds 20 --no-telemetry --no-black-box --record run.tactlog 2>a.told & "
+      " liver.toml --seconds 20 --no-telemetry --no-black-box --record run.tactlog 2>a.log & "
       "a=$!\n"
       "until ctl liver.toml status | grep -q armed; do sleep .1; done\n"
-      "ctl liver.toml event 7 | tee told; ctl liver.toml event 0; ctl liver.toml event\n"
+      "ctl liver.toml event 7 | tee answer; ctl liver.toml event 0; ctl liver.toml event\n"
       "ctl liver.toml stop; wait $a; " +
       tactd +
       " --replay run.tactlog --csv run.csv; grep -v '^#' run.csv | awk -F, 'NR == 1 { for (i = 1; "
       "i "
       "<= NF; ++i) if ($i == \"event\") c = i; next } $c != 0 { print \"event \" $c \" in tick \" "
-      "$1 }' >found; grep '^event' told | diff - found && echo equal");
+      "$1 }' >found; grep '^event' answer | diff - found && echo equal");
   EXPECT_TRUE(has(out, "event 7 in tick ")) << out.output;
   EXPECT_TRUE(has(out, "\nequal\n")) << out.output;
   EXPECT_TRUE(has(out, "event takes a number from 1 to 255\nstatus 1")) << out.output;
@@ -140,7 +140,7 @@ TEST_F(Control, OfTwoOnOneSceneWantsToKnowWhichAndAKilledOneIsNone) {
   EXPECT_TRUE(has(out, "\n2\n")) << "what the killed one left is gone: " << out.output;
 }
 
-TEST_F(Control, TellsOfBadUsageAndOfATactdThatHangs) {
+TEST_F(Control, ReportsBadUsageAndATactdThatHangs) {
   const Outcome out = in_bash(
       "ctl --help | tail -1; ctl; ctl liver.toml; ctl liver.toml fire\n"
       "start a liver.toml; a=$!; ready a; kill -STOP $a; ctl liver.toml stop; kill -CONT $a; wait "
@@ -151,11 +151,11 @@ TEST_F(Control, TellsOfBadUsageAndOfATactdThatHangs) {
   EXPECT_TRUE(has(out, "does not answer")) << out.output;
 }
 
-TEST_F(Control, WhereNoSocketCanBeItIsToldAndThereIsNoForce) {
+TEST_F(Control, WhereNoSocketCanBeTheReasonIsReportedAndThereIsNoForce) {
   const Outcome out = in_bash(
       "chmod 755 run; mkdir -m 777 run/tact; start a ./liver.toml; a=$!; ready a\n"
-      "sleep .3; kill -INT $a; wait $a; cat a.told");
-  EXPECT_TRUE(has(out, "tactctl does not reach this tactd, so nobody can arm it: ")) << out.output;
+      "sleep .3; kill -INT $a; wait $a; cat a.log");
+  EXPECT_TRUE(has(out, "tactctl does not reach this tactd, so it cannot be armed: ")) << out.output;
   EXPECT_TRUE(has(out, "remove it and start again")) << out.output;
   ASSERT_FALSE(report("a").is_discarded()) << out.output;
   EXPECT_EQ(report("a").at("force_max_N"), 0.0);

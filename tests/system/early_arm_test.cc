@@ -60,7 +60,7 @@ class Arming : public Tactd {
     const nlohmann::json reported = report();
     return reported.is_discarded() ? -1 : reported.at("fault").at("number").get<int>();
   }
-  std::string reported() const { return in_folder("told"); }
+  std::string reported() const { return in_folder("log"); }
   nlohmann::json report() const {
     std::ifstream file(in_folder("report.json"));
     return nlohmann::json::parse(file, nullptr, false);

@@ -45,7 +45,7 @@ class Supervisor:
                 self.names[nr] = call
         self.calls, self.number, self.error = set(calls), number, getattr(errno, error, 0)
         self.counts, self.counting, self.by_hand, self.failed = collections.Counter(), False, by_hand, ""
-        self.page = mmap.mmap(-1, 8)  # the child's pid and descriptor: no call tells them
+        self.page = mmap.mmap(-1, 8)  # the child's pid and descriptor: no call returns them
         self.thread = threading.Thread(target=self._serve, daemon=True)
         self.thread.start()
 

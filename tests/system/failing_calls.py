@@ -28,7 +28,7 @@ ROOT = Path(__file__).resolve().parents[2]
 BUILD = Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build").resolve()
 SCENE = ROOT / "model/scenes/skin.toml"
 IS_LONG = os.environ.get("TACT_EXTENT") == "long"
-MOST, AT_ONCE, LIMIT_S = 1000 if IS_LONG else 7, 8, 20
+MOST, PROCESSES, LIMIT_S = 1000 if IS_LONG else 7, 8, 20
 # What fails, and how.
 ERRORS = dict(openat="EMFILE", read="EIO", write="ENOSPC", fsync="EIO", socket="EMFILE", bind="EADDRINUSE", listen="EIO",
               accept4="EMFILE", connect="ECONNREFUSED", sendto="ENOBUFS", recvfrom="ECONNRESET", sendmsg="ENOBUFS",
@@ -189,7 +189,7 @@ def main():
             if act is viewed:
                 viewed(BESIDE, None)  # a recording for the next one
             begun_s, (pairs, usual) = time.monotonic(), calls_of(act)
-            with concurrent.futures.ThreadPoolExecutor(AT_ONCE) as pool:
+            with concurrent.futures.ThreadPoolExecutor(PROCESSES) as pool:
                 wrongs = list(pool.map(lambda pair: tried(act, *pair, usual), pairs))
             failed += filter(None, wrongs)
             passed += wrongs.count("")

@@ -25,10 +25,10 @@ class HeldThreads : public Tactd {
   }
 };
 
-TEST_F(HeldThreads, ALoopThatStandsStillIsNotAnsweredFor) {
+TEST_F(HeldThreads, AStoppedLoopGetsNoAnswerInItsName) {
   const Outcome out = in_bash("ctl status; hold tact-loop; ctl status");
   EXPECT_TRUE(has(out, "status 0\n")) << out.output;
-  EXPECT_TRUE(has(out, "not answered: the loop stands still; ")) << out.output;
+  EXPECT_TRUE(has(out, "not answered: the loop has stopped; ")) << out.output;
   EXPECT_TRUE(has(out, "status 1\n")) << out.output;
 }
 

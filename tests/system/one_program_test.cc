@@ -18,8 +18,8 @@ class OneProgram : public Tactd {
         << " --set limits.energy_J=0.2 --set device.kind=\\\"force-dimension\\\""
         << " --set device.force_dimension.library=\\\"" << TACT_BINARY_DIR
         << "/libtact-stub-dhd.so\\\"\"\n"
-        << "$tactd 2>" << in_folder("told") << " & first=$!\n"
-        << "for i in {1..100}; do grep -qs 'ready, force is off' " << in_folder("told")
+        << "$tactd 2>" << in_folder("log") << " & first=$!\n"
+        << "for i in {1..100}; do grep -qs 'ready, force is off' " << in_folder("log")
         << " && break; sleep .05; done\n"
         << second << "\nstatus=$?; echo first=$first\n"
         << "kill -0 $first && echo lives; kill -KILL $first\nexit $status\n";
@@ -27,7 +27,7 @@ class OneProgram : public Tactd {
   }
 };
 
-TEST_F(OneProgram, OpensADeviceAndASecondIsToldWhoHasIt) {
+TEST_F(OneProgram, OpensADeviceAndNamesItsHolderToASecond) {
   const Outcome out = beside_another("$tactd --seconds 1");
   EXPECT_EQ(out.status, 2) << out.output;
   const std::string first = out.output.substr(out.output.rfind("first=") + 6);

@@ -47,7 +47,7 @@ class OperatorProgram : public ::testing::Test {
       over = true;
     });
     bool enough = false;
-    for (int i = 0; i < 3000 && !over && !enough; ++i) {  // 30 s at most, whatever else runs
+    for (int i = 0; i < 3000 && !over && !enough; ++i) {  // 30 s at most, under any load
       enough = world();
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
@@ -56,7 +56,7 @@ class OperatorProgram : public ::testing::Test {
     if (std::ifstream(in("process")) >> process && !over) kill(process, SIGINT);
     program.join();
   }
-  /// The shoulder that the page of a running tact-view is told; none yet: nothing.
+  /// The shoulder on the page of a running tact-view; none yet: nothing.
   std::optional<Vector3d> reported_shoulder_m() const {
     std::ifstream ready(in("ready"));
     const auto json = nlohmann::json::parse(ready, nullptr, false);

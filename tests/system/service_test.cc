@@ -19,10 +19,10 @@ class ServiceProgram : public Tactd {
         << "s.bind(\"n\")\nwhile True: print(s.recv(999).decode(), flush=True)' > heard & "
         << "manager=$!\nuntil [ -S n ]; do sleep .05; done\n"
         << program_path("tactd") << " " << kLiver << " --json report.json --set rate_Hz=500 "
-        << options << " >told 2>&1 & tactd=$!\n"
+        << options << " >log 2>&1 & tactd=$!\n"
         << "for i in {1..100}; do grep -qs READY heard && break; sleep .1; done\n"
         << acts << "\nkill -TERM $tactd; wait $tactd; status=$?\nsleep .1; kill $manager\n"
-        << "cat heard told; exit $status\n";
+        << "cat heard log; exit $status\n";
     return run_command("bash " + script);
   }
   nlohmann::json report() const {
@@ -54,7 +54,7 @@ TEST_F(ServiceProgram, RefusesToArmAtItsStart) {
   EXPECT_TRUE(has(out, "a service never arms")) << out.output;
 }
 
-TEST_F(ServiceProgram, DoesNotHomeOnAJigThatNobodySees) {
+TEST_F(ServiceProgram, DoesNotHomeOnAJigWithoutAPerson) {
   const std::string scene = in_folder("jig.toml");
   std::ofstream(scene) << scene_on_real_devices();
   const Outcome out = run_command("NOTIFY_SOCKET=" + in_folder("n") + " " + program_path("tactd") +
@@ -69,10 +69,10 @@ TEST_F(ServiceProgram, WaitsForTheBusOfItsDeviceAndEndsByASignal) {
   const Outcome out = run_command(
       "export NOTIFY_SOCKET=" + in_folder("n") + "; " + program_path("tactd") + " " + scene +
       " --set 'device.can.homing=\"absolute\"' --set 'device.can.interface=\"tact-none\"' >" +
-      in_folder("told") + " 2>&1 & tactd=$!; until grep -qs 'waiting for' " + in_folder("told") +
+      in_folder("log") + " 2>&1 & tactd=$!; until grep -qs 'waiting for' " + in_folder("log") +
       "; do kill -0 $tactd || break; sleep .05; done; kill -TERM $tactd; wait $tactd; "
       "status=$?; cat " +
-      in_folder("told") + "; exit $status");
+      in_folder("log") + "; exit $status");
   EXPECT_EQ(out.status, 0) << out.output;
   EXPECT_TRUE(has(out, "tactd: waiting for tact-none: it is not there, or not up")) << out.output;
 }

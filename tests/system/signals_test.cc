@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// No signal that somebody sends to a thread of tactd stops its loop or takes its force, but the two
+// No signal of another process to a thread of tactd stops its loop or takes its force, but the two
 // that the loop listens to.
 #include <sys/syscall.h>
 
@@ -29,7 +29,7 @@ TEST_F(Signals, NoneOfSixtyFourToAnyThreadMattersToTheLoop) {
     const bool is_main = thread == tactd.process();
     threads += is_main ? 0 : 1;
     for (int signal = 1; signal <= 64; ++signal) {
-      if (signal == SIGKILL || signal == SIGSTOP) continue;  // nobody can refuse these
+      if (signal == SIGKILL || signal == SIGSTOP) continue;  // these cannot be refused
       if (signal == SIGXCPU) continue;                       // the runaway guard's
       const bool ends = signal == SIGINT || signal == SIGTERM || signal == SIGHUP ||
                         signal == SIGQUIT || signal == SIGTSTP || signal == SIGABRT;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tracking is for the eyes: tactd gives the same forces, bit for bit, whether tact-view tracks the
-// operator beside it or nobody is there.
+// operator beside it or is absent.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -100,7 +100,7 @@ class Forces : public ::testing::Test {
     return out;
   }
 
-  /// A tracker that in 3.3 s falls silent, stands, jumps about, steps back and sees too little.
+  /// A tracker that in 3.3 s falls silent, freezes, jumps, steps back and sees too little.
   void write_troubled() const {
     std::string lines;
     std::mt19937 noise(4);
@@ -226,7 +226,7 @@ TEST_F(Forces, OfALiveRunAreThoseOfItsReplayWhileTheTrackerIsInTrouble) {
   tactd(kMaintenance + " --seconds 4.5 --record " + in("live.log"));
   end_viewer();
   expect_all_trouble("view.tact");
-  // Nobody looks now: the run that was tracked through all this gives the same forces again.
+  // No viewer now: the run that was tracked through all this gives the same forces again.
   tactd(kMaintenance + " --replay " + in("live.log"));
   const std::vector<std::uint64_t> live = forces("live.log");
   EXPECT_GT(std::set(live.begin(), live.end()).size(), 1000u);

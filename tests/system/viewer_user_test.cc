@@ -26,7 +26,7 @@ constexpr const char* kWords =
     "as_tactd='setpriv --reuid=daemon --regid=games --clear-groups'\n"
     "as_viewer='setpriv --reuid=nobody --regid=nogroup --groups=games'\n"
     "as_stranger='setpriv --reuid=man --regid=man --clear-groups'\n"
-    "ready() { for i in {1..200}; do grep -qs 'ready, force is off' told && break; sleep .05; "
+    "ready() { for i in {1..200}; do grep -qs 'ready, force is off' log && break; sleep .05; "
     "done; }\n"
     // look NAME USER OPTIONS: how many frames the viewer got
     "look() { local name=$1 user=$2; shift 2; rm -f seen/r; timeout -s INT 1.5 $user $view --port "
@@ -48,7 +48,7 @@ class ViewerUser : public Tactd {
       GTEST_SKIP() << "other users cannot reach the build folder";
     std::filesystem::permissions(folder, std::filesystem::perms(0755));
   }
-  /// Bash beside a tactd of the user daemon that stands before a stand-in for hardware, disarmed.
+  /// Bash beside a tactd of the user daemon that drives a stand-in for hardware, disarmed.
   Outcome in_bash(const std::string& acts) const {
     const std::string script = in_folder("run.sh");
     std::ofstream(script)
@@ -60,9 +60,9 @@ class ViewerUser : public Tactd {
         << "install -d -o daemon -g games -m 0750 run/tact\ninstall -d -m 0777 seen\n"
         << "$as_tactd " << program_path("tactd") << " liver.toml --viewers games --no-black-box"
         << kStubDevice
-        << " >/dev/null 2>told & tactd=$!\ntrap 'kill -KILL $tactd' EXIT\n"
+        << " >/dev/null 2>log & tactd=$!\ntrap 'kill -KILL $tactd' EXIT\n"
            "ready\n"
-        << acts << "\nkill -INT $tactd; wait $tactd; trap - EXIT; cat told *.said\n";
+        << acts << "\nkill -INT $tactd; wait $tactd; trap - EXIT; cat log *.said\n";
     return run_command("timeout -k 5 90 bash " + script);
   }
 };

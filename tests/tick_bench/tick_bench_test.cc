@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// tact-tick-bench: its path touches, every pass computes the same forces, and bad input is told in
-// one line.
+// tact-tick-bench: its path makes contact, every pass computes the same forces, and bad input is
+// reported in one line.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // tact-tracking-bench: the figure's arm holds the tool on the scene's motion and on those that its
-// two-bone formula cannot follow; bad input is told in one line.
+// two-bone formula cannot follow; bad input is reported in one line.
 #include <gtest/gtest.h>
 
 #include <algorithm>

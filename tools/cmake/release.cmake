@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # An older Debian than those of tools/releases is refused with a sentence; another Linux is not
-# judged. cmake -DTACT_OS_RELEASE=FILE -P tools/cmake/release.cmake judges FILE.
+# evaluated. cmake -DTACT_OS_RELEASE=FILE -P tools/cmake/release.cmake evaluates FILE.
 if(NOT TACT_OS_RELEASE)
   set(TACT_OS_RELEASE /etc/os-release)
 endif()

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The linear elastic organ reduced to what its surface tells a tool: the compliance map of model/tissue.
+"""The linear elastic organ reduced to its surface: the compliance map of model/tissue.
 
 For every vertex of the surface three unit loads, normal and two tangential, over a Hertz patch of radius a0, at E = 1 Pa:
 
     p(rho) = (3 F / (2 pi a0^2)) sqrt(1 - rho^2 / a0^2)   pressure, rho <= a0
     w_a    = integral of p N_a dA / F,  sum w_a = 1       share of F that node a carries
-    C_pq   = sum w_a e_p . u_a^(q)                        compliance as the patch feels it, m/N
+    C_pq   = sum w_a e_p . u_a^(q)                        compliance averaged over the patch, m/N
     r E    = C_nn - 3 / (5 E* a0)                         beyond a half-space's; the rest likewise with C_t
     g_j E  = mean over the ring j of  n . u^(n) - u_half(rho)
 
@@ -15,7 +15,7 @@ half-space is exact [Johnson, Contact Mechanics (1985), 3.4 and 3.6]:
     u_half(rho) = 3 F (2 a0^2 - rho^2) / (8 E* a0^3)   inside;   C_n = 3 / (5 E* a0),   C_t = 3 (2 - nu) / (20 G a0)
 
 a0 patch radius, m; rho straight distance from the middle of the patch, m; E* = E / (1 - nu^2), Pa; G shear modulus, Pa.
-Ring j gathers the nodes of the skin at distance rho from the vertex that look its way, weighted by a hat that reaches one pitch
+Ring j gathers the boundary's nodes at distance rho from the vertex that face its way, weighted by a hat that reaches one pitch
 to either side. Elements near the surface should be no longer than about a0 / 1.6, inside the body too: flat elements behind a
 fine surface make r too small.
 """
@@ -27,10 +27,10 @@ import run
 import surface
 
 CUTS = 8  # a triangle is cut into CUTS^2 for the integral of p N_a
-AT_ONCE = 32  # vertices of a job: neighbours, whose loads reach the same few parts of the body
+JOB_VERTICES = 32  # vertices of a job: neighbours, whose loads reach the same few parts of the body
 FACING = 0.2  # cosine of a node's normal with the vertex's, as kFacing of model/contact/surface.h
-LOOSE = 1e-11  # of its stiffness: what rounding leaves to an unknown that can move without force
-LEAST_NODES = 1e-3  # chosen: a ring of less has no skin
+MIN_PIVOT_RATIO = 1e-11  # of its stiffness; below: rounding error of an unknown that moves without force
+LEAST_NODES = 1e-3  # chosen: a ring of less has no boundary
 
 
 def part_middles():
@@ -46,7 +46,7 @@ MIDDLES = part_middles()
 SHAPE = np.hstack([MIDDLES * (2.0 * MIDDLES - 1.0), 4.0 * MIDDLES * MIDDLES[:, surface.NEXT]])
 
 
-class Skin:
+class Boundary:
     """The surface of a body: its nodes, and its faces by the places of these."""
 
     def __init__(self, made):
@@ -115,7 +115,7 @@ class Factor(elastic.Elimination):
         self.row = self.row.reshape(-1, 3)
         self.part, self.factor = np.repeat(elastic.part_of_nodes(made, depth), 3)[unknown], {}
         stiffness = elastic.stiffness(organ, made)[unknown][:, unknown]
-        self.loose = LOOSE * stiffness.diagonal()
+        self.min_pivot = MIN_PIVOT_RATIO * stiffness.diagonal()
         super().__init__(stiffness, self.part, depth)
         try:
             self.left_of(1)
@@ -124,7 +124,7 @@ class Factor(elastic.Elimination):
                               "to elastic.fixed_max_m hold every part of the organ") from None
 
     def keep(self, part, own, around, lower, solved):
-        if (lower.diagonal()**2 < self.loose[own]).any():
+        if (lower.diagonal()**2 < self.min_pivot[own]).any():
             raise np.linalg.LinAlgError
         self.factor[part] = own, around, lower, solved
 
@@ -164,32 +164,32 @@ class Condensation:
     """`organ` has E = 1 Pa: a compliance is that times E, as the map has it."""
 
     def __init__(self, organ, made, patch_radius_m, ring_pitch_m, rings):
-        self.organ, self.skin, self.radius_m = organ, Skin(made), patch_radius_m
+        self.organ, self.boundary, self.radius_m = organ, Boundary(made), patch_radius_m
         self.pitch_m, self.rings = ring_pitch_m, rings
         self.factor = Factor(organ, made)
 
     def of_vertices(self, vertices):
         """Rows (k, 8 + rings): r E, then n1, n2, s1, s2, first axis, then g_j E, as compliance_file.h has them."""
-        skin, row = self.skin, self.factor.row[self.skin.node]
-        places = np.searchsorted(skin.node, vertices)
-        patches = [skin.patch(place, self.radius_m) for place in places]
+        boundary, row = self.boundary, self.factor.row[self.boundary.node]
+        places = np.searchsorted(boundary.node, vertices)
+        patches = [boundary.patch(place, self.radius_m) for place in places]
         for vertex, patch in zip(vertices, patches):
             if len(patch[0]) == 0:
                 raise run.Failure(f"condensation: a patch of {self.radius_m:g} m is too small for the elements at vertex "
                                   f"{vertex}; make the patch wider or the elements finer")
         axes = [np.array([n, *surface.across(n)]) for n in self.organ.vertex_normal[vertices]]
         moved = np.zeros((len(self.factor.part) + 1, 3, len(vertices)))
-        wanted = np.zeros(len(skin.node), dtype=bool)
+        wanted = np.zeros(len(boundary.node), dtype=bool)
         for k, ((node, weight), axis) in enumerate(zip(patches, axes)):
             moved[row[node], :, k] = weight[:, None, None] * axis.T
-            wanted |= skin.away_m(places[k]) < (self.rings + 1) * self.pitch_m
+            wanted |= boundary.away_m(places[k]) < (self.rings + 1) * self.pitch_m
         loaded = np.unique(np.concatenate([row[node].ravel() for node, _ in patches]))
         c = self.factor.solve(moved, loaded, row[wanted].ravel())
         return np.array([self.row_of(place, axis, c[:, :, k], moved[row, 0, k] @ axis[0])
                          for k, (place, axis) in enumerate(zip(places, axes))])
 
-    def row_of(self, place, axis, c, sunk):
-        """sunk: how far the nodes of the skin go along the normal under the normal load."""
+    def row_of(self, place, axis, c, displacement):
+        """displacement: how far the nodes of the surface go along the normal under the normal load."""
         # Less the half-space under the same patch: the part that knows only the patch cancels.
         normal = c[0, 0] - half_space_normal_m_per_N(self.organ, self.radius_m)
         side = c[1:, 1:] - half_space_tangential_m_per_N(self.organ, self.radius_m) * np.eye(2)
@@ -198,28 +198,28 @@ class Condensation:
         turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
         turned = turn @ side @ turn.T
         return np.concatenate([[normal], turn @ c[0, 1:], turned.diagonal(), turn[0] @ axis[1:],
-                               self.rings_of(place, axis[0], sunk)])
+                               self.rings_of(place, axis[0], displacement)])
 
-    def rings_of(self, place, normal, sunk):
-        rho_m = self.skin.away_m(place)
-        g = sunk - half_space_m_per_N(self.organ, self.radius_m, rho_m)
+    def rings_of(self, place, normal, displacement):
+        rho_m = self.boundary.away_m(place)
+        g = displacement - half_space_m_per_N(self.organ, self.radius_m, rho_m)
         at = rho_m / self.pitch_m
-        counts = np.flatnonzero((at < self.rings + 1) & (self.skin.normal @ normal >= FACING))
+        counts = np.flatnonzero((at < self.rings + 1) & (self.boundary.normal @ normal >= FACING))
         low, g_of, high_share = at[counts].astype(np.int64), g[counts], at[counts] % 1.0
         # A hat a ring: a node between two rings counts for both, by its nearness.
         ring, share = np.concatenate([low, low + 1]), np.concatenate([1.0 - high_share, high_share])
         nodes = np.bincount(ring, share, self.rings + 2)
         sums = np.bincount(ring, share * np.tile(g_of, 2), self.rings + 2)
-        out, before = [], g[place]  # at rho = 0, should no skin beside it count
+        out, before = [], g[place]  # at rho = 0, should no boundary beside it count
         for j in range(self.rings + 1):
             before = sums[j] / nodes[j] if nodes[j] > LEAST_NODES else before  # beyond an edge: as the last ring
             out.append(before)
         return out[1:]
 
-    def run(self, at_once, label):
+    def run(self, processes, label):
         """Rows as of_vertices, of all vertices, in processes that share the factor."""
         order = self.factor.order_of(np.arange(len(self.organ.vertex_m)))
-        jobs = np.split(order, range(AT_ONCE, len(order), AT_ONCE))
+        jobs = np.split(order, range(JOB_VERTICES, len(order), JOB_VERTICES))
         rows = np.empty((len(order), 8 + self.rings))
-        rows[order] = np.vstack(run.run_jobs(self.of_vertices, jobs, at_once, label))
+        rows[order] = np.vstack(run.run_jobs(self.of_vertices, jobs, processes, label))
         return rows

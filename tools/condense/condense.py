@@ -45,7 +45,7 @@ def check(organ):
 
 
 def check_lumps(organ):
-    """One at the surface would change what the tip itself feels, which no map says; one outside would be found by nobody."""
+    """One at the surface would change the tip's own compliance, which no map has; one outside would not be found."""
     import numpy as np
     for number, lump in enumerate(organ.lumps, 1):
         out_m = organ.vertex_m - lump.center_m

@@ -29,8 +29,8 @@ NOTE = ("<p class=\"path\">These pages describe the sources of tact. Programs an
 
 
 def tracked():
-    told = subprocess.run(["git", "-c", "safe.directory=*", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True)
-    return [name for name in told.stdout.splitlines() if not name.startswith("tests/")]
+    listed = subprocess.run(["git", "-c", "safe.directory=*", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True)
+    return [name for name in listed.stdout.splitlines() if not name.startswith("tests/")]
 
 
 def installed(text):

@@ -69,7 +69,7 @@ int main(int argc, char** argv) {
       "tact-doctor",
       "Is this PC fit for hard real time? One row a check: green, red or unknown, why it matters, "
       "and the\nremedy as a command. Opens no device and changes nothing.",
-      "ns: nanoseconds, us: microseconds. Unknown is what this PC does not tell; only red fails.");
+      "ns: nanoseconds, us: microseconds. Unknown: not reported by this PC; only red fails.");
   Options options;
   add_options(program.options(), options);
   if (const auto status = program.parse(argc, argv)) return *status;
@@ -89,6 +89,6 @@ int main(int argc, char** argv) {
                                                 2));
   else
     print_table(rows);
-  // Unknown does not fail: a virtual machine or a container does not tell everything.
+  // Unknown does not fail: a virtual machine or a container does not report everything.
   return std::ranges::count(rows, Verdict::kRed, &PcRow::verdict) == 0 ? 0 : 1;
 }

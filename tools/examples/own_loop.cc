@@ -76,7 +76,7 @@ int main(int count, char** arguments) {
        due += period) {
     std::this_thread::sleep_until(due);
     const auto now = Clock::now();
-    // Tells the controller how many periods a late loop has skipped.
+    // Passes to the controller how many periods a late loop has skipped.
     const auto skipped = static_cast<std::uint32_t>((now - due) / period);
     due += skipped * period;
     sample.fresh = false;

@@ -21,7 +21,7 @@ using model::contact::Indentation;
 // More than a law of a scene has.
 constexpr std::size_t kMaxRings = 128;
 constexpr int kMaxTicks = 4000;      // for a body with inertia to come to rest
-constexpr int kRestTicks = 25;       // the force stands still for so long
+constexpr int kRestTicks = 25;       // the force is constant for so long
 constexpr double kRestRatio = 1e-6;  // a tick, of the force
 
 Indentation indentation_at(const FitSite& site, const FitSample& sample) {
@@ -32,7 +32,7 @@ Indentation indentation_at(const FitSite& site, const FitSample& sample) {
 
 double settled_force_N(ContactLaw& law, const Indentation& in) {
   double force_N = 0.0;
-  // Still for many ticks: a body that swings stands for one at its turning points.
+  // Still for many ticks: a body that swings is at rest for one tick at its turning points.
   for (int tick = 0, still = 0; tick < kMaxTicks && still < kRestTicks; ++tick) {
     const double now_N = law.respond(in).law.force_N;
     law.advance();

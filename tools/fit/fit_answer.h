@@ -2,7 +2,7 @@
 // fit_answer.h - what a scene's law answers where the data was measured.
 //
 // Quasi-static: every sample is asked from rest, without relaxation; a stepped law (spring_patch)
-// is ticked until its force stands still. The shape is linear between the law's rings, zero beyond
+// is ticked until its force is constant. The shape is linear between the law's rings, zero beyond
 // the last; of a stepped law it is the mean of the vertices near each radius.
 #pragma once
 
@@ -20,7 +20,7 @@ struct FitAnswer {
   std::vector<double> ring_m{};  // at the radii of the data; NaN: not known
 };
 
-/// As the loop feels it, from its tables; or, where a search asks thousands of times for a few
+/// As the loop renders it, from its tables; or, where a search asks thousands of times for a few
 /// depths, the closed form solved at these depths alone (the same within 1e-6).
 enum class AnswerBy { kLoop, kSolving };
 

@@ -103,7 +103,7 @@ std::string slope_reason(const FitData& data, std::span<const FitAnswer> answers
   }
   if (sites == 0) return {};
   of_data /= sites, of_law /= sites;
-  // A difference that no hand feels is no reason.
+  // A difference that no hand notices is no reason.
   if (std::abs(of_data - of_law) < kJustNoticeable_ratio) return {};
   const auto way = [](double growth) {
     return growth > kJustNoticeable_ratio    ? "hardens"
@@ -119,7 +119,7 @@ std::string slope_reason(const FitData& data, std::span<const FitAnswer> answers
                      word_of(of_law), word_of(of_data));
 }
 
-/// The sample that is farthest off by its own force, if a hand tells that.
+/// The sample that is farthest off by its own force, if a hand notices that.
 std::string local_reason(const FitData& data, std::span<const FitAnswer> answers,
                          const Evaluation& j) {
   double worst_ratio = kJustNoticeable_ratio;
@@ -194,7 +194,7 @@ Evaluation check(const FitData& data, std::span<const FitAnswer> answers, bool s
     first += site.samples.size();
     SiteResidual row{.name = site.name, .held_out = site.held_out};
     row.best_scale = best_scale(site.samples, own);
-    // Told even where it is not used: it shows how much the sites differ.
+    // Reported even where it is not used: it shows how much the sites differ.
     if (scale_by_site) row.scale = row.best_scale;
     Errors of_site;
     RootMeanSquare site_shape;

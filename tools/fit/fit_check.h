@@ -7,9 +7,9 @@
 //     local   |e| / max(|F_data|, 0.1 N)   of a sample; the worst counts: an RMS of the peak hides
 //                                       light touch, and the two branches of a load-unload file
 //
-// A site's own row is judged by the site's own peak. A law cannot follow where its RMS, on the
+// A site's own row is evaluated by the site's own peak. A law cannot follow where its RMS, on the
 // fitted or on the held-out sites, is above 7 % of the peak, or its worst local error above 7 %:
-// the least difference of force that a hand can tell, measured at 2.5 to 10 N; the floor of 0.1 N
+// the least difference of force that a hand can notice, measured at 2.5 to 10 N; the floor of 0.1 N
 // makes it 7 mN below. Then, and where a single site stays above that, the reasons say why: it
 // softens or hardens otherwise than the data, it ends too early, sites differ too much for one
 // law.

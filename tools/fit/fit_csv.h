@@ -29,7 +29,7 @@ struct BenchColumns {
   double deepest_m = std::numeric_limits<double>::infinity();  // deeper rows are left out
 };
 
-/// Sites have no place yet; `held_out` names those that are only judged.
+/// Sites have no place yet; `held_out` names those that are only evaluated.
 model::Result<FitData> read_bench_csv(const std::string& path, const BenchColumns& columns,
                                       const std::vector<std::string>& held_out);
 

@@ -7,7 +7,6 @@
 // reference (tact-lab reference) or from a bench (fit_csv.h).
 #pragma once
 
-#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,7 +32,7 @@ struct FitPoint {
 
 struct FitSite {
   std::string name;
-  bool held_out = false;  // not fitted, only judged
+  bool held_out = false;  // not fitted, only evaluated
   std::optional<FitPoint> at{};
   std::vector<FitSample> samples{};
 };

@@ -2,7 +2,7 @@
 // fit_law.h - which numbers of a scene make a law, so that a fit can turn them.
 //
 // A fit changes the numbers in a Scene and lets make_tissue_law build the law from it, as tactd
-// does. Which numbers, and where the search starts, stands in the row of the law
+// does. Which numbers, and where the search starts, is in the row of the law
 // (model/scene/laws.cc); bounds are the scene's ranges, from the least above 0. What no row says:
 //
 //     disc_stack   in two forms; almen-laszlo: also free_height_m, up to eta = 0.4

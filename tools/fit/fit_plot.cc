@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 
 #include "model/io/file_writer.h"
@@ -21,7 +20,7 @@ std::string rows_of(const FitReport& report) {
   std::size_t i = 0;
   for (std::size_t s = 0; s < report.data->sites.size(); ++s) {
     const FitSite& site = report.data->sites[s];
-    // Lines are drawn in the order of the rows: by depth, whatever the bench's order.
+    // Lines are drawn in the order of the rows: by depth, independent of the bench's order.
     std::vector<std::pair<double, std::size_t>> order;
     for (const FitSample& sample : site.samples) order.push_back({sample.depth_m, i++});
     const std::size_t first = i - site.samples.size();

@@ -19,7 +19,7 @@ using model::Error;
 using model::Result;
 
 // Chosen: a thousandth of the force is below a bench's noise.
-constexpr double kMinShare = 1e-3;  // less cannot be told from none
+constexpr double kMinShare = 1e-3;  // less is within the noise
 
 /// Shares >= 0 with the least squares, by trying which of them are 0: at most 2^4 sets.
 VectorXd shares_of(const MatrixXd& basis, const VectorXd& force_N) {
@@ -69,13 +69,13 @@ PronyFit HeldProblem::finish(const std::vector<double>& log_time) const {
   const MatrixXd at = basis(log_time);
   const VectorXd share_N = shares_of(at, force_N_);
   const VectorXd error_N = at * share_N - force_N_;
-  PronyFit out{.at_once_N = share_N.sum()};
+  PronyFit out{.initial_N = share_N.sum()};
   const double rms_N = std::sqrt(error_N.squaredNorm() / static_cast<double>(error_N.size()));
-  out.residual_ratio = rms_N / out.at_once_N;
-  out.worst_ratio = error_N.cwiseAbs().maxCoeff() / out.at_once_N;
+  out.residual_ratio = rms_N / out.initial_N;
+  out.worst_ratio = error_N.cwiseAbs().maxCoeff() / out.initial_N;
   out.is_good = out.residual_ratio <= options_.good_residual;
   for (std::size_t c = 0; c < log_time.size(); ++c) {
-    const double share = share_N[static_cast<Index>(c) + 1] / out.at_once_N;
+    const double share = share_N[static_cast<Index>(c) + 1] / out.initial_N;
     if (share >= kMinShare) out.terms.push_back({.share = share, .time_s = std::exp(log_time[c])});
   }
   std::sort(out.terms.begin(), out.terms.end(),

@@ -26,7 +26,7 @@ struct PronyOptions {
 
 struct PronyFit {
   std::vector<model::law::PronyTerm> terms{};  // fast first; terms without a share are left out
-  double at_once_N = 0.0;                      // F_0
+  double initial_N = 0.0;                      // F_0
   double residual_ratio = 0.0;                 // RMS, of F_0
   double worst_ratio = 0.0;
   bool is_good = false;  // residual_ratio within what was asked

@@ -14,7 +14,7 @@ using nlohmann::ordered_json;
 
 double checked_ratio(const FittedLaw& law) {
   const Evaluation& j = law.checked;
-  // More parameters never fit worse: only a site that the law has not seen can tell.
+  // More parameters never fit worse: only a site that the law has not seen can show it.
   return j.held_out.samples > 0 ? j.held_out.rms_ratio() : j.fitted.rms_ratio();
 }
 
@@ -40,7 +40,7 @@ std::string toml_of_keys(const FittedLaw& law, std::vector<std::string>& written
   bool wrote_choice = law.choice.empty();
   for (const FittedKey& k : law.keys) {
     const std::string name = k.section + "." + k.key;
-    // TOML refuses a key or a section that stands twice, so later laws have theirs as comments.
+    // TOML refuses a key or a section that occurs twice, so later laws have theirs as comments.
     const char* mark = known(name) ? "# " : "";
     if (k.section != section) {
       section = k.section;
@@ -91,7 +91,7 @@ std::string text_of_law(const FittedLaw& law) {
     out += fmt::format("  factor: {}\n", by_site ? "of each site's force, used above"
                                                  : "what would suit the site best; not used");
   }
-  // On the screen each law stands alone.
+  // On the screen each law is alone.
   std::vector<std::string> none;
   return out + toml_of_keys(law, none);
 }
@@ -159,7 +159,7 @@ std::string text_of(const FitReport& report) {
   for (const FittedLaw& law : report.laws) out += text_of_law(law);
   if (const auto& r = report.relaxation) {
     out += fmt::format("\nrelaxation: {:.3g} N at once, {} terms, RMS {} of it, worst {}{}\n",
-                       r->at_once_N, r->terms.size(), percent(r->residual_ratio),
+                       r->initial_N, r->terms.size(), percent(r->residual_ratio),
                        percent(r->worst_ratio), r->is_good ? "" : ": CANNOT FOLLOW the data");
     out += toml_of_relaxation(*r);
   }
@@ -198,7 +198,7 @@ ordered_json json_of(const FitReport& report) {
     for (const model::law::PronyTerm& t : r->terms)
       terms.push_back({{"share_ratio", t.share}, {"time_s", t.time_s}});
     out["relaxation"] = {{"terms", terms},
-                         {"at_once_N", r->at_once_N},
+                         {"at_once_N", r->initial_N},
                          {"rms_ratio", r->residual_ratio},
                          {"worst_ratio", r->worst_ratio},
                          {"follows", r->is_good}};

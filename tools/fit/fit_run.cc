@@ -66,7 +66,7 @@ class Fit {
                       .difference = law_.difference,
                       .most_evaluations = law_.most_evaluations};
     for (const FitParameter& p : law_.parameters) {
-      // Logarithms: a step means a ratio, whatever the unit (fit_search.h).
+      // Logarithms: a step means a ratio, in any unit (fit_search.h).
       out.low.push_back(std::log(p.low));
       out.high.push_back(std::log(p.high));
     }
@@ -203,7 +203,7 @@ Result<FittedLaw> fit_law(const FitLaw& law, const Scene& scene, const FitData& 
     return Error{fmt::format(
         "{} differs from place to place: write the vertex of the organ into a column site of {}{}",
         law.name, data.source, law.by_place ? "" : ", or --set varies_by_place=false")};
-  if (law.by_place)  // what such a law stands on may be missing
+  if (law.by_place)  // the map that such a law needs may be missing
     if (const auto possible = make_tissue_law(scene, law.law); !possible) return possible.error();
   Fit fit(law, scene, data, options);
   FittedLaw out{.name = law.name, .choice = law.choice};
@@ -211,7 +211,7 @@ Result<FittedLaw> fit_law(const FitLaw& law, const Scene& scene, const FitData& 
   fit.set(best.x);
   const auto made = make_tissue_law(fit.scene(), law.law);
   if (!made) return made.error();
-  // By the loop's tables, with all samples: what is judged is what a hand would feel.
+  // By the loop's tables, with all samples: the force that is rendered is evaluated.
   auto answers = answers_of(fit.scene(), law.law, data);
   if (!answers) return answers.error();
   out.title = (*made)->title();

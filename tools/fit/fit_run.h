@@ -6,11 +6,11 @@
 //     e        force error, N; with a factor for each site, after the best factor     peak  N
 //     e_shape  RMS error of the shape over the rings, of the depth     w  weight, 0.1 by default
 //
-// With factors, their geometric mean over the fitted sites is 1; a held-out site is judged with
+// With factors, their geometric mean over the fitted sites is 1; a held-out site is evaluated with
 // its own best factor: what it tests is the form of the curve alone.
 // So an error of the shape of 10 % of the depth counts like one of the force of 1 % of the peak.
 // From several fixed starts, each first scaled to the force of the data: a short search from each,
-// a long one from the best. What is reported is the law as the loop feels it.
+// a long one from the best. What is reported is the law as the loop renders it.
 #pragma once
 
 #include <string>

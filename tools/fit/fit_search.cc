@@ -3,7 +3,6 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <cmath>
 #include <unsupported/Eigen/NonLinearOptimization>
 
 #include "tools/program/interrupt.h"
@@ -85,7 +84,7 @@ class Functor {
 SearchResult search(const SearchProblem& problem, const std::vector<double>& start) {
   Functor functor(problem);
   Eigen::LevenbergMarquardt<Functor> solver(functor);
-  // A millionth of a logarithm is far below what data can tell; tighter only takes time.
+  // A millionth of a logarithm is far below what data can resolve; tighter only takes time.
   solver.parameters.xtol = 1e-6;
   solver.parameters.ftol = 1e-7;
   // the solver does not count the slopes: two evaluations an unknown
@@ -94,7 +93,7 @@ SearchResult search(const SearchProblem& problem, const std::vector<double>& sta
   VectorXd x = Eigen::Map<const VectorXd>(start.data(), functor.inputs());
   solver.minimize(x);
   VectorXd r(functor.values());
-  // What is told lies within the bounds, and its residual is that of the place told.
+  // The result lies within the bounds, and its residual is its own.
   x = Eigen::Map<const VectorXd>(functor.clamp(x).data(), functor.inputs());
   functor(x, r);
   return {.x = {x.data(), x.data() + x.size()},

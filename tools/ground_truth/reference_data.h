@@ -22,7 +22,7 @@ struct ReferenceCase {
   double depth_m = 0.0;
   bool large_strain = false;
   double force_N = 0.0;
-  double contact_radius_m = 0.0;   // at rest; at large strain of what touches in the end
+  double contact_radius_m = 0.0;   // at rest; at large strain of the final contact area
   double force_error_ratio = 0.0;  // of the mesh: what refinement would change; NaN: not known
   std::vector<double> profile_m;   // ring k at radius k * ring_pitch_m
 

@@ -3,12 +3,11 @@
 // --tool.
 //
 // All spheres of the tool are one rigid body without friction; the organ is linear elastic. Where:
-// the point that the simulated hand touches, points that its strokes slide to, and some that no fit
-// has used. Without friction a slide leaves nothing behind, so it is felt as a press at its end.
-// The tool comes to each
-// as the hand brings it to its own: turned from its rest by `orientation`, the shortest turn from
-// the hand's way in to `direction`. At depth d its lowest point, seen along `direction`, lies d
-// beyond `point_m`: depths are those of a press stroke.
+// the point at which the simulated hand presses, points that its strokes slide to, and some that no
+// fit has used. Without friction a slide leaves nothing behind, so it counts as a press at its
+// end. The tool comes to each as the hand brings it to its own: turned from its rest by
+// `orientation`, the shortest turn from the hand's way in to `direction`. At depth d its lowest
+// point, seen along `direction`, lies d beyond `point_m`: depths are those of a press stroke.
 #pragma once
 
 #include <cstdint>

@@ -81,7 +81,7 @@ void add_run_options(CLI::App& app, Options& o) {
   app.add_flag("--no-pictures", o.no_plots, "no histogram; needs no gnuplot");
   app.add_option("--json", o.json_path, "write the result to this file too, - for stdout alone");
   app.add_option("--submit", o.submit,
-                 "write a row of the table of PCs to this file, to send it; a row that stands "
+                 "write a row of the table of PCs to this file, to send it; a row that is "
                  "there is replaced");
 }
 
@@ -146,7 +146,7 @@ int measure(const program::Program& program, Options& o) {
       return program.fail(*error, "its files are not complete");
   if (result->interrupted)
     return program.fail(program::interruption(),
-                        "what was measured until then is told, without a picture");
+                        "what was measured until then is reported, without a picture");
   const auto verdict = check_peer(*result);
   if (verdict && !verdict->passed()) fmt::print(stderr, "tact-jitter: {}\n", verdict->message());
   return exit_status(*result);

@@ -76,7 +76,7 @@ Provenance provenance_of(const Scene& scene, const Options& o) {
           .machine = model::scene::machine_name()};
 }
 
-/// Judges the whole tool, law by law, and writes tool.csv and tool.json.
+/// Evaluates the whole tool, law by law, and writes tool.csv and tool.json.
 Result<int> check_whole_tool(const program::Program& program, const Options& o,
                              const Scene& scene) {
   const auto reference = ground_truth::read_tool_reference(o.tool_reference);

@@ -56,7 +56,7 @@ void add_options(CLI::App& app, Options& o) {
       "also solve references and let tact-lab plan choose the law for this PC: minutes to an "
       "hour; needs CalculiX, which Debian 13 has not");
   app.add_flag("--without-map", o.without_map,
-               "leave the minutes of finite elements out: the scene is felt by the tip's own law "
+               "leave the minutes of finite elements out: the scene has the tip's own law "
                "until tact-lab condense has made its map")
       ->excludes("--plan");
   app.add_flag("--force", o.force, "replace the files of an earlier run");

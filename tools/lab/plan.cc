@@ -105,7 +105,7 @@ void print(const Options& o, const std::vector<Candidate>& candidates, const Cho
                choice.reason);
     if (!candidates.empty() && !candidates.front().own_error_ratio)
       fmt::print(
-          "Judged by one sphere, as no --tool-reference was given: a tool of several may be "
+          "Evaluated by one sphere, as no --tool-reference was given: a tool of several may be "
           "farther off.\n");
     if (!written.empty()) fmt::print("{}\n", written);
     return;
@@ -118,7 +118,7 @@ void print(const Options& o, const std::vector<Candidate>& candidates, const Cho
   fmt::print("{}\n", model::io::text_of(out, 2));
 }
 
-/// Writes the plan that tactd reads, or takes away the one that nothing measured stands behind.
+/// Writes the plan that tactd reads, or removes the one without a measurement.
 Result<std::string> keep(const Choice& choice, const std::vector<Candidate>& candidates,
                          const Scene& scene) {
   const auto path = model::scene::plan_path(scene.hash);

@@ -50,7 +50,7 @@ void add_options(CLI::App& app, Options& o) {
                "with --tool: none of the six where a face within three radii is turned by 30 "
                "degrees or more")
       ->needs("--tool");
-  app.add_flag("--skin", o.skin, "with --tool: also how far the skin around it goes")
+  app.add_flag("--skin", o.skin, "with --tool: also how far the surface around it goes")
       ->needs("--tool");
   app.add_flag("--sideways", o.sideways, "drag a round patch along the surface of each site")
       ->excludes("--tool");

@@ -59,7 +59,7 @@ Result<int> become(const char* script, const json& job) {
   }
   if (program::is_interrupted()) return program::interruption();
   const std::string job_path = fmt::format("/proc/self/fd/{}", fd);
-  // Debian's own, which finds Debian's numpy and scipy; -I: whatever PYTHONPATH says.
+  // Debian's own, which finds Debian's numpy and scipy; -I: independent of PYTHONPATH.
   execl("/usr/bin/python3", "python3", "-I", path.c_str(), job_path.c_str(), nullptr);
   return Error{"python3 is not installed; apt install python3 python3-numpy python3-scipy"};
 }

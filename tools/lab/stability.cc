@@ -77,10 +77,10 @@ bool all_hold(const std::vector<MapReport>& reports) {
 model::Result<int> run(const program::Program& program, Options& o) {
   if (auto error = program::prepare_folder(o.maps.out)) return *error;
   for (const std::string& letter : o.letters) o.maps.letters += letter;
-  o.maps.grid = o.quick ? Grid::kQuick : Grid::kFull;
+  o.maps.extent = o.quick ? Extent::kQuick : Extent::kFull;
   o.maps.draw_plots = !o.no_plots;
   const auto maps = run_maps(o.maps);
-  // Maps that were finished are told even if a later one failed.
+  // Maps that were finished are reported even if a later one failed.
   if (o.json)
     fmt::print("{}\n", model::io::text_of(to_json(maps.reports), 2));
   else

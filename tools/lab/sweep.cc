@@ -28,7 +28,7 @@ using model::scene::PressSweep;
 using model::scene::PressWay;
 using model::scene::Scene;
 
-constexpr std::size_t kWorst = 10;  // told by name
+constexpr std::size_t kWorst = 10;  // reported by name
 
 struct Options {
   program::SceneArguments scene;

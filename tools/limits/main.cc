@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tact-limits: does the force keep its limits, whatever is commanded and whatever goes wrong?
+// tact-limits: does the force keep its limits, for any command and any fault?
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -45,7 +45,7 @@ void add_options(CLI::App& app, Options& o) {
   app.add_flag("--list", o.list, "the cases and what they do, nothing else");
   app.add_flag("--no-pictures", o.no_plots, "tables and page without curves; needs no gnuplot");
   app.add_flag("--consent-from-stdin", o.consent_from_stdin,
-               "read the words of consent from a pipe: for a test bench that nobody holds");
+               "read the words of consent from a pipe: for a test bench without a person");
   app.add_flag("--trust-library", o.scene.trust_library,
                "load the vendor SDK without checking who owns the file");
   app.add_flag("--json", o.json, "print one JSON document");
@@ -65,7 +65,7 @@ std::optional<Error> ask_for_consent(const Options& o, const Scene& scene) {
   if (!o.consent_from_stdin && (isatty(STDIN_FILENO) == 0 || isatty(STDERR_FILENO) == 0))
     return Error{
         "drives a real device to its limits, so it asks on a terminal first: start it from one "
-        "(--help names the flag for a bench that nobody holds)"};
+        "(--help names the flag for a bench without a person)"};
   const double force_N = scene.limits.force_N;
   fmt::print(
       stderr, "{}Type: {}\n> ",
@@ -101,7 +101,7 @@ int test_limits(const program::Program& program, const Options& o) {
   report->command = program.command();
   close_evidence(*evidence, report->limits);
   report->evidence = std::move(*evidence);
-  // Told below even if it could not be written: a run on a device is not repeated lightly.
+  // Reported below even if it could not be written: a run on a device is not repeated lightly.
   const auto files = write_report(*report, o.out, !o.no_plots);
   if (o.json)
     fmt::print("{}\n", tact::model::io::text_of(to_json(*report), 2));
@@ -119,7 +119,7 @@ int main(int argc, char** argv) {
       "tact-limits",
       "Test of safety-limited force output: plays cases to the loop that drives the device, from "
       "a\n"
-      "step to a dead emergency stop, and judges what the device was handed.",
+      "step to a dead emergency stop, and evaluates what the device was handed.",
       "Writes limits.html (the report to hand on), limits.json, cases.csv, a trace of every tick\n"
       "for each case, wall.csv, and curves by gnuplot. Forces N, torques N m, energy J, power W,\n"
       "times s. The simulated device runs on simulated time. A real device runs in real time,\n"

@@ -59,7 +59,7 @@ LimitsReport begin_report(const model::scene::Scene& scene, const hal::DeviceInf
   return report;
 }
 
-/// What the guards found: no case of its own stands for it.
+/// What the guards found: it has no case of its own.
 void report_fault(Fault found, const hal::Device& device, const hal::SafetyLines& lines) {
   const model::FaultEntry& fault = model::describe(found);
   const std::string trouble = firmware::console::trouble_behind(found, device, lines);
@@ -67,7 +67,7 @@ void report_fault(Fault found, const hal::Device& device, const hal::SafetyLines
              trouble.empty() ? "" : ": ", trouble, fault.remedy);
 }
 
-/// Names the cases of the whole plan that are not to be played, as nobody asked for them.
+/// Names the cases of the whole plan that are not to be played, as they were not asked for.
 void name_the_rest(LimitsReport& report, const PlanOptions& options) {
   for (const Case& c : all_cases()) {
     const auto same = [&](const Case& asked) { return std::string_view(asked.name) == c.name; };
@@ -137,7 +137,7 @@ Result<LimitsReport> run_real(const model::scene::Scene& scene, hal::Device& dev
   const firmware::pc::ProcessSetup setup(shortfalls);
   const bool hard = gives_hard_real_time(shortfalls);
   const hal::DeviceInfo info = device.info();
-  // Before the first tick: should this program die, somebody has to take the force away.
+  // Before the first tick: should this program die, another process has to zero the force.
   const auto guardian = firmware::run::start_guardian(device, {.priority = 1, .program = {}});
   if (!guardian) return guardian.error();
   firmware::loop::Requests requests;
@@ -173,7 +173,7 @@ Result<LimitsReport> run_real(const model::scene::Scene& scene, hal::Device& dev
 }  // namespace
 
 const char* why_left_out(const Case& c, const hal::LinesSettings& lines) {
-  // Nobody can be asked to tear at a device by so many m/s in a given tick.
+  // A person cannot be asked to pull a device by so many m/s in a given tick.
   if (c.hand != HandMove::kStill || c.grip == Grip::kJaws) return kNeedsHand;
   const bool has_estop = lines.wired() && (lines.estop_a >= 0 || lines.estop_b >= 0);
   if (c.trouble == Trouble::kEmergencyStop && !has_estop) return "no emergency stop is wired";

@@ -21,11 +21,11 @@ struct PlanOptions {
 };
 
 /// Why a real device cannot play this case; null: it can. A line that is not wired cannot open, so
-/// a fault told in its place would prove nothing.
+/// a fault set in its place would prove nothing.
 const char* why_left_out(const Case& c, const hal::LinesSettings& lines);
 
-/// Opens the device, plays and judges. A real device is played in real time, guarded as tactd's is
-/// (guarded_play.h); the consent comes before (consent.h). An error: the device did not open, or
+/// Opens the device, plays and evaluates. A real device is played in real time, guarded as tactd's
+/// is (guarded_play.h); the consent comes before (consent.h). An error: the device did not open, or
 /// Ctrl-C.
 model::Result<LimitsReport> run_plan(const model::scene::Scene& scene, const PlanOptions& options);
 

@@ -50,7 +50,7 @@ def add(surface, color):
 
 
 def drop(surface):
-    """What is there is told as not read."""
+    """What is there is reported as not read."""
     for name in NAMES:
         if surface.GetPointData().HasArray(name):
             surface.GetPointData().GetArray(name).SetNumberOfTuples(0)

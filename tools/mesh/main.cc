@@ -134,7 +134,7 @@ Result<mesh::Repaired> read_mesh(const Options& o, std::vector<std::string> step
 
 int main(int argc, char** argv) {
   Program program("tact-mesh",
-                  "What is in this mesh file, and is it sound? Tells its size, and refuses what is "
+                  "What is in this mesh file, and is it sound? Shows its size, and refuses what is "
                   "no surface:\n"
                   "an edge with more than two triangles, a face without area, a broken line. OBJ "
                   "files are read\n"

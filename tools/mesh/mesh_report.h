@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// mesh_report.h - what a person, or a machine, is told of a mesh.
+// mesh_report.h - what a person, or a machine, reads about a mesh.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -20,12 +20,12 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 
-def tell(**what):
+def report(**what):
     print(json.dumps(what), flush=True)
 
 
 def main():
-    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)  # without tact-mesh nobody reads what comes
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)  # without tact-mesh the output has no reader
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("source")
     options.add_argument("target")
@@ -41,26 +41,26 @@ def main():
         import steps
         import surface_file
     except ImportError as missing:
-        tell(error=f"{missing.name} is missing in Debian's python3; apt install python3-vtk9 python3-numpy")
+        report(error=f"{missing.name} is missing in Debian's python3; apt install python3-vtk9 python3-numpy")
         return 2
     try:
         surface = surface_file.read(asked.source, asked.ending)
         color, left_aside = colors.of_surface(surface)
         before, faces = surface_file.to_numpy(surface)
-        points, triangles = steps.repair(before, faces, asked, tell)
+        points, triangles = steps.repair(before, faces, asked, report)
         if color is not None:
             used = np.unique(faces)
             color = colors.nearest(before[used], color[used], points)
-            tell(step="color", count=len(points), text=f"{len(points)} vertices have the colour of the nearest of the file",
-                 faces=len(triangles), vertices=len(points))
+            report(step="color", count=len(points), text=f"{len(points)} vertices have the colour of the nearest of the file",
+                   faces=len(triangles), vertices=len(points))
         elif left_aside:
-            tell(step="color", count=0, text=f"none: {left_aside}", faces=len(triangles), vertices=len(points))
+            report(step="color", count=0, text=f"none: {left_aside}", faces=len(triangles), vertices=len(points))
         surface_file.write_obj(asked.target, points, triangles, color)
     except surface_file.Refused as refused:
-        tell(error=str(refused))
+        report(error=str(refused))
         return 2
     except MemoryError:
-        tell(error=f"{asked.source}: not enough memory for it; simplify the mesh")
+        report(error=f"{asked.source}: not enough memory for it; simplify the mesh")
         return 2
     return 0
 

@@ -46,7 +46,7 @@ class MemoryFile {
     if (fd_ >= 0) close(fd_);
   }
 
-  /// Names it for us and for every program that we start while it is here, and for nobody else.
+  /// Names it for us and for every program that we start while it is here, and for no other.
   std::string path() const { return fmt::format("/proc/self/fd/{}", fd_); }
   /// At its end.
   std::optional<Error> put(std::string_view bytes) const {
@@ -203,7 +203,7 @@ Result<Repaired> repair_file(const RepairOrder& order,
   }
   const std::string target = repaired->path();
   Listener listener(on_step, on_percent);
-  // -I: whatever PYTHONPATH and PYTHONHOME say (ROS sets them), it finds Debian's numpy and VTK.
+  // -I: independent of PYTHONPATH and PYTHONHOME (ROS sets them), it finds Debian's numpy and VTK.
   std::vector<std::string> arguments{"-I", *script};
   arguments.insert(arguments.end(), order.options.begin(), order.options.end());
   arguments.insert(arguments.end(), {"--ending=" + ending_of(order.source), "--", source, target});

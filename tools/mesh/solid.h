@@ -10,7 +10,7 @@
 
 namespace tact::tools::mesh {
 
-/// An error if the surface is closed and has no volume. An open one may be flat: a skin is.
+/// An error if the surface is closed and has no volume. An open one may be flat.
 std::optional<model::Error> check_solid(const std::string& path,
                                         const model::mesh::SurfaceMesh& mesh);
 

@@ -19,12 +19,12 @@ LEAST_NESTED_RATIO = 0.002  # of the volume of the largest: less is noise of a s
 LEAST_KEPT_RATIO = 0.8  # of the faces that were asked for: more loss takes the shape away
 
 
-def repair(points, triangles, asked, tell):
-    """`asked` has a member for each option. Tells what each step did; gives points and triangles."""
-    def told(step, count, text):
+def repair(points, triangles, asked, report):
+    """`asked` has a member for each option. Reports what each step did; gives points and triangles."""
+    def report_step(step, count, text):
         if len(triangles) == 0:
             raise Refused(f"{asked.source}: no face is left after {step}; look at the mesh in a mesh editor")
-        tell(step=step, count=int(count), text=text, faces=len(triangles), vertices=len(points))
+        report(step=step, count=int(count), text=text, faces=len(triangles), vertices=len(points))
 
     def watched(step, work):
         percent = -10
@@ -33,28 +33,28 @@ def repair(points, triangles, asked, tell):
             nonlocal percent
             if 100 * caller.GetProgress() >= percent + 10:
                 percent = int(100 * caller.GetProgress())
-                tell(step=step, percent=percent)
+                report(step=step, percent=percent)
         work.AddObserver("ProgressEvent", note)
         work.Update()
         return to_numpy(work.GetOutput())
 
-    told("read", len(triangles), f"{len(triangles)} faces, {len(points)} vertices")
+    report_step("read", len(triangles), f"{len(triangles)} faces, {len(points)} vertices")
     centre = (points.max(0) + points.min(0)) / 2  # a scanner's origin lies far away; the digits are for the shape
     points = points - centre
     vertices, faces = len(points), len(triangles)
     size = np.linalg.norm(points.max(0) - points.min(0))
     points, triangles = watched("weld", welding(points, triangles, NEAR_RATIO * size if asked.weld else 0.0))
-    told("weld", vertices - len(points),
-         f"{vertices - len(points)} vertices joined, {faces - len(triangles)} faces vanished")
+    report_step("weld", vertices - len(points),
+                f"{vertices - len(points)} vertices joined, {faces - len(triangles)} faces vanished")
     if asked.drop_degenerate:
         faces = len(triangles)
         points, triangles = without_degenerate(points, triangles)
-        told("drop-degenerate", faces - len(triangles), f"{faces - len(triangles)} faces dropped")
+        report_step("drop-degenerate", faces - len(triangles), f"{faces - len(triangles)} faces dropped")
     triangles, turned = sheets.consistent(points, triangles)
-    told("turn", turned, f"{turned} faces turned like their neighbours")
+    report_step("turn", turned, f"{turned} faces turned like their neighbours")
     faces = len(triangles)
     points, triangles, crowded = sheets.parted(points, triangles)
-    told("part", crowded, f"{crowded} edges with more than two faces, {faces - len(triangles)} faces dropped there")
+    report_step("part", crowded, f"{crowded} edges with more than two faces, {faces - len(triangles)} faces dropped there")
     faces, parts = len(triangles), len(part_faces(points, triangles))
     if asked.largest:
         nested = nested_ratios(points, triangles)
@@ -64,14 +64,15 @@ def repair(points, triangles, asked, tell):
                           "a full organ: tact-mesh ORGAN --weld --largest --out full.obj")
         points, triangles = largest(points, triangles)
         inside = f"; inside of it {shares}, now filled" if (shares := ", ".join(f"{ratio:.0%}" for ratio in nested)) else ""
-        told("largest", parts - 1, f"{parts - 1} of {parts} parts dropped, {faces - len(triangles)} faces{inside}")
+        report_step("largest", parts - 1, f"{parts - 1} of {parts} parts dropped, {faces - len(triangles)} faces{inside}")
     if asked.close_holes:
         points, triangles, holes, added = closed(points, triangles)
-        told("close-holes", holes, f"{holes} holes closed with {added} faces")
+        report_step("close-holes", holes, f"{holes} holes closed with {added} faces")
     if asked.smooth:
         before = points
         points = watched("smooth", smoothing(points, triangles))[0]
-        told("smooth", len(points), f"vertices moved by {np.linalg.norm(points - before, axis=1).mean():.2g} units in the mean")
+        report_step("smooth", len(points),
+                    f"vertices moved by {np.linalg.norm(points - before, axis=1).mean():.2g} units in the mean")
     if asked.decimate is not None and asked.decimate < len(triangles):
         faces, had_rims = len(triangles), len(sheets.Edges(triangles).single()) > 0
         points, triangles = used(*watched("decimate", decimation(points, triangles, asked.decimate)))
@@ -79,7 +80,7 @@ def repair(points, triangles, asked, tell):
         if len(triangles) < LEAST_KEPT_RATIO * asked.decimate:
             raise Refused(f"{asked.source}: too rough for {asked.decimate} faces, {len(triangles)} would be left without a fold; "
                           "ask for more, or smooth it more in a mesh editor")
-        told("decimate", faces - len(triangles), f"{faces} faces became {len(triangles)}")
+        report_step("decimate", faces - len(triangles), f"{faces} faces became {len(triangles)}")
     if volume(points, triangles) < 0:
         triangles = triangles[:, ::-1]
     return points + centre, triangles

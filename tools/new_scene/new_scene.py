@@ -219,10 +219,10 @@ def act(job):
                 is_planned = maker.make()
             except run.Failure as failure:
                 raise run.Failure(maker.about(failure.message)) from None
-    tell_next(job, is_planned)
+    report_next(job, is_planned)
 
 
-def tell_next(job, is_planned):
+def report_next(job, is_planned):
     scene = shlex.quote(job["names"]["scene"])
     if job["without_map"]:
         print(f"\nFeel its tip alone:\n  tactd {scene} {' '.join(TIP_ALONE)} --free-run --seconds 5\nIts map, minutes:\n"

@@ -31,7 +31,7 @@ std::string text_of(const Candidate& c) {
                      c.tick_median_us, c.tick_p999_us, 1e-3 * c.memory_bytes);
 }
 
-/// What stands between a candidate and being enough, each with its remedy.
+/// What a candidate lacks, each with its remedy.
 std::string lacks(const Candidate& c, const ToleranceSettings& t) {
   std::string out;
   const auto add = [&out](const std::string& part) { out += (out.empty() ? "" : "; ") + part; };
@@ -56,7 +56,7 @@ std::string lacks(const Candidate& c, const ToleranceSettings& t) {
   return out;
 }
 
-/// The fastest of those left, memory deciding among times that cannot be told apart.
+/// The fastest of those left, memory deciding among times that do not differ.
 std::size_t least_of(std::span<const Candidate> candidates, const std::vector<std::size_t>& among) {
   double fastest_us = candidates[among.front()].tick_median_us;
   for (const std::size_t i : among) fastest_us = std::min(fastest_us, candidates[i].tick_median_us);

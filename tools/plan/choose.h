@@ -7,7 +7,7 @@
 //
 // If none is enough, the nearest: the one whose worst excess over a limit, as a ratio, is smallest,
 // then by time and memory. That it is not enough is said. Times of two candidates count as equal
-// within 10 %: a clock tells them no better, and the next measurement would turn them round.
+// within 10 %: a clock resolves no less, and the next measurement would turn them round.
 #pragma once
 
 #include <optional>

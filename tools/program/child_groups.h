@@ -4,7 +4,7 @@
 //
 // A program of run_program.h leads a process group of its own, so a signal from the terminal does
 // not reach it. The table is of atomics and fixed in size: a signal handler may read it at any
-// time. A group stays in it until its leader is reaped: until then its number is nobody else's.
+// time. A group stays in it until its leader is reaped: until then no other process has its number.
 #pragma once
 
 #include <sys/types.h>

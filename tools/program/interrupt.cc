@@ -20,12 +20,12 @@ static_assert(std::atomic<bool>::is_always_lock_free, "may be set by a signal ha
 void remember(int signal) {
   const bool again = pressed.exchange(true);
   if (!again && signal == SIGINT) {
-    constexpr std::string_view kSentence = "\nstopping after this step; Ctrl-C again: now\n";
-    [[maybe_unused]] const auto n = write(STDERR_FILENO, kSentence.data(), kSentence.size());
+    constexpr std::string_view kMessage = "\nstopping after this step; Ctrl-C again: now\n";
+    [[maybe_unused]] const auto n = write(STDERR_FILENO, kMessage.data(), kMessage.size());
   }
-  if (!again || signal == SIGHUP) return;  // a closed terminal may tell it twice
+  if (!again || signal == SIGHUP) return;  // a closed terminal may send it twice
   end_child_groups();
-  _exit(128 + signal);  // as a shell tells it
+  _exit(128 + signal);  // as a shell reports it
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ class Program {
 
   CLI::App& options() { return *options_; }
   /// A subcommand: `purpose` is its line in --help of the program; its own --help adds the options
-  /// and `footer`. `act` gives the exit status, or an error, which is told in one line.
+  /// and `footer`. `act` gives the exit status, or an error, which is reported in one line.
   template <typename Options>
   void add(const std::string& name, const std::string& purpose, const std::string& footer,
            void (*add_options)(CLI::App&, Options&),
@@ -57,7 +57,7 @@ class Program {
   /// From here on Ctrl-C is a question (interrupt.h). The exit status if the program ends here:
   /// after --help, or with a bad option.
   std::optional<int> parse(int argc, char** argv);
-  /// Tells an error in one line and gives the exit status; `kept`: what Ctrl-C leaves behind.
+  /// Reports an error in one line and gives the exit status; `kept`: what Ctrl-C leaves behind.
   int fail(const model::Error& error, std::string_view kept = "nothing was written") const;
   /// As it was typed, for the head of a result.
   const std::string& command() const { return command_; }

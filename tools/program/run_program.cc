@@ -55,7 +55,7 @@ std::vector<std::string> environment_of(const ProgramCall& call) {
   return out;
 }
 
-/// Kills what is left of the group, and how its leader ended. Nothing if nobody can know.
+/// Kills what is left of the group, and how its leader ended. Nothing if it cannot be known.
 std::optional<int> end(pid_t child) {
   kill(-child, SIGKILL);
   forget_child_group(child);  // the number may belong to another from the next line on

@@ -11,7 +11,7 @@
 #include <thread>
 #include <utility>
 
-#include "hal/thread.h"
+#include "hal/threads/thread.h"
 #include "tools/program/interrupt.h"
 
 namespace tact::tools::program {
@@ -67,9 +67,9 @@ bool run_jobs(std::size_t jobs, const SweepOptions& options,
   };
   {
     const Progress progress(options.label, jobs);
-    std::vector<hal::Thread> threads;
+    std::vector<hal::threads::Thread> threads;
     for (unsigned i = worker_count(jobs, options); i > 0; --i)
-      if (auto thread = hal::start_thread("tact-worker", worker))
+      if (auto thread = hal::threads::start_thread("tact-worker", worker))
         threads.push_back(std::move(*thread));
     if (threads.empty()) worker();
     for (; done.load() < jobs && !is_interrupted(); std::this_thread::sleep_for(50ms))

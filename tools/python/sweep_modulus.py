@@ -28,7 +28,7 @@ def press(sim, modulus_Pa):
     path_m = site_m + np.outer(np.concatenate([way_m, way_m[::-1]]), inward)
     steps = sim.steps(path_m)
     if not sim.is_set:
-        raise SystemExit("the tool touches at the start of the path: raise LIFT_M")
+        raise SystemExit("the tool is in contact at the start of the path: raise LIFT_M")
     return steps.depth_m[:len(way_m), 0], np.linalg.norm(steps.law_force_N[:len(way_m)], axis=1)
 
 
@@ -43,8 +43,8 @@ def main():
     sim = tact.Sim(options.scene)
     for modulus_Pa in MODULI_PA:
         depth_m, force_N = press(sim, modulus_Pa)
-        touches = depth_m > 0
-        pyplot.plot(1e3 * depth_m[touches], force_N[touches], label=f"{modulus_Pa / 1000:g} kPa")
+        is_in_contact = depth_m > 0
+        pyplot.plot(1e3 * depth_m[is_in_contact], force_N[is_in_contact], label=f"{modulus_Pa / 1000:g} kPa")
         print(f"E = {modulus_Pa} Pa: {force_N.max():.3f} N at {1e3 * depth_m.max():.1f} mm")
     pyplot.xlabel("depth of the first sphere, mm")
     pyplot.ylabel("force of the law, N")

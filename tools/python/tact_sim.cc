@@ -86,7 +86,7 @@ class Sim {
     s.stamp_ns = static_cast<std::int64_t>(1e9 * static_cast<double>(s.sequence) / rate_Hz());
     ++s.sequence;
     s.fresh = true;
-    // Nobody is on the device: it arms itself.
+    // No person is at the device: it arms itself.
     if (out_.state == tact::firmware::loop::State::kReady) haptics_->arm();
     out_ = haptics_->tick(s);
   }

@@ -140,7 +140,7 @@ def with_middles(node_m, corners, triangle):
     key = surface.as_met(edges, edges)
     element = np.hstack([corners, surface.middle_of(key, edges, len(node_m))])
     middles = surface.middle_of(key, surface.edges_of(triangle)[1], len(node_m))
-    if (middles < 0).any():  # every triangle of the skin has to be a face of an element, or its six nodes are not known
+    if (middles < 0).any():  # every triangle of the surface has to be a face of an element, or its six nodes are not known
         raise Failure("gmsh changed the surface; ask tact-mesh whether it crosses itself")
     node_m = np.vstack([node_m, 0.5 * (node_m[key >> 32] + node_m[key & 0xFFFFFFFF])])
     return node_m, element, np.hstack([triangle, middles])
@@ -148,8 +148,8 @@ def with_middles(node_m, corners, triangle):
 
 def make_body(organ, lengths, circle=None):
     """Refines the surface, draws the circle on it, fills it and finds what is held; lengths.largest_m counts inside only."""
-    skin = surface.EdgeLengths(lengths.at_m, lengths.radius_m, lengths.fine_m, lengths.growth, axis=lengths.axis)
-    vertex_m, triangle = surface.refine(organ.vertex_m, organ.triangle, skin)
+    lengths_of_surface = surface.EdgeLengths(lengths.at_m, lengths.radius_m, lengths.fine_m, lengths.growth, axis=lengths.axis)
+    vertex_m, triangle = surface.refine(organ.vertex_m, organ.triangle, lengths_of_surface)
     if circle is not None:  # edges along the rim: there the stress ends, or is singular
         vertex_m, triangle = surface.cut_along(vertex_m, triangle, circle, 2.0 * circle.radius_m)
     node_m, element, face = with_middles(*fill(vertex_m, triangle, lengths), triangle)

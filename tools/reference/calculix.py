@@ -3,12 +3,12 @@
 
 Elements are C3D10, isotropic linear elastic. With large strain (NLGEOM) the material is neo-Hookean with the same E and nu at
 small strain: W = C10 (I1' - 3) + (J - 1)^2 / D1, C10 = G / 2, D1 = 2 / K (CalculiX manual 6.8), G = E / (2 (1 + nu)),
-K = E / (3 (1 - 2 nu)). Either nodes are moved by known ways, or a rigid frictionless ball comes and what it touches is found.
+K = E / (3 (1 - 2 nu)). Either nodes are moved by known ways, or a rigid frictionless ball comes and its contact area is found.
 Units of a deck are mm, kPa and mN: CalculiX's tolerances suit numbers near one. Its x goes along the load, so that a moved
 node needs no equation between its coordinates. Source: G. Dhondt, The Finite Element Method for Three-Dimensional
 Thermomechanical Applications, Wiley 2004.
 
-A ball touches by mortar contact (S. Sitzmann, K. Willner, B. Wohlmuth, Int. J. Numer. Meth. Engng 103 (2015) 60): pressure is
+Contact of a ball is mortar contact (S. Sitzmann, K. Willner, B. Wohlmuth, Int. J. Numer. Meth. Engng 103 (2015) 60): pressure is
 weighted over faces, not collected at nodes, so it holds on the quadratic faces of C3D10 and at large sliding. CalculiX keeps
 the direction of a contact through a step, so a ball goes by a tenth of its radius at a time: at two radii deep, steps of a
 fifth give 3 % more force, of a twentieth 1 % less.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How wide a rigid sphere touches, and what force that takes.
+"""The contact radius of a rigid sphere, and its force.
 
 On a half-space, exactly, E* = E / (1 - nu^2) [I. N. Sneddon, Int. J. Eng. Sci. 3 (1965) 47, cases 6.1 and 6.5]:
 

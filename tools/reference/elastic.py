@@ -113,7 +113,7 @@ class Elimination:
         self.place[:] = -1
         self.place[own], self.place[around] = np.arange(n), np.arange(n, n + len(around))
         front = np.zeros((n + len(around), n + len(around)), order="F")
-        here = self.place[rows.col] >= 0  # what was eliminated before stands in the halves
+        here = self.place[rows.col] >= 0  # what was eliminated before is in the halves
         front[self.place[rows.col[here]], rows.row[here]] = rows.data[here]
         for unknowns, left in halves:
             front[np.ix_(self.place[unknowns], self.place[unknowns])] += left

@@ -6,10 +6,10 @@ within the contact radius a of the axis follow it,
 
     u_n = d - (R - sqrt(R^2 - rho^2)) - s
 
-rho distance from the axis, s how far the resting surface lies below the site's tangent plane (an organ is not flat). They
-slide freely sideways. The force is largest for the true a (J. R. Barber, J. Elast. 4 (1974) 31), so a small error in a is a
-much smaller one in F. contact.py finds a. At large strain the surface slides along the sphere and no radius tells which nodes
-touch: the sphere comes as a rigid body and the contact is found while it goes in. pull: the faces within R of the axis move
+rho distance from the axis, s how far the resting surface lies below the site's tangent plane (an organ is not flat). They slide
+freely sideways. The force is largest for the true a (J. R. Barber, J. Elast. 4 (1974) 31), so a small error in a is a much
+smaller one in F. contact.py finds a. At large strain the surface slides along the sphere and no radius separates the nodes in
+contact: the sphere comes as a rigid body and the contact is found while it goes in. pull: the faces within R of the axis move
 outward as one piece, bonded. A patch dragged along the surface moves as one piece, too.
 """
 from dataclasses import dataclass
@@ -109,7 +109,7 @@ def ball_on(body, rim, radius_m, depth_m):
 
 
 def touched_radius_m(body, ball, axis, displacement_m):
-    """Of a circle as large as what touches the ball, seen along its way."""
+    """Of a circle as large as the ball's contact area, seen along its way."""
     p = body.node_m[ball.corners] + displacement_m[ball.corners]
     touching = np.linalg.norm(p - ball.centre_m - ball.along_m * axis, axis=2) < (1.0 + BALL_TOUCH) * ball.radius_m
     # Tissue that folds in over the ball's widest circle is not seen along the way.

@@ -32,9 +32,9 @@ def plan_of(job):
     plan = plans.Plan(organ_of(job), job["tool"][0]["radius_m"], sites, depths_m, job["large_strain"], job["level"])
     plans.check(plan)
     if plan.large_strain_sites and depths_m[-1] > plans.LARGE_PULL * plan.tool_radius_m:
-        # Told, not refused: the rest of the plan is worth its hours.
+        # Reported, not refused: the rest of the plan is worth its hours.
         print(f"{LABEL}: left out: pulls with large strain beyond {plans.LARGE_PULL * plan.tool_radius_m * 1e3:.3g} mm "
-              f"({plans.LARGE_PULL:g} tool radii); no mesh that stands them is fine enough", file=sys.stderr)
+              f"({plans.LARGE_PULL:g} tool radii); no mesh that bears them is fine enough", file=sys.stderr)
     return plan
 
 
@@ -44,17 +44,17 @@ def name_of(what):
             f"{' with large strain' if what.large_strain else ''}")
 
 
-def solve_all(cache, cases, at_once):
-    """A Case for each, in their order. At large strain some depths have no solution: such a case is None, and told."""
+def solve_all(cache, cases, processes):
+    """A Case for each, in their order. At large strain some depths have no solution: such a case is None, and reported."""
     def work(what):
         try:
             return cache.case(what)
         except run.Failure as failure:
             if what.large_strain and failure.code == run.Code.NO_SOLUTION:
-                return failure  # no mesh stands every pull: that is an answer, no failure of the run
+                return failure  # no mesh bears every pull: that is an answer, no failure of the run
             raise
 
-    solved = run.run_jobs(work, cases, at_once, LABEL)
+    solved = run.run_jobs(work, cases, processes, LABEL)
     for what, case in zip(cases, solved):
         if isinstance(case, run.Failure):
             print(f"{LABEL}: left out: {name_of(what)}: {case.message}", file=sys.stderr)
@@ -92,7 +92,7 @@ def solve_tool(job):
     solver = f"tact, gmsh {body.gmsh_version()}"
     tool_places = tool_plan.places_of(places, hand, fitted, job["sites"])
     if job["skin"]:
-        tool_places = [replace(place, skin=tool_plan.skin_around(organ, place)) for place in tool_places]
+        tool_places = [replace(place, skin=tool_plan.surface_around(organ, place)) for place in tool_places]
     cache = caches.Cache(job["cache"], organ, solver)
     presses = tool_plan.presses_of(places, tool_places, depths_m, job["level"])
     tool_places = tool_plan.assemble(tool_places, run.run_jobs(cache.tool_cases, presses, job["jobs"], LABEL))

@@ -86,7 +86,7 @@ def cases_of(plan):
             out.extend(Indentation(vertex, plan.tool_radius_m, d, large_strain, level) for d in depths_m)
         ends_m = plan.depths_m[:1] + plan.depths_m[1:][-1:]
         add([*plan.depths_m, UNIT_PULL_M], plan.level)
-        if plan.level > COARSEST:  # both ends one level coarser: their change tells the error that is left
+        if plan.level > COARSEST:  # both ends one level coarser: their change shows the error that is left
             add([*ends_m, UNIT_PULL_M], plan.level - 1)
         if vertex in plan.large_strain_sites:
             pulls_m = [-d for d in large_pulls_m(plan)]

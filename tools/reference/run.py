@@ -20,13 +20,13 @@ PR_SET_PDEATHSIG = 1
 LIBC = ctypes.CDLL(None)
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
 LAST_LINES = 12
-LONG_S = 10.0  # chosen: work whose cost is told
+LONG_S = 10.0  # chosen: work whose cost is reported
 
 run_folder: pathlib.Path | None = None  # of everything that is written on the way, gone at the end
 
 
 class Code(enum.Enum):
-    """What kind of failure it is: nobody compares its text."""
+    """What kind of failure it is: its text is not compared."""
     OTHER = 0
     PROGRAM_ENDED = 1  # with a status above 0, or by a signal
     NO_SOLUTION = 2  # the solver ran and gave up
@@ -148,9 +148,9 @@ def write(path: pathlib.Path, content: str | bytes):
 def answer(pipe, work, job):
     """A job's own process, which leads the group of the programs that it starts."""
     os.setpgid(0, 0)
-    end_with_parent()  # without the parent nobody reads what comes
+    end_with_parent()  # without the parent the output has no reader
     for number in SIGNALS:
-        signal.signal(number, signal.SIG_IGN)  # a terminal tells the parent, which ends this group
+        signal.signal(number, signal.SIG_IGN)  # a terminal signals the parent, which ends this group
     signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)
     try:
         pipe.send((work(job), None))
@@ -169,7 +169,7 @@ class Jobs:
         signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)  # a Ctrl-C must know of every process
         process = multiprocessing.get_context("fork").Process(target=answer, args=(there, self.work, job))
         process.start()
-        with contextlib.suppress(OSError):  # whoever comes first: the process may have done it, or have ended
+        with contextlib.suppress(OSError):  # a race: the process may have done it, or have ended
             os.setpgid(process.pid, process.pid)
         self.running[here] = (number, process)
         there.close()
@@ -196,7 +196,7 @@ class Jobs:
 
 @contextlib.contextmanager
 def phase(name: str, expected_s: float):
-    """One step of long work, told on standard error: what it takes about, and has taken. On a terminal both are one line."""
+    """One step of long work, reported on standard error: what it takes about, and has taken. On a terminal both are one line."""
     begun_s, again = time.monotonic(), "\r\033[K" if sys.stderr.isatty() else ""
     print(f"{name}: about {expected_s:.0f} s", end="" if again else "\n", file=sys.stderr, flush=True)
     try:
@@ -214,13 +214,13 @@ def show_progress(label: str, done: int, count: int, begun_s: float):
         print(f"\r\033[K{text}", end="", file=sys.stderr, flush=True)
 
 
-def run_jobs(work, jobs: list, at_once: int, label: str) -> list:
+def run_jobs(work, jobs: list, processes: int, label: str) -> list:
     """[work(job) for job in jobs], each in a process of its own. After a Failure no other job begins."""
     results, first_failure, waiting, begun_s = [None] * len(jobs), None, list(enumerate(jobs)), time.monotonic()
     at_work, done = Jobs(work), 0
     try:
         while at_work.running or (waiting and not first_failure):
-            while waiting and not first_failure and len(at_work.running) < at_once:
+            while waiting and not first_failure and len(at_work.running) < processes:
                 at_work.start(*waiting.pop(0))
             show_progress(label, done, len(jobs), begun_s)
             for number, results[number], failure in at_work.answers(seconds=0.2):

@@ -67,7 +67,7 @@ def make_block(size_m, modulus_Pa=MODULUS_PA, poisson_ratio=POISSON):
     return block
 
 
-def judge(known, force_N):
+def check(known, force_N):
     off = force_N / known.force_N - 1.0
     good = abs(off) <= known.bar_ratio
     print(f"{'good' if good else 'BAD':<5} {known.name:<34} {force_N * 1e3:>9.3f} mN, known {known.force_N * 1e3:>9.3f} mN, "
@@ -79,7 +79,7 @@ def check_block(job):
     size_m, known, large_strain = job
     what = indentation.Indentation(0, RADIUS_M, known.depth_m, large_strain, indentation.COARSEST if large_strain else LEVEL)
     try:
-        return judge(known, indentation.solve(make_block(size_m), what)[0].force_N)
+        return check(known, indentation.solve(make_block(size_m), what)[0].force_N)
     except Failure as failure:
         if failure.code != Code.NO_SOLUTION:
             raise
@@ -115,7 +115,7 @@ def check_patch(job):
     load = calculix.Load(direction, moved, np.full(len(moved), case["depth_m"]), is_bonded=True)
     force_N = calculix.solve(organ, body, load, moved[:1]).force_N @ direction
     # The independent answer's own error bar.
-    return judge(Known("organ patch " + case["name"], case["depth_m"], case["force_N"], 0.03), force_N)
+    return check(Known("organ patch " + case["name"], case["depth_m"], case["force_N"], 0.03), force_N)
 
 
 def read_organ(folder):
@@ -159,8 +159,8 @@ def block_checks():
                   ("half-space, sphere at 5 mm", 5e-3, sphere_N[5e-3], 0.02), ("half-space, bonded disc", -1e-3, punch_N, 0.03))]
 
 
-def self_check(folder, at_once):
+def self_check(folder, processes):
     """Prints one line a case; True if all are within their bars. Takes about a quarter of an hour."""
     organ, patches = read_organ(folder)
     jobs = [(check_patch, (organ, case)) for case in patches] + [(check_block, check) for check in block_checks()]
-    return all(run_jobs(lambda job: job[0](job[1]), jobs, at_once, label=""))
+    return all(run_jobs(lambda job: job[0](job[1]), jobs, processes, label=""))

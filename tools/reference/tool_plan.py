@@ -2,7 +2,7 @@
 """Where the whole tool is pressed, and how the solves become one file.
 
 The hand's own site comes first, as its stroke presses it, then the middle and the end of each of its slides in contact. Then
-places that no fit has used, chosen by a rule that nobody can bend: of all vertices where
+places that no fit has used, chosen by a fixed rule: of all vertices where
 
     the surface looks towards the hand   outward normal within 60 degrees of the hand's way out
     the whole tool finds tissue          along the tool's way each sphere's axis meets it within half a radius of the same height
@@ -11,7 +11,7 @@ places that no fit has used, chosen by a rule that nobody can bend: of all verti
     no edge is near, where asked         every face within three radii looks within 30 degrees the vertex's way
 
 each time the one farthest from the hand's site, from the places chosen before and from the [[reference_site]]s that a law is
-fitted on; of equal ones the least number. The tool comes along the inward normal and first touches at depth 0.
+fitted on; of equal ones the least number. The tool comes along the inward normal and is in first contact at depth 0.
 """
 from dataclasses import dataclass, field, replace
 
@@ -29,13 +29,13 @@ TOWARDS_HAND = 0.5  # cosine
 EDGE, FROM_EDGE = 0.866, 3.0  # cosine; of the radius
 SAME_HEIGHT, FROM_HELD, FROM_ABOVE = 0.5, 3.0, 5.0  # of the radius; the last: in which a first touch is looked for
 THICKNESS = 2.0  # of the deepest press
-SAMPLES = 10  # of a sphere's radius, to find where it first touches
-SKIN_M = 0.03  # from the point, whose way is kept
+SAMPLES = 10  # of a sphere's radius, to find its first contact
+SURFACE_M = 0.03  # from the point, whose way is kept
 MIN_SLIDE_M = 1e-3
 
 
 @dataclass
-class Place:
+class PressPlace:
     vertex: int | None  # of the organ's mesh; None: the hand's own site, slid
     slid_m: np.ndarray  # (3,), from the hand's own site by a stroke
     point_m: np.ndarray  # (3,), of the tool's lowest point at depth 0, mesh's own frame
@@ -85,7 +85,7 @@ class Places:
     def at(self, vertex):
         """The tool at a vertex, its tip on it."""
         direction = -self.organ.vertex_normal[vertex]
-        return Place(vertex, np.zeros(3), self.organ.vertex_m[vertex], direction, turn_between(self.inward, direction))
+        return PressPlace(vertex, np.zeros(3), self.organ.vertex_m[vertex], direction, turn_between(self.inward, direction))
 
     def thickness(self, from_m, direction, reach_m):
         """surface.thickness of parallel ways at most reach_m from the first."""
@@ -120,7 +120,7 @@ class Places:
         return (thick_m >= THICKNESS * self.deepest_m).all() and np.ptp(height_m) <= SAME_HEIGHT * self.radius_m.min()
 
     def touching(self, place):
-        """Moved along its way until it first touches."""
+        """Moved along its way until first contact."""
         x, y = np.meshgrid(*[np.arange(-SAMPLES, SAMPLES + 1) / SAMPLES] * 2)
         x, y = x[x**2 + y**2 <= 1.0], y[x**2 + y**2 <= 1.0]
         rise = np.sqrt(np.maximum(0.0, 1.0 - x**2 - y**2))
@@ -167,7 +167,7 @@ def slides_of(hand, places):
 def places_of(places, hand, fitted, vertices):
     """Every Place of the tool; `vertices`: instead of the slides and of those that the rule chooses."""
     site_m, organ = np.array(hand["site_m"]), places.organ
-    own = Place(None, np.zeros(3), site_m, places.inward)
+    own = PressPlace(None, np.zeros(3), site_m, places.inward)
     slides = [] if vertices else slides_of(hand, places)
     taken_m = [site_m, *(organ.vertex_m[v] for v in fitted if v < len(organ.vertex_m))]
     chosen = vertices or places.unseen(taken_m)
@@ -175,9 +175,9 @@ def places_of(places, hand, fitted, vertices):
             *(places.touching(places.at(v)) for v in chosen)]
 
 
-def skin_around(organ, place):
-    """The vertices that the picture shows pressed: within SKIN_M, facing the tool."""
-    near = np.linalg.norm(organ.vertex_m - place.point_m, axis=1) < SKIN_M
+def surface_around(organ, place):
+    """The vertices that the picture shows pressed: within SURFACE_M, facing the tool."""
+    near = np.linalg.norm(organ.vertex_m - place.point_m, axis=1) < SURFACE_M
     return tuple(np.flatnonzero(near & (organ.vertex_normal @ place.direction < -surface.FACING)).tolist())
 
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """All spheres of a tool pressed into an organ together: one rigid body, no friction, linear elastic.
 
-Pressure acts along the skin's inward normal m, by which the tissue gives way, and across it the tissue slides freely. A load
-along the way would drag faces that lean against it: 10 % at a rim. Which of the tissue the tool touches is not known
-beforehand, and each sphere changes it for the others, so it is found: pressure is linear over each face of the skin,
+Pressure acts along the surface's inward normal m, by which the tissue gives way, and across it the tissue slides freely. A load
+along the way would drag faces that lean against it: 10 % at a rim. The contact area is not known
+beforehand, and each sphere changes it for the others, so it is found: pressure is linear over each face of the surface,
 
     p(x) = sum_v p_v h_v(x)                         h_v hat of the corner v
     C_vw = int h_v u^w . m dA                       u^w under the pressure h_w
@@ -28,7 +28,7 @@ from run import Failure
 # A level: edge of an element over its distance from the tip, and the longest inside the body, m.
 LEVELS = [(0.5, 16e-3), (0.35, 14e-3), (0.25, 12e-3), (0.175, 10e-3), (0.125, 8e-3)]
 WIDEST_TOUCH = 0.99  # of R: beyond, a sphere's side is too steep to touch
-TALLEST = 4.0  # of the largest R: what lies further above is no skin of it
+TALLEST = 4.0  # of the largest R: what lies further above is not near it
 SAME_POINT_M = 1e-7
 TIMEOUT, PIVOTS, ZERO = 10, 50, 1e-10  # rounds of many that make it no better; times the unknowns; of the largest value
 # Radon's seven points of a triangle (1948), barycentric, and their shares of the area: exact to the fifth power.
@@ -52,7 +52,7 @@ class ToolCase:
     depth_m: float
     force_N: float  # on the tool against the direction
     sphere_N: list[float]  # of each sphere
-    skin_m: list[float] = field(default_factory=list)  # how far each vertex of the skin goes along the way
+    skin_m: list[float] = field(default_factory=list)  # how far each vertex of the surface goes along the way
     force_error_ratio: float | None = None  # takes two levels
 
 
@@ -99,7 +99,7 @@ def make_patch(body, what):
     p, vertex = body.node_m[face[:, :3]], number[face[:, :3]]
     doubled = np.linalg.norm(np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), axis=1)
     reach_m, above_m = reach_beyond(what, np.einsum("gk,fki->fgi", GAUSS, p))
-    # Beside a sphere its side goes on straight: no pressure stands there.
+    # Beside a sphere its side goes on straight: there is no pressure.
     beside_m = np.take_along_axis(above_m, sphere[vertex][:, None, :], axis=2)
     beyond_m = np.where(np.isfinite(reach_m.max(axis=2, keepdims=True)), reach_m.max(axis=2, keepdims=True), beside_m)
     hat_m2 = 0.5 * np.einsum("f,g,gk->fgk", doubled, WEIGHT, GAUSS)  # face, Gauss point, corner
@@ -142,8 +142,8 @@ def solve_contact(compliance, overlap):
     raise Failure("the compliance of the patch is not positive definite; ask for another mesh level")
 
 
-def skin_loads(organ, body, what):
-    """A unit load along the way (3 N, skin) on each node that was a vertex of the surface: a finer skin keeps them."""
+def surface_loads(organ, body, what):
+    """A unit load along the way (3 N) on each node that was a vertex of the surface: a finer surface keeps them."""
     corners = np.unique(body.face[:, :3])
     nodes = []
     for vertex in what.skin:
@@ -159,7 +159,7 @@ def skin_loads(organ, body, what):
 def solve(organ, what):
     """A ToolCase for each depth."""
     body = make_body(organ, edge_lengths(organ, what))
-    skin, patch = skin_loads(organ, body, what), make_patch(body, what)
+    skin, patch = surface_loads(organ, body, what), make_patch(body, what)
     n = len(patch.sphere)
     if n == 0:
         raise Failure("the tool is out of contact at its deepest")

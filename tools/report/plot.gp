@@ -11,6 +11,6 @@ set border lc rgb '#444444'
 set grid lc rgb '#dddddd'
 set key font ',10' opaque
 set style textbox opaque noborder fillcolor rgb '#ffffff'
-# Colours that people with any colour vision tell apart (Okabe, Ito 2008).
+# Colours that people with any colour vision distinguish (Okabe, Ito 2008).
 inks = '#0072B2 #D55E00 #009E73 #CC79A7 #E69F00 #56B4E9 #000000 #999999'
 do for [ink=1:words(inks)] { set linetype ink lc rgb word(inks, ink) }

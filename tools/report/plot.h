@@ -3,7 +3,7 @@
 //
 // The script is a file NAME.gp of the sources, of which CMake makes a constant (tact_room_scripts).
 // It plots files of its own folder and names neither terminal nor output. What the program knows
-// stands in front of it as variables. All of it is kept beside the plot as NAME.gp, so anyone
+// is in front of it as variables. All of it is kept beside the plot as NAME.gp, so anyone
 // can draw it again, or another way, from that folder:
 //
 //     gnuplot -e "kind='png'" NAME.gp

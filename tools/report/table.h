@@ -26,7 +26,7 @@ struct Cell : std::variant<double, std::string> {
 /// Without the job. Each cell with the name of its column, which ends in its unit, as everywhere.
 using Row = std::vector<std::pair<const char*, Cell>>;
 
-/// What stands in this column; an assert if there is no such number, or word.
+/// The value in this column; an assert if there is no such number, or word.
 double number(const Row& row, const std::string& column);
 const std::string& word(const Row& row, const std::string& column);
 

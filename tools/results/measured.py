@@ -15,7 +15,7 @@ LIVER_REFERENCE = "tests/data/reference/liver.json"
 LIVER_TOOL = "tests/data/reference/liver_tool.json"
 
 
-def told_by(*command, status=(0,)):
+def output_of(*command, status=(0,)):
     """What a command prints, run from the root of the tree."""
     done = subprocess.run([str(word) for word in command], cwd=ROOT, capture_output=True, text=True)
     if done.returncode not in status:
@@ -27,7 +27,7 @@ def json_in_file(*command, option, name="", status=(0,)):
     """What a command writes into a file (or the file `name` of a folder) that `option` names."""
     with tempfile.TemporaryDirectory() as folder:
         path = pathlib.Path(folder) / name if name else pathlib.Path(folder) / "out.json"
-        told_by(*command, option, folder if name else path, status=status)
+        output_of(*command, option, folder if name else path, status=status)
         return json.loads(path.read_text())
 
 
@@ -74,11 +74,11 @@ def bench():
 
 def limits():
     command = ["build/tact-limits", LIVER, "--no-pictures", "--json"]
-    told = json.loads(told_by(*command, "--out", tempfile.mkdtemp(), status=(0, 1)))
-    wall = told["wall"]
+    limits = json.loads(output_of(*command, "--out", tempfile.mkdtemp(), status=(0, 1)))
+    wall = limits["wall"]
     return " ".join(command), {
-        "passed": sum(case["passed"] for case in [*told["cases"], wall]),
-        "cases": told["cases_of_plan"],
+        "passed": sum(case["passed"] for case in [*limits["cases"], wall]),
+        "cases": limits["cases_of_plan"],
         "wall": {"without_kN_per_m": wall["bounded_without_N_per_m"] / 1e3,
                  "with_kN_per_m": wall["bounded_with_N_per_m"] / 1e3, "ratio": wall["bounded_ratio"],
                  "rest_kN_per_m": wall["rest_with_N_per_m"] / 1e3, "rest_ratio": wall["rest_ratio"],
@@ -88,8 +88,8 @@ def limits():
 
 def verify():
     command = ["build/tact-verify", "tests/data/vectors", "--json"]
-    told = json.loads(told_by(*command, status=(0, 1)))
-    return " ".join(command), {"passed": told["passed"], "cases": told["passed"] + told["failed"]}
+    verified = json.loads(output_of(*command, status=(0, 1)))
+    return " ".join(command), {"passed": verified["passed"], "cases": verified["passed"] + verified["failed"]}
 
 
 def size():
@@ -130,10 +130,10 @@ def tool():
     return " ".join(command) + " --out DIR", values
 
 
-# Which solved presses judge which scene: the same organ, held alike, and the same spheres.
+# Which solved presses evaluate which scene: the same organ, held alike, and the same spheres.
 SCENE_REFERENCES = {"liver": "liver", "liver_twist": "liver", "liver_source": "liver_source",
                     "heart": "heart", "skin": "skin", "gum": "gum", "maintenance": "maintenance"}
-LIGHT_TOUCH_M = 0.001  # shallower presses are solved, and not judged
+LIGHT_TOUCH_M = 0.001  # shallower presses are solved, and not evaluated
 
 
 def scenes():
@@ -141,12 +141,12 @@ def scenes():
     values = {}
     for scene, reference in SCENE_REFERENCES.items():
         path = f"model/scenes/{scene}"
-        told = json_in_file("build/tact-lab", "chart", f"{path}.toml", "--tool-reference",
-                            f"tests/data/reference/{reference}_tool.json", "--accuracy", f"{path}.accuracy",
-                            option="--out", name="tool.json")
+        chart = json_in_file("build/tact-lab", "chart", f"{path}.toml", "--tool-reference",
+                             f"tests/data/reference/{reference}_tool.json", "--accuracy", f"{path}.accuracy",
+                             option="--out", name="tool.json")
         law = re.search(r'^law = "(\w+)"', (ROOT / f"{path}.toml").read_text(), re.M)[1]
-        row = next(row for row in told["laws"] if row["law"] == law)
-        worst = max((r for r in told["rows"] if r["law"] == law and r["depth_m"] > 0.99 * LIGHT_TOUCH_M),
+        row = next(row for row in chart["laws"] if row["law"] == law)
+        worst = max((r for r in chart["rows"] if r["law"] == law and r["depth_m"] > 0.99 * LIGHT_TOUCH_M),
                     key=lambda r: abs(r["own_error_ratio"]))
         values[scene] = {"law": law, "rms_percent": 100 * row["force_rms_ratio"],
                          "own_percent": 100 * worst["own_error_ratio"], "place": worst["place"],
@@ -160,7 +160,7 @@ def stability():
     values = {}
     for name in ("integrators", "loop", "loop_delta"):
         command = ["build/tact-lab", "stability", "--only", name, "--no-pictures", "--json"]
-        found = json.loads(told_by(*command, "--out", tempfile.mkdtemp(), status=(0, 1)))["maps"][0]
+        found = json.loads(output_of(*command, "--out", tempfile.mkdtemp(), status=(0, 1)))["maps"][0]
         values[name] = {"rows": found["rows"]}
         for finding in found["findings"]:
             values[name].update(finding["numbers"])
@@ -171,23 +171,23 @@ def tracking():
     """Errors of poses and joint updates, by benchmark; the times are bench's."""
     command = ["build/tact-tracking-bench", "model/scenes/maintenance.toml", "--benchmark_format=json"]
     values = {}
-    for row in json.loads(told_by(*command, "--benchmark_filter=errors|scene|far|turned"))["benchmarks"]:
-        told = values[row["name"].split("/")[0]] = {}
+    for row in json.loads(output_of(*command, "--benchmark_filter=errors|scene|far|turned"))["benchmarks"]:
+        value = values[row["name"].split("/")[0]] = {}
         for name in (name for name in row if name.endswith("_mm") or name in ("joint_updates", "sweeps", "missed")):
             part, _, at = name.rpartition(".")
-            (told.setdefault(part, {}) if part else told)[at] = row[name] if row[name] % 1 else int(row[name])
+            (value.setdefault(part, {}) if part else value)[at] = row[name] if row[name] % 1 else int(row[name])
     values["updates_ratio"] = values["scene_full_chain"]["joint_updates"] / values["scene_shoulder_first"]["joint_updates"]
     return " ".join(command), values
 
 
 def coupling():
-    """From a marker that moved to the picture of it; with whatever else the machine does (load)."""
+    """From a marker that moved to the picture of it; with other load on the machine."""
     return "node tests/browser/operator_latency.mjs build 60", json_in_file(
         "node", "tests/browser/operator_latency.mjs", "build", "60", option="--json")
 
 
 def measured():
-    """Laws against measured silicone: one material is fitted, two judge by one factor each."""
+    """Laws against measured silicone: one material is fitted, two evaluate by one factor each."""
     command = ["build/tact-lab", "fit", LIVER, "--set", "varies_by_place=false", "rhombus.area_m2=0",
                "--data", "tests/data/measured/silicone_compression.csv",
                "--depth-column", "compression_mm", "--depth-unit-m", "0.001",
@@ -195,27 +195,27 @@ def measured():
                "--law", "hex_sheet,rhombus,disc_stack_linear"]
     values = {}
     for percent, deepest_m in ((30, 0.009), (60, 0.018)):
-        told = json.loads(told_by(*command, "--json", "--deepest-m", deepest_m, status=(0, 1)))
+        fit = json.loads(output_of(*command, "--json", "--deepest-m", deepest_m, status=(0, 1)))
         values[f"to_{percent}_percent"] = {
             law["law"]: {site["site"]: {"rms_percent": 100 * site["force"]["rms_ratio"],
                                         "worst_percent": 100 * site["force"]["worst_ratio"],
                                         "factor": site["scale"], "peak_N": site["force"]["peak_N"]}
                          for site in law["sites"]}
-            for law in told["laws"]}
+            for law in fit["laws"]}
     return " ".join(command) + " --deepest-m METRES", values
 
 
 def image():
     """From a tree that is built to an emulated PC that is ready; needs root."""
-    told = told_by("tests/image/run")
-    at = {name: float(re.search(rf"^image: (\d+) s: {name}", told, re.M)[1])
+    output = output_of("tests/image/run")
+    at = {name: float(re.search(rf"^image: (\d+) s: {name}", output, re.M)[1])
           for name in ("packages", "Debian", "disk", "done")}
-    size_GB, used_GB = re.search(r"^image: ([\d.]+) GB, of which ([\d.]+) GB", told, re.M).groups()
-    ready_s, linux_s = re.search(r"(\d+) s from power-on, (\d+) s of them", told).groups()
+    size_GB, used_GB = re.search(r"^image: ([\d.]+) GB, of which ([\d.]+) GB", output, re.M).groups()
+    ready_s, linux_s = re.search(r"(\d+) s from power-on, (\d+) s of them", output).groups()
     return "tests/image/run", {
         "package_s": at["Debian"] - at["packages"], "debian_s": at["disk"] - at["Debian"],
         "disk_s": at["done"] - at["disk"], "size_GB": float(size_GB), "used_GB": float(used_GB),
-        "login_s": float(re.search(r"BIOS.*login after (\d+) s", told)[1]),
+        "login_s": float(re.search(r"BIOS.*login after (\d+) s", output)[1]),
         "ready_s": float(ready_s), "ready_of_linux_s": float(linux_s)}
 
 
@@ -223,11 +223,11 @@ def finite_strain():
     """The shipped liver under its whole tool against finite elements at finite strain."""
     command = ["build/tact-lab", "sweep", LIVER, "--reference", "tests/data/reference/finite_strain_liver.json"]
     places = {
-        place: {"worst_percent": 100.0 * told["worst_ratio"], "worst_mm": 1e3 * told["worst_depth_m"],
-                "sphere_percent": 100.0 * told["worst_sphere_ratio"]}
-        for place, told in json.loads(told_by(*command, "--json")).items()}
+        place: {"worst_percent": 100.0 * worst["worst_ratio"], "worst_mm": 1e3 * worst["worst_depth_m"],
+                "sphere_percent": 100.0 * worst["worst_sphere_ratio"]}
+        for place, worst in json.loads(output_of(*command, "--json")).items()}
     return " ".join(command), {
-        "worst_percent": max(abs(told["worst_percent"]) for told in places.values()), "place": places}
+        "worst_percent": max(abs(worst["worst_percent"]) for worst in places.values()), "place": places}
 
 
 MEASURED = {f.__name__: f for f in (bench, limits, verify, size, chart, tool, scenes, stability, tracking,

@@ -46,8 +46,8 @@ def tick_size(load):
     size, goal = load("size"), 2500
     lines = {name: size[device]["lines"] for name, device in
              (("simulated delta", "sim"), ("ODrives", "odrive"), ("Falcon", "falcon"))}
-    told = ", ".join(judged(count, goal, f"{count} ({name})") for name, count in lines.items())
-    yield f"Lines between read and write: {told}; goal {goal} (`tools/tick_size`)."
+    counts = ", ".join(judged(count, goal, f"{count} ({name})") for name, count in lines.items())
+    yield f"Lines between read and write: {counts}; goal {goal} (`tools/tick_size`)."
 
 
 RMS_GOAL_PERCENT, OWN_GOAL_PERCENT = {"compliance": 3.0}, {"compliance": 7.0}  # of others 5 and 10
@@ -72,9 +72,9 @@ def off(percent):
     return f"{percent:+.2g} %" if abs(percent) < 100 else f"{percent:+.0f} %"
 
 
-def told_of(value):
+def printed_of(value):
     """What its row says but for the time."""
-    return {key: f"{told:.3g}" if isinstance(told, float) else told for key, told in value.items() if key != "median_us"}
+    return {key: f"{number:.3g}" if isinstance(number, float) else number for key, number in value.items() if key != "median_us"}
 
 
 def rows_of_scenes(load):
@@ -82,7 +82,7 @@ def rows_of_scenes(load):
     rows = {}
     for scene, value in load("scenes").items():
         other = SAME_PRESSES.get(scene)
-        same = other in rows and all(told_of(rows[other][1])[key] == told for key, told in told_of(value).items())
+        same = other in rows and all(printed_of(rows[other][1])[key] == text for key, text in printed_of(value).items())
         if same:
             rows[other][0].append(scene)
         else:
@@ -119,12 +119,12 @@ def known_errors(load):
     met, missed = [], []
     for names, value in rows_of_scenes(load):
         own = value["own_percent"]
-        told = f"`{names[0]}` {off(own)}".replace(" ", "\N{NO-BREAK SPACE}")
-        (met if abs(own) <= SCENE_GOAL_PERCENT["own"] else missed).append(told)
-    parts = [f"{', '.join(told)} {verdict}" for told, verdict in ((met, "met"), (missed, "**missed**")) if told]
-    told = ("* **Known errors** of the whole tool's force from 1 mm on ([laws](#the-laws)), goal "
+        text = f"`{names[0]}` {off(own)}".replace(" ", "\N{NO-BREAK SPACE}")
+        (met if abs(own) <= SCENE_GOAL_PERCENT["own"] else missed).append(text)
+    parts = [f"{', '.join(names)} {verdict}" for names, verdict in ((met, "met"), (missed, "**missed**")) if names]
+    text = ("* **Known errors** of the whole tool's force from 1 mm on ([laws](#the-laws)), goal "
             f"{SCENE_GOAL_PERCENT['own']:.0f} %: {'; '.join(parts)}.")
-    for line in textwrap.wrap(told, 130, break_long_words=False, break_on_hyphens=False, subsequent_indent="  "):
+    for line in textwrap.wrap(text, 130, break_long_words=False, break_on_hyphens=False, subsequent_indent="  "):
         yield line.replace("\N{NO-BREAK SPACE}", " ")
 
 

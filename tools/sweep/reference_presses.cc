@@ -23,9 +23,9 @@ using model::Vec3;
 using nlohmann::json;
 
 constexpr double kStep_m = 2e-5, kAbove_m = 5e-4;
-constexpr double kFirst_m = 0.99e-3, kLast_m = 10.01e-3;  // of the depths that are judged
+constexpr double kFirst_m = 0.99e-3, kLast_m = 10.01e-3;  // of the depths that are evaluated
 
-/// A straight way: where the tool first touches, and on.
+/// A straight way: from first contact on.
 struct Way {
   Vec3 touch_m, inward;
   Quat orientation;
@@ -47,7 +47,7 @@ double gap_m(const model::contact::ContactScene& contact, const Tool& tool) {
   return least_m;
 }
 
-/// From 30 mm outside to where the first sphere touches.
+/// From 30 mm outside to first contact.
 Way way_to(const model::contact::ContactScene& contact, const Vec3& point_m, const Vec3& inward,
            double turned_deg) {
   constexpr double kFrom_m = -0.03, kMarch_m = 1.5e-3;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// reference_presses.h - the whole tool of a scene held against presses that somebody has solved, as
+// reference_presses.h - the whole tool of a scene held against solved presses, as
 // tests/data/reference/finite_strain_liver.json: where contact is with the organ as it is moved.
 //
 // The reference has no friction and does not relax; so is the scene here.

@@ -5,8 +5,6 @@
 
 #include <fmt/core.h>
 
-#include <stdexcept>
-
 #include "hal/can/can_error.h"
 #include "hal/odrive/odrive_protocol.h"
 

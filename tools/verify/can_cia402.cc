@@ -2,8 +2,6 @@
 // The published frames of CANopen and CiA 402: what is sent, what comes back, states and torques.
 #include <fmt/core.h>
 
-#include <stdexcept>
-
 #include "hal/cia402/canopen_frames.h"
 #include "hal/cia402/cia402_cst.h"
 #include "hal/cia402/cia402_state.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The published CAN FD frames of moteus: torque and stop with the kernel's bytes, replies by
-// register. A case that cannot be read is named as one that failed, and the next one is judged.
+// register. A case that cannot be read is named as one that failed, and the next one is evaluated.
 #include <fmt/core.h>
 
 #include <cmath>

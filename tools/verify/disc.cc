@@ -101,7 +101,7 @@ json printed_results(const json& one_case) {
   const double l = in.thickness_m, outer = in.outer_diameter_m, mu = in.poisson_ratio;
   const double k_exact =
       4.0 * in.youngs_modulus_Pa / (1.0 - mu * mu) * l * l * l / (alpha * outer * outer);
-  // Four digits, whatever the size.
+  // Four digits, for any size.
   const double k = rounded(k_exact, std::pow(10.0, std::floor(std::log10(k_exact)) - 3.0));
   const double h0 = in.free_height_m - l, flat_N = rounded(k * h0, 0.001);
   const double force_N = number(one_case.at("inputs").at("F"));

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The published bytes of the Falcon: commands and reports both ways, damaged streams, and what the
 // USB adapter adds.
-#include <string>
 #include <vector>
 
 #include "hal/falcon/falcon_boot.h"

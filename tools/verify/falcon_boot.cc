@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <functional>
 #include <map>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -96,7 +95,7 @@ class BootCheck {
     for (const json& step : ftdi.at("bootloader"))
       if (step.contains("bulk_out"))
         replies_[step.at("bulk_out")] = from_hex(step.at("expect_in"), report);
-    // Two whole chunks and a rest of 26, and no byte twice: what is out of place is told.
+    // Two whole chunks and a rest of 26, and no byte twice: what is out of place is reported.
     for (int i = 0; i < 150; ++i) image_.push_back(static_cast<std::uint8_t>(i * 7 + 1));
     sent_ = sent_while_booting(image_, device(false, ""));
   }
@@ -130,7 +129,7 @@ class BootCheck {
       const auto known = replies_.find(written);
       if (known == replies_.end()) return from_hex(written, report_);  // the echo of the image
       Bytes out = known->second;
-      // A stray zero may come after a change of the baud rate.
+      // An extra zero may come after a change of the baud rate.
       if (null_first) out.insert(out.begin(), 0);
       return out;
     };

@@ -16,7 +16,7 @@ json refused() {
   return {{"status", "INVALID_ARGUMENT"}, {"F", 0.0}, {"F_ring", 0.0}, {"F_node", 0.0}};
 }
 
-/// The cases are of a surface that cannot be held: nothing to feel at d <= 0.
+/// The cases are of a surface that cannot be held: no force at d <= 0.
 json no_contact() {
   return {{"status", "NO_CONTACT"}, {"F", 0.0}, {"F_ring", 0.0}, {"F_node", 0.0}, {"eps1", 0.0}};
 }
@@ -37,7 +37,7 @@ json energy_results(const json& one_case) {
   });
   if (!sheet) return refused();
   const model::indent::HexSheetState at = sheet->at_depth(depth_m);
-  // Before the depth: a bad number is refused even where there is nothing to feel.
+  // Before the depth: a bad number is refused even where there is no force.
   if (at.status == LawStatus::kInvalid) return refused();
   if (depth_m <= 0.0) return no_contact();
   // HX-6: rings 0 .. m.

@@ -62,7 +62,7 @@ void verify_delta_pose(const DeltaKinematics& delta, const DeltaMasses& masses, 
   const Vec3 p = vec3(one.at("p"));
   const hal::delta::DeltaInverse inverse = delta.inverse(p);
   report.equal("reachable", inverse.reachable, one.at("reachable"));
-  // A pose that nobody reaches has no numbers; where the two disagree, that has been told.
+  // A pose out of reach has no numbers; where the two disagree, that has been reported.
   if (!inverse.reachable || !one.at("reachable").get<bool>()) return;
   const double tau = tolerance.at("tau_abs");
   report.near("theta", inverse.theta_rad, one.at("theta"), tolerance.at("theta"));

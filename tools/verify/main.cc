@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <string>
 #include <system_error>
-#include <variant>
 #include <vector>
 
 #include "model/io/json.h"
@@ -151,7 +150,7 @@ int run(const Program& program, std::vector<std::string> paths, bool as_json) {
   for (const std::string& path : *files) {
     const auto report = verify_file(path);
     if (!report) {
-      // The other files are judged all the same; the exit status remembers.
+      // The other files are evaluated all the same; the exit status remembers.
       status = program.fail(report.error());
       continue;
     }
@@ -169,7 +168,7 @@ int run(const Program& program, std::vector<std::string> paths, bool as_json) {
                                                      {"failed", failed},
                                                      {"files", out}},
                                                 2));
-  // A file that could not be judged weighs more than a case that failed.
+  // A file that could not be evaluated weighs more than a case that failed.
   if (status != 0) return status;
   return failed > 0 ? 1 : 0;
 }

@@ -70,7 +70,7 @@ void Report::fail(Failure failure) {
 void Report::compare(const std::string& field, const json& got, const json& want, bool numeric,
                      double abs, double rel) {
   if (want.is_array()) {
-    // Too short must not pass because nobody looked at the rest.
+    // Too short must not pass because the rest was not checked.
     if (!got.is_array() || got.size() != want.size())
       return fail({id_, field + " (length)", got.size(), want.size(), 0.0});
     for (std::size_t i = 0; i < want.size(); ++i)
@@ -93,7 +93,7 @@ void Report::compare_all(const json& got, const json& expect, const Tolerance& t
     const bool numeric = kind != tolerance.kind_of.end();
     double abs = 0.0;
     if (numeric && tolerance.abs.contains(kind->second)) abs = tolerance.abs.at(kind->second);
-    // A field that nobody computes fails, too.
+    // A field without a computation fails, too.
     compare(field, got.contains(field) ? got.at(field) : json("missing"), want, numeric, abs,
             tolerance.rel);
   }

@@ -34,7 +34,7 @@ json group_results(const json& one_case) {
                                       .radius_m = number(p.at("radius_m"))};
   double deepest_m = 0.0;
   for (const json& d : inputs.at("depth_m")) deepest_m = std::max(deepest_m, number(d));
-  // A half-space and nothing else: no give of the organ's own, no ring.
+  // A half-space and nothing else: no compliance of the organ's own, no ring.
   constexpr std::array<double, 1> kFlat{};
   const auto curve = model::indent::make_compliance_curve({.tip = tip,
                                                            // Beyond it the force would stay.

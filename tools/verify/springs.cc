@@ -117,7 +117,7 @@ void verify_claims(const json& file, Report& report) {
   for (const json& one_case : file.at("cases")) {
     report.begin_case(one_case.at("id"));
     for (const auto& [step, methods] : one_case.at("expect").at("errors").items()) {
-      // "h=0.1"; a word that is no number throws, which main.cc tells as damage.
+      // "h=0.1"; a word that is no number throws, which main.cc reports as damage.
       const double h = std::stod(step.substr(step.find('=') + 1));
       double least = std::numeric_limits<double>::infinity();
       std::string best;

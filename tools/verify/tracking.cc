@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // The published cases of tracking: coordinate chain, pose from points, leg, chain of bones.
-#include <cmath>
 #include <limits>
 
 #include "host/figure/ccd.h"

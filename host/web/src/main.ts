@@ -60,7 +60,7 @@ const connection = new Connection(token, {
     operator.status(now);
     timeline.status(now.replay ?? null);
     plots.zero_s = now.replay?.start_s ?? 0;
-    tell_hand();
+    report_hand();
     void picker.status(now.picker ?? null);
     if (now.replay) paused = false;
     if (now.link === "lost") {
@@ -75,7 +75,7 @@ const connection = new Connection(token, {
     status = null;
     timeline.status(null);
     void picker.status(null);
-    tell_hand();
+    report_hand();
     hud.link(null, refused);
     hud.tracking(null); // what a chip said last is not known any more
     recorder.stop();
@@ -102,7 +102,7 @@ function may_move_hand(): boolean {
 }
 
 /** What cannot be done is not offered. */
-function tell_hand(): void {
+function report_hand(): void {
   document.body.classList.toggle("can_move", may_move_hand());
 }
 
@@ -125,7 +125,7 @@ function take_scene(next: Scene, organ_mesh: Mesh, tool_mesh: Mesh): void {
   hud.scene(next, count_boundary_edges(organ_mesh.triangle));
   plots.spheres = next.spheres.length;
   recorder.scene = next.scene_name;
-  tell_hand();
+  report_hand();
 }
 
 function take_frame(frame: Frame): void {
@@ -176,7 +176,7 @@ function draw(now_ms: number): void {
   if (!paused) plots.draw(now_ms);
   const drawn = organ && tool && shown && !stage.wearer;
   outside.draw(now_ms, drawn ? organ!.target : null, drawn ? tool!.target : null);
-  headset?.tell(now_ms, () => hud.said(paused));
+  headset?.report(now_ms, () => hud.said(paused));
 }
 
 /** After the first picture, so that it waits for nothing. */

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A hole is told by the edges at its rim.
+// A hole is reported by the edges at its rim.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";

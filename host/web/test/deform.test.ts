@@ -14,7 +14,7 @@ function profile(rings: (number | null)[] = kRings): Profile {
   return made;
 }
 
-/** A flat sheet of skin at z = 0 that looks up, and its far side at z = -0.03 that looks down. */
+/** A flat sheet at z = 0 that looks up, and its far side at z = -0.03 that looks down. */
 function slab(): { rest_m: Float32Array; normal: Float32Array } {
   const rest_m: number[] = [];
   const normal: number[] = [];
@@ -97,7 +97,7 @@ test("The far side of the organ does not move", () => {
   for (let i = out_m.length / 2; i < out_m.length; ++i) assert.equal(out_m[i], rest_m[i]);
 });
 
-test("The dents of two contacts add up", () => {
+test("The indentations of two contacts add up", () => {
   const other = contact({ contact: 1, surface_point_m: [0.004, 0, 0], profile_m: kRings.map((u) => u / 2) });
   const one = pressed([contact()]);
   const two = pressed([other]).out_m;
@@ -117,7 +117,7 @@ test("Of two sideways shifts the larger is shown", () => {
   for (let i = 0; i < both.out_m.length; i += 3) assert.ok(Math.abs(both.out_m[i] - shifted.out_m[i]) < 1e-8);
 });
 
-test("A dent that leans is deeper on one side by as much as it is shallower on the other", () => {
+test("A tilted indentation is deeper on one side by as much as it is shallower on the other", () => {
   const { out_m, rest_m } = pressed([contact({ tilt: [0.05, 0, 0] })]);
   const straight = pressed([contact()]).out_m;
   const lean_m = (x_mm: number): number => {
@@ -130,7 +130,7 @@ test("A dent that leans is deeper on one side by as much as it is shallower on t
   assert.ok(Math.abs(lean_m(0)) < 1e-7);
 });
 
-test("Skin that leans does not rise out of a dent", () => {
+test("A tilted surface does not rise out of an indentation", () => {
   const { out_m, rest_m } = pressed([contact({ tilt: [2, 0, 0] })]);
   for (let i = 2; i < out_m.length; i += 3) assert.ok(out_m[i] <= rest_m[i]);
 });

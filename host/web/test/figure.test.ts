@@ -27,7 +27,7 @@ test("joints are three numbers each", () => {
   assert.deepEqual(joint(kFrame, 1), [0.4, -0.1, 0.5]);
 });
 
-test("a capsule along the body's side has a way across it, whatever rounding leaves", () => {
+test("a capsule along the body's side has a way across it, with any rounding", () => {
   for (const along of [
     [1e-9, -1, 0],
     [0, 1, 1e-17],
@@ -50,7 +50,7 @@ test("a capsule's outline goes from tip to tip and keeps both radii", () => {
   for (let i = 1; i < points.length; ++i) assert.ok(points[i][1] >= points[i - 1][1] - 1e-12, "never back");
 });
 
-test("the cone of a capsule touches both of its spheres", () => {
+test("the cone of a capsule is tangent to both of its spheres", () => {
   // The flank between the arcs is at a right angle to the radius at both of its ends.
   const [length_m, ra_m, rb_m] = [0.3, 0.05, 0.02];
   const points = outline(length_m, ra_m, rb_m);
@@ -86,7 +86,7 @@ test("the eyes are before the head and look down to the work, and turn with it",
   assert.ok(right.towards[1] > 0.9, "a head that turns to the right looks along +y");
 });
 
-test("a follower goes two thirds of its way in one time constant and stands without time", () => {
+test("a follower goes two thirds of its way in one time constant and stays without time", () => {
   near(follow_share(0.15, 0.15), 1 - Math.exp(-1));
   assert.equal(follow_share(0, 0.15), 0);
   assert.equal(follow_share(-1, 0.15), 0);

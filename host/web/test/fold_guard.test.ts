@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Deep presses: no triangle of the drawn skin turns over.
+// Deep presses: no triangle of the drawn surface turns over.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
@@ -11,13 +11,13 @@ const kPitch_m = 0.001;
 const kTip_m = 0.004;
 const kDeep_m = 0.02; // five radii, beyond every shipped law
 
-interface Skin {
+interface Surface {
   vertex_m: Float32Array;
   triangle: Uint32Array;
   normal: Float32Array;
 }
 
-function with_normals(vertex_m: Float32Array, triangle: Uint32Array): Skin {
+function with_normals(vertex_m: Float32Array, triangle: Uint32Array): Surface {
   const normal = new Float32Array(vertex_m.length);
   for (let t = 0; t < triangle.length; t += 3) {
     const [a, b, c] = [0, 1, 2].map((k) => 3 * triangle[t + k]);
@@ -36,7 +36,7 @@ function with_normals(vertex_m: Float32Array, triangle: Uint32Array): Skin {
   return { vertex_m, triangle, normal };
 }
 
-function liver(): Skin {
+function liver(): Surface {
   const vertex_m: number[] = [];
   const triangle: number[] = [];
   for (const line of readFileSync("../../model/scenes/meshes/liver_3116.obj", "utf8").split("\n")) {
@@ -48,7 +48,7 @@ function liver(): Skin {
 }
 
 /** A hill of 15 mm radius, a vertex each millimetre. */
-function hill(): Skin {
+function hill(): Surface {
   const vertex_m: number[] = [];
   const triangle: number[] = [];
   const n = 41;
@@ -63,7 +63,7 @@ function hill(): Skin {
   return with_normals(new Float32Array(vertex_m), new Uint32Array(triangle));
 }
 
-/** A ball's dent: round where it touches, then as a half-space under a disc. */
+/** A ball's indentation: round in the contact area, then as a half-space under a disc. */
 function rings(depth_m: number): number[] {
   const touch_m = 0.97 * kTip_m;
   return Array.from({ length: 32 }, (_, j) => {
@@ -77,12 +77,12 @@ function vector(from: Float32Array, v: number): Vec {
   return [from[3 * v], from[3 * v + 1], from[3 * v + 2]];
 }
 
-function contact(skin: Skin, vertex: number, depth_m: number): Contact {
+function contact(surface: Surface, vertex: number, depth_m: number): Contact {
   return {
     contact: 0,
     state: 1,
-    surface_point_m: vector(skin.vertex_m, vertex),
-    normal: vector(skin.normal, vertex),
+    surface_point_m: vector(surface.vertex_m, vertex),
+    normal: vector(surface.normal, vertex),
     shift_m: [0, 0, 0],
     depth_m,
     profile_m: rings(depth_m),
@@ -91,15 +91,15 @@ function contact(skin: Skin, vertex: number, depth_m: number): Contact {
 }
 
 /** The vertex on the same side that lies nearest to the other jaw's place, 8 mm off. */
-function other_jaw(skin: Skin, vertex: number): number {
-  const at = vector(skin.vertex_m, vertex);
-  const up = vector(skin.normal, vertex);
+function other_jaw(surface: Surface, vertex: number): number {
+  const at = vector(surface.vertex_m, vertex);
+  const up = vector(surface.normal, vertex);
   let best = vertex;
   let best_m = Infinity;
-  for (let v = 0; v < skin.vertex_m.length / 3; ++v) {
-    const there = vector(skin.vertex_m, v);
+  for (let v = 0; v < surface.vertex_m.length / 3; ++v) {
+    const there = vector(surface.vertex_m, v);
     const off_m = Math.abs(Math.hypot(...there.map((x, i) => x - at[i])) - 2 * kTip_m);
-    const normal = vector(skin.normal, v);
+    const normal = vector(surface.normal, v);
     if (off_m >= best_m || up[0] * normal[0] + up[1] * normal[1] + up[2] * normal[2] < 0.5) continue;
     [best, best_m] = [v, off_m];
   }
@@ -107,37 +107,37 @@ function other_jaw(skin: Skin, vertex: number): number {
 }
 
 /** Folded triangles, and by how far the deepest vertex went. */
-function pressed(skin: Skin, deformer: Deformer, contacts: Contact[]): { folded: number; most_m: number } {
-  const out_m = skin.vertex_m.slice();
+function pressed(surface: Surface, deformer: Deformer, contacts: Contact[]): { folded: number; most_m: number } {
+  const out_m = surface.vertex_m.slice();
   const result = { moved: 0, most_m: 0 };
   deformer.apply(contacts, null, out_m, result);
-  const guard = new FoldGuard(skin.vertex_m, skin.triangle);
+  const guard = new FoldGuard(surface.vertex_m, surface.triangle);
   let folded = 0;
-  for (let t = 0; t < skin.triangle.length / 3; ++t) if (guard.is_folded(t, out_m)) ++folded;
+  for (let t = 0; t < surface.triangle.length / 3; ++t) if (guard.is_folded(t, out_m)) ++folded;
   return { folded, most_m: result.most_m };
 }
 
-for (const [name, skin, step] of [
+for (const [name, surface, step] of [
   ["the liver", liver(), 13],
-  ["a hill of fine skin", hill(), 7],
+  ["a hill of fine surface", hill(), 7],
 ] as const) {
   test(`Pressed deeply, ${name} has no triangle that turned over`, () => {
-    const deformer = new Deformer(skin.vertex_m, skin.normal, 32, kPitch_m, skin.triangle);
-    for (let v = 0; v < skin.vertex_m.length / 3; v += step) {
-      const one = pressed(skin, deformer, [contact(skin, v, kDeep_m)]);
+    const deformer = new Deformer(surface.vertex_m, surface.normal, 32, kPitch_m, surface.triangle);
+    for (let v = 0; v < surface.vertex_m.length / 3; v += step) {
+      const one = pressed(surface, deformer, [contact(surface, v, kDeep_m)]);
       assert.equal(one.folded, 0, `vertex ${v}`);
       assert.ok(one.most_m > 0.85 * kDeep_m, `vertex ${v} keeps its depth: ${one.most_m}`);
-      const jaws = [contact(skin, v, 0.6 * kDeep_m), contact(skin, other_jaw(skin, v), 0.6 * kDeep_m)];
-      assert.equal(pressed(skin, deformer, jaws).folded, 0, `two jaws at vertex ${v}`);
+      const jaws = [contact(surface, v, 0.6 * kDeep_m), contact(surface, other_jaw(surface, v), 0.6 * kDeep_m)];
+      assert.equal(pressed(surface, deformer, jaws).folded, 0, `two jaws at vertex ${v}`);
     }
   });
 }
 
-test("A dent that folds nothing stays as the law says, to the last bit", () => {
-  const skin = liver();
-  const out_m = skin.vertex_m.slice();
+test("An indentation that folds nothing stays as the law says, to the last bit", () => {
+  const surface = liver();
+  const out_m = surface.vertex_m.slice();
   for (let i = 2; i < out_m.length; i += 3) out_m[i] *= 0.98;
   const before_m = out_m.slice();
-  assert.equal(new FoldGuard(skin.vertex_m, skin.triangle).hold(out_m), 0);
+  assert.equal(new FoldGuard(surface.vertex_m, surface.triangle).hold(out_m), 0);
   assert.deepEqual(out_m, before_m);
 });

@@ -9,7 +9,7 @@ const fits = (line: string): boolean => line.length <= 12;
 const words = (count: number): string => Array.from({ length: count }, (_, i) => `word${i}`).join(" ");
 
 /** What a panel says and what its canvas was asked to show, where every letter is half as wide as it is high. */
-function tell(warnings: string[]): { told: string[]; painted: string[] } {
+function show(warnings: string[]): { shown: string[]; painted: string[] } {
   const painted: string[] = [];
   const pen = {
     font: "",
@@ -32,8 +32,8 @@ function tell(warnings: string[]): { told: string[]; painted: string[] } {
     alarm: false,
     warnings: warnings.map((text) => ({ text, tone: "bad" })),
   };
-  panel.tell(said);
-  return { told: panel.told, painted };
+  panel.show(said);
+  return { shown: panel.shown, painted };
 }
 
 test("a text goes on in the next row, word by word", () => {
@@ -52,20 +52,20 @@ test("what has room has no dots", () => {
   assert.deepEqual(shown_lines([], 3, fits), []);
 });
 
-test("the panel tells what is painted on it, and no more", () => {
+test("the panel reports what is painted on it, and no more", () => {
   for (const warnings of [[], ["short"], [words(60)], [words(20), words(20)], [words(10), words(70), "the last"]]) {
-    const { told, painted } = tell(warnings);
-    assert.equal(told.join(" "), painted.join(" "));
+    const { shown, painted } = show(warnings);
+    assert.equal(shown.join(" "), painted.join(" "));
   }
 });
 
 test("the panel says that it has no room for all", () => {
-  const whole = tell(["first", words(20)]);
-  assert.deepEqual(whole.told.slice(-2), ["first", words(20)]);
+  const whole = show(["first", words(20)]);
+  assert.deepEqual(whole.shown.slice(-2), ["first", words(20)]);
   for (const warnings of [[words(90)], [words(50), "the last"], [words(20), words(60), "the last"]]) {
-    const { told, painted } = tell(warnings);
+    const { shown, painted } = show(warnings);
     assert.ok(painted[painted.length - 1].endsWith(" …"));
-    assert.ok(told[told.length - 1].endsWith(" …"));
-    assert.ok(!told.includes("the last"));
+    assert.ok(shown[shown.length - 1].endsWith(" …"));
+    assert.ok(!shown.includes("the last"));
   }
 });

@@ -7,8 +7,8 @@ import { test } from "node:test";
 import type { Frame, Contact } from "../src/link/protocol";
 import { LimitNews } from "../src/panels/limit_news";
 
-function frame(told: Partial<Frame>): Frame {
-  return { state: 2, fault: 0, limit: 0, contact_losses: 0, contacts: [], ...told } as Frame;
+function frame(given: Partial<Frame>): Frame {
+  return { state: 2, fault: 0, limit: 0, contact_losses: 0, contacts: [], ...given } as Frame;
 }
 
 const inside = [{ contact: 0, state: 3 } as Contact];
@@ -30,7 +30,7 @@ test("a fault stays until a reset", () => {
   assert.equal(news.shown(61_000), 0);
 });
 
-test("while a sphere is inside the organ it is said, whatever the gate limits", () => {
+test("while a sphere is inside the organ it is reported, also while the gate limits", () => {
   const news = new LimitNews();
   for (const limit of [0, 3, 10, 14]) {
     news.frame(frame({ limit, contacts: inside }), 1000);

@@ -3,14 +3,14 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { News } from "../src/link/news";
 
-/** The silence that is told last, of pictures so many ms apart from one time to another. */
+/** The silence that is reported last, of pictures so many ms apart from one time to another. */
 function look(news: News, from_ms: number, to_ms: number, apart_ms: number, frame_rate_Hz = 60): number {
-  let told_s = 0;
-  for (let now_ms = from_ms; now_ms <= to_ms; now_ms += apart_ms) told_s = news.silence_s(now_ms, frame_rate_Hz);
-  return told_s;
+  let reported_s = 0;
+  for (let now_ms = from_ms; now_ms <= to_ms; now_ms += apart_ms) reported_s = news.silence_s(now_ms, frame_rate_Hz);
+  return reported_s;
 }
 
-test("silence is told after 0.3 s, with how long it lasts", () => {
+test("silence is reported after 0.3 s, with how long it lasts", () => {
   const news = new News();
   news.frame(1000);
   assert.equal(look(news, 1010, 1300, 10), 0);

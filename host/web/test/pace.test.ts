@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What was told last before a silence is what tells why it is silent: it must never be dropped.
+// The last frame before a silence has its reason: it must never be dropped.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Pace } from "../src/link/pace";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The slider of a number: where it stands, what it gives, and that it never leaves the range.
+// The slider of a number: its position, its value, and that it never leaves the range.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
@@ -36,20 +36,20 @@ test("no place of the slider is out of range", () => {
   }
 });
 
-test("what is written beyond the slider, or nothing, stands at an end", () => {
+test("what is written beyond the slider, or nothing, is at an end", () => {
   const stiffness = number(1.604, 0.01, 1e5);
   assert.equal(share_of(stiffness, 9e4), 1);
   assert.equal(share_of(stiffness, 0), 0);
   assert.equal(share_of(stiffness, NaN), 0);
 });
 
-test("a range is told as tactd tells it", () => {
+test("a range reads as in tactd", () => {
   assert.equal(range_words(number(1, 0.01, 1e5)), "0.01 .. 100000 N/m");
   assert.equal(range_words({ ...number(10, 1, 31, true), unit: "" }), "1 .. 31, whole");
   assert.equal(range_words({ ...number(10, 1, 1e13), unit: "Pa" }), "1 .. 1e+13 Pa");
 });
 
-test("a text is a number as a whole, or none: a decimal comma is told, and never another number", () => {
+test("a text is a number as a whole, or none: a decimal comma is reported, and never another number", () => {
   for (const [text, value] of [
     ["1.5", 1.5],
     [" 1.5 ", 1.5],

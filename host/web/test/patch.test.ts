@@ -19,7 +19,7 @@ test("a patch whose bytes do not fit its count moves nothing", () => {
   assert.equal(decode_moved({ ...kPatch, count: 3 }).vertex.length, 0);
 });
 
-test("vertices that are told move exactly so, others stay, and unknown ones are ignored", () => {
+test("vertices that are reported move exactly so, others stay, and unknown ones are ignored", () => {
   const rest_m = new Float32Array([0, 0, 0, 1, 0, 0, 2, 0, 0]);
   const out_m = rest_m.slice();
   const result = { moved: 0, most_m: 0 };

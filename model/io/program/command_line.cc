@@ -17,7 +17,7 @@ bool is_empty_value(std::string_view word) {
   return word.empty() || (word.starts_with("--") && word.find('=') == word.size() - 1);
 }
 
-/// With the subcommand that was named, as its --help tells its options.
+/// With the subcommand that was named, as in its --help.
 std::string refusal(const CLI::App& options, const char* program, std::string_view message) {
   std::string name = program;
   for (const CLI::App* part : options.get_subcommands()) name += " " + part->get_name();

@@ -20,10 +20,10 @@ const char* source_revision();
 /// Version of the compiler that built this.
 const char* compiler_version();
 
-/// Adds --version, and parses. A bad option is told on standard error, in one line that names
+/// Adds --version, and parses. A bad option is reported on standard error, in one line that names
 /// --help. The exit status when the program ends here: 0 after --version or --help, 2 otherwise.
 /// `check` looks at what no single option can know, such as two that contradict each other; its
-/// error is told alike.
+/// error is reported in the same way.
 std::optional<int> parse_command_line(CLI::App& options, const char* program, int argc,
                                       const char* const* argv,
                                       const std::function<std::optional<Error>()>& check = {});

@@ -7,7 +7,7 @@
 
 namespace tact::model::io {
 
-/// The folder that holds the running program; empty where /proc does not tell.
+/// The folder that holds the running program; empty where /proc does not name it.
 inline std::filesystem::path program_folder() {
   std::error_code wrong;
   return std::filesystem::read_symlink("/proc/self/exe", wrong).parent_path();

@@ -14,7 +14,7 @@ namespace tact::model::io {
 namespace {
 
 constexpr int kBadOutput = 2;
-std::array<char, 32> program_name{};  // read after main(), by value: no destructor touches it
+std::array<char, 32> program_name{};  // read after main(), by value: no destructor changes it
 
 void keep_name(const char* program) {
   std::snprintf(program_name.data(), program_name.size(), "%s", program);

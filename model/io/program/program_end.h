@@ -4,12 +4,12 @@
 
 namespace tact::model::io {
 
-/// First in main(): what standard output did not take (a full disk, /dev/full) is told when the
+/// First in main(): what standard output did not take (a full disk, /dev/full) is reported when the
 /// program ends, and the exit status is 2.
 void watch_standard_output(const char* program);
 
-/// For programs that move nothing: an exception of a library that nobody catches (no memory, no
-/// room for the output) is told in one line, with exit status 2 and no core dump.
+/// For programs that move nothing: an uncaught exception of a library (no memory, no
+/// room for the output) is reported in one line, with exit status 2 and no core dump.
 void report_uncaught(const char* program);
 
 }  // namespace tact::model::io

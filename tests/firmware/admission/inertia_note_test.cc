@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What tactd tells before the loop starts: a stroke that is too fast for its law.
+// What tactd reports before the loop starts: a stroke that is too fast for its law.
 #include <gtest/gtest.h>
 
 #include "firmware/admission/notes.h"
@@ -7,7 +7,7 @@
 
 namespace tact::firmware::admission::inertia_note_test {
 
-TEST(InertiaNote, TellsOfAStrokeThatIsTooFastForALawWithoutInertia) {
+TEST(InertiaNote, ReportsOfAStrokeThatIsTooFastForALawWithoutInertia) {
   model::scene::Scene scene = tests::make_plate_scene();
   scene.elastic = {.youngs_modulus_Pa = 5000.0, .poisson_ratio = 0.45};
   scene.hand_site_m = {0, 0, 0};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What tactd --check tells of an organ with a hole.
+// What tactd --check reports of an organ with a hole.
 #include <gtest/gtest.h>
 
 #include "firmware/admission/notes.h"
@@ -7,7 +7,7 @@
 
 namespace tact::firmware::admission::open_organ_note_test {
 
-TEST(OpenOrganNote, TellsTheBoundaryEdgesAndWhatIsNotFeltThere) {
+TEST(OpenOrganNote, ReportsTheBoundaryEdgesAndWhatHasNoForceThere) {
   const std::string note = open_organ_note(tests::make_plate_scene());  // 20 x 20 cells
   EXPECT_NE(note.find("plate.toml: the organ is open, with 80 boundary edges; beside the boundary "
                       "of an open surface there is no inside"),

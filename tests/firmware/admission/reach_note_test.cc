@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What tactd --check tells of an organ that no stroke reaches, or that has the size of a house.
+// What tactd --check reports of an organ that no stroke reaches, or that has the size of a house.
 #include <gtest/gtest.h>
 
 #include "firmware/admission/notes.h"
@@ -7,7 +7,7 @@
 
 namespace tact::firmware::admission::reach_note_test {
 
-TEST(ReachNote, TellsHowFarTheNearestStrokeStaysAway) {
+TEST(ReachNote, ReportsHowFarTheNearestStrokeStaysAway) {
   model::scene::Scene scene = tests::make_plate_scene();
   EXPECT_EQ(reach_note(scene), "");
   model::mesh::shift(scene.organ_mesh, {0, 0, -0.020});  // the sphere comes to 4 + 6 mm below 0
@@ -34,7 +34,7 @@ TEST(ReachNote, AHandWithoutStrokesIsNoMistake) {
   EXPECT_EQ(reach_note(scene), "");
 }
 
-TEST(ReachNote, AnOrganInTheWrongUnitIsToldAsThat) {
+TEST(ReachNote, AnOrganInTheWrongUnitIsReportedAsThat) {
   for (const double unit : {100.0, 0.01}) {
     model::scene::Scene scene = tests::make_plate_scene();
     scene.organ_mesh = tests::make_plate(0.2 * unit, 20);

@@ -134,14 +134,14 @@ TEST(StiffnessCheck, NamesNoRateThatIsNotEnough) {
   EXPECT_TRUE(refused.error().message.ends_with("= 49 or less")) << refused.error().message;
 }
 
-TEST(StiffnessCheck, RefusesADeviceThatDoesNotTellItsDamping) {
+TEST(StiffnessCheck, RefusesADeviceThatDoesNotReportItsDamping) {
   const model::scene::Scene scene = tests::make_plate_scene();
   const auto tissue = std::move(*model::scene::make_tissue(scene));
   const auto refused =
       check_renderable(scene, *tissue, {.name = "mute", .grip = hal::GripKind::kNone});
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().message,
-            "device mute does not tell its damping at the tool: fill DeviceInfo::at_tool");
+            "device mute does not report its damping at the tool: fill DeviceInfo::at_tool");
 }
 
 TEST(StiffnessCheck, RefusesADampingThatLeavesTheDeviceTooLittle) {
@@ -169,7 +169,7 @@ TEST(StiffnessCheck, RefusesADampingThatLeavesTheDeviceTooLittle) {
             "hunt_crossley.dissipation_s_per_m = 0.1052 or less");
 }
 
-TEST(PressCheck, TellsTheLargestSlopeAndWhereTheSameEachTime) {
+TEST(PressCheck, ReportsTheLargestSlopeAndWhereTheSameEachTime) {
   const model::scene::Scene scene = tests::make_plate_scene();
   const auto tissue = std::move(*model::scene::make_tissue(scene));
   const model::scene::TissueLaw& law = tissue->law();

@@ -16,7 +16,7 @@ model::Limits limits(double continuous_N, double thermal_time_s) {
   return limits;
 }
 
-TEST(HeatCheck, ADeviceThatBearsLessForLongThanTheSceneSaysNeedsTheTimeForIt) {
+TEST(ThermalCheck, ADeviceThatBearsLessForLongThanTheSceneSaysNeedsTheTimeForIt) {
   model::scene::Scene scene;
   scene.path = "mine.toml";
   scene.rate_Hz = 1000.0;

@@ -71,7 +71,7 @@ class AskedLaw final : public model::contact::ContactLaw {
   bool moved = false;
 };
 
-TEST(TickBudget, MeasuresAWholeTickThatWalksAndTouches) {
+TEST(TickBudget, MeasuresAWholeTickInMotionAndContact) {
   model::scene::Scene scene = tests::make_plate_scene();
   scene.tool.spheres = {{{0, -0.004, 0}, 0.004}, {{0, 0.004, 0}, 0.004}};
   scene.tool.blade = model::contact::Blade{.a_m = {}, .b_m = {0, 0, 0.01}};

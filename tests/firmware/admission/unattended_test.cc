@@ -6,7 +6,7 @@
 
 namespace tact::firmware::admission::unattended_test {
 
-TEST(Unattended, AServiceDoesNotHomeOnAJigThatNobodySees) {
+TEST(Unattended, AServiceDoesNotHomeOnAJigWithoutAPerson) {
   model::scene::Scene scene;
   for (const char* kind : {"can-odrive", "can-cia402", "can-moteus"}) {
     scene.device.kind = kind;

@@ -112,10 +112,10 @@ TEST_F(BlackBoxTest, SeveralFaultsOfARunGiveSeveralFilesAndNoneIsWrittenOver) {
 TEST_F(BlackBoxTest, ALoopThatGivesNoMoreTicksIsNotWaitedFor) {
   const auto box = make();
   ticks(*box, 500);
-  box->stands(model::Fault::kNone);
+  box->report_fault(model::Fault::kNone);
   box->work();
   EXPECT_TRUE(box->files().empty());
-  box->stands(model::Fault::kLoopStalled);
+  box->report_fault(model::Fault::kLoopStalled);
   box->work();
   for (int i = 0; i < 5000 && box->files().empty(); ++i) usleep(1000);
   ASSERT_EQ(box->files().size(), 1u);
@@ -177,7 +177,7 @@ TEST_F(BlackBoxTest, ACutOffFileKeepsItsTicksAndSaysThatThePicturesAreMissing) {
   EXPECT_NE(host::record::read_recording(path).damage.find("cut off"), std::string::npos);
 }
 
-TEST_F(BlackBoxTest, EveryDamageIsToldByItsTicksAndByItsPictures) {
+TEST_F(BlackBoxTest, EveryDamageIsReportedByItsTicksAndByItsPictures) {
   const auto box = make();
   ticks(*box, 100);
   ticks(*box, 300, model::Fault::kDeviceLost);
@@ -191,7 +191,7 @@ TEST_F(BlackBoxTest, EveryDamageIsToldByItsTicksAndByItsPictures) {
   });
 }
 
-TEST_F(BlackBoxTest, AFullDiskIsToldAndCostsNothingElse) {
+TEST_F(BlackBoxTest, AFullDiskIsReportedAndCostsNothingElse) {
   const auto box = make();
   ticks(*box, 2000);
   std::signal(SIGXFSZ, SIG_IGN);
@@ -206,7 +206,7 @@ TEST_F(BlackBoxTest, AFullDiskIsToldAndCostsNothingElse) {
   auto news = box->news();
   ASSERT_EQ(news.size(), 1u);
   EXPECT_NE(news[0].find("File too large"), std::string::npos) << news[0];
-  EXPECT_TRUE(box->news().empty()) << "told once";
+  EXPECT_TRUE(box->news().empty()) << "reported once";
   ticks(*box, 100);
   ticks(*box, 300, model::Fault::kEmergencyStop);
   box->finish();

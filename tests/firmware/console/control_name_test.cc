@@ -21,7 +21,7 @@ class ControlNames : public testing::Test {
   std::string folder = testing::TempDir() + "tact-names-" + std::to_string(getpid());
 };
 
-TEST_F(ControlNames, AreFoundByTheSceneWhateverPathNamesIt) {
+TEST_F(ControlNames, AreFoundByTheSceneUnderAnyPath) {
   const std::string scene = folder + "/liver.toml";
   touch_file(scene);
   for (const pid_t process : {41, 7}) touch_file(control_path(folder, scene, process));

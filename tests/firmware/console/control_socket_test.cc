@@ -32,7 +32,7 @@ class Control : public testing::Test {
     EXPECT_EQ(connect(fd, reinterpret_cast<const sockaddr*>(&*address), sizeof *address), 0);
     return fd;
   }
-  /// The request of somebody who has said it already.
+  /// A request that is complete.
   std::optional<ControlRequest> ask(const char* word) {
     const int fd = connect_here();
     EXPECT_GE(send(fd, word, strlen(word), 0), 0);
@@ -44,7 +44,7 @@ class Control : public testing::Test {
   std::unique_ptr<ControlSocket> socket;
 };
 
-TEST_F(Control, AWordGetsOneSentence) {
+TEST_F(Control, AWordGetsOneMessage) {
   Answer answer;
   std::thread person([&] {
     auto got = ask_tactd({.folder = folder, .scene_path = "liver.toml", .word = "arm"});
@@ -63,11 +63,11 @@ TEST_F(Control, AWordGetsOneSentence) {
   EXPECT_EQ(answer.message, "puppet: armed");
 }
 
-TEST_F(Control, WhoeverGoesAtOnceIsStillHeardAndHarmsNothing) {
+TEST_F(Control, AClientThatLeavesAtOnceIsAnsweredAndHarmsNothing) {
   const auto request = ask("stop");
   ASSERT_TRUE(request);
   EXPECT_EQ(request->word(), "stop");
-  request->answer({.done = true, .message = "nobody listens"});
+  request->answer({.done = true, .message = "no client listens"});
   EXPECT_FALSE(socket->next());
 }
 
@@ -90,7 +90,7 @@ TEST_F(Control, AnEmptyOrLongWordIsNoneThatIsKnown) {
 }
 
 // In a process of its own, whose limit stays low.
-TEST_F(Control, HearsSomebodyWithoutAFreeDescriptor) {
+TEST_F(Control, HearsAClientWithoutAFreeDescriptor) {
   const auto hear_two = [this] {
     socket->next();  // which takes its spare one
     const int first = connect_here(), second = connect_here();
@@ -127,7 +127,7 @@ TEST_F(Control, AStrangerIsRefused) {
   EXPECT_FALSE(socket->next());
 }
 
-TEST_F(Control, WhoMayNotAskIsToldWhoseItIs) {
+TEST_F(Control, ARefusedUserLearnsWhoseItIs) {
   if (geteuid() != 0) GTEST_SKIP() << "only root can play a stranger";
   const auto ask_as_stranger = [this](const std::string& wanted) {
     if (setuid(65'534) != 0) _exit(9);
@@ -167,7 +167,7 @@ TEST_F(Control, AFileThatADeadOneLeftIsReplaced) {
   EXPECT_TRUE(ask("status"));
 }
 
-TEST_F(Control, ClientsAreToldOfNoneOfSeveralAndOfOneThatIsSilent) {
+TEST_F(Control, ClientsLearnOfNoneOfSeveralAndOfOneThatIsSilent) {
   const ControlQuestion question{.folder = folder, .scene_path = "liver.toml", .word = "arm"};
   ControlQuestion other = question;
   other.scene_path = "skin.toml";

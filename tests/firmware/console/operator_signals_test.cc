@@ -40,7 +40,7 @@ bool is_caught(int signal) {
 // In a process of its own, as the dispositions stay.
 TEST(OperatorSignals, NothingThatComesBeforeTheLoopOrByMistakeEndsTheProcess) {
   const auto outlive = [] {
-    outlive_stray_signals();
+    ignore_other_signals();
     for (int signal = 1; signal <= 64; ++signal)
       if (!asks_to_leave(signal) && signal != SIGKILL && signal != SIGSTOP && !is_caught(signal))
         syscall(SYS_kill, getpid(), signal);
@@ -52,14 +52,14 @@ TEST(OperatorSignals, NothingThatComesBeforeTheLoopOrByMistakeEndsTheProcess) {
 
 TEST(OperatorSignals, ACrashEndsTheProcessAllTheSame) {
   const auto abort_it = [] {
-    outlive_stray_signals();
+    ignore_other_signals();
     const OperatorSignals signals;
     std::abort();
   };
   EXPECT_EXIT(abort_it(), testing::KilledBySignal(SIGABRT), "");
   if (loop::is_sanitized()) return;  // which has handlers of its own for the rest
   const auto read_nowhere = [] {
-    outlive_stray_signals();
+    ignore_other_signals();
     volatile const int* nowhere = nullptr;
     static_cast<void>(*nowhere);
   };

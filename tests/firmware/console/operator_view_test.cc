@@ -45,7 +45,7 @@ class View : public testing::Test {
   OperatorView view{device, lines, false};
 };
 
-TEST_F(View, AFaultIsToldOnceWithWhatLiesBehindIt) {
+TEST_F(View, AFaultIsReportedOnceWithWhatLiesBehindIt) {
   device.words = "axis 2 (node 2): over-current";
   const std::string first = reported(frame(loop::State::kStopped, model::Fault::kDriveFault));
   EXPECT_NE(first.find("fault 113, drive fault"), std::string::npos) << first;
@@ -53,7 +53,7 @@ TEST_F(View, AFaultIsToldOnceWithWhatLiesBehindIt) {
   EXPECT_EQ(reported(frame(loop::State::kStopped, model::Fault::kDriveFault)), "");
 }
 
-TEST_F(View, ALineThatTakesTheForceWithoutAFaultIsToldOnceEachTime) {
+TEST_F(View, ALineThatTakesTheForceWithoutAFaultIsReportedOnceEachTime) {
   const protocol::Frame armed = frame(loop::State::kArmed, model::Fault::kNone);
   EXPECT_EQ(reported(armed), "");
   lines.words = "the clutch line flaps";
@@ -92,10 +92,10 @@ TEST_F(View, ADeviceWithoutPowerIsNotReadyAndSaysWhatItWaitsFor) {
   EXPECT_NE(reported(ready).find("waiting for power of arm 1"), std::string::npos);
   EXPECT_EQ(view.why_not_arm(), "waiting for power of arm 1");
   device.words.clear();
-  EXPECT_NE(reported(ready).find("ready, force is off"), std::string::npos) << "told again";
+  EXPECT_NE(reported(ready).find("ready, force is off"), std::string::npos) << "reported again";
 }
 
-TEST_F(View, AToolInsideTheOrganIsToldOnceEachTime) {
+TEST_F(View, AToolInsideTheOrganIsReportedOnceEachTime) {
   protocol::Frame inside = frame(loop::State::kArmed, model::Fault::kNone);
   inside.contact[1].state = protocol::ContactState::kInside;
   EXPECT_NE(reported(inside).find("inside the organ"), std::string::npos);
@@ -115,19 +115,19 @@ TEST_F(View, TheStatusCountsLossesOfContact) {
   EXPECT_NE(view.status().find("contact lost 3 times"), std::string::npos) << view.status();
 }
 
-TEST_F(View, WhoMustArmIsToldWhenTheDeviceIsReady) {
+TEST_F(View, ReportsReadinessToThePersonWhoMustArm) {
   EXPECT_NE(reported(frame(loop::State::kReady, model::Fault::kNone)).find("tactctl SCENE arm"),
             std::string::npos);
   EXPECT_EQ(reported(frame(loop::State::kReady, model::Fault::kNone)), "");
 }
 
-TEST_F(View, AFaultThatComesAgainAfterAResetIsToldAgain) {
+TEST_F(View, AFaultThatComesAgainAfterAResetIsReportedAgain) {
   EXPECT_NE(reported(frame(loop::State::kStopped, model::Fault::kEmergencyStop)), "");
   reported(frame(loop::State::kReady, model::Fault::kNone));
   EXPECT_NE(reported(frame(loop::State::kStopped, model::Fault::kEmergencyStop)), "");
 }
 
-TEST_F(View, WhatADeviceWaitsForIsToldOnceUntilItIsReady) {
+TEST_F(View, WhatADeviceWaitsForIsReportedOnceUntilItIsReady) {
   device.words = "not homed: pull the grip out, then push it in";
   EXPECT_NE(reported(frame(loop::State::kOff, model::Fault::kNone)).find("pull the grip out"),
             std::string::npos);
@@ -144,7 +144,7 @@ TEST(Sayings, WhatCannotBeSaidEndsNothing) {
                          "/model/scenes/liver.toml --free-run "
                          "--seconds 1 --no-telemetry --json " +
                          report + " >/dev/full 2>/dev/full; echo $?; grep -c force_hash " + report);
-  EXPECT_EQ(outcome.output, "2\n1\n");  // the run goes to its end; its status tells
+  EXPECT_EQ(outcome.output, "2\n1\n");  // the run goes to its end; its status shows it
 }
 
 }  // namespace tact::firmware::console::operator_view_test

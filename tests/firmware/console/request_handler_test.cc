@@ -68,7 +68,7 @@ class Requests : public testing::Test {
     EXPECT_FALSE(answer.done);
     return answer.message;
   }
-  /// What the terminal is told meanwhile.
+  /// The terminal's output meanwhile.
   std::string show(State state) {
     testing::internal::GetCapturedStderr();
     testing::internal::CaptureStderr();
@@ -84,13 +84,13 @@ class Requests : public testing::Test {
   PuppetLines lines;
   loop::Requests requests;
   std::vector<std::string> edges;  // what the loop was asked
-  bool refuses = false, stands = false;
+  bool refuses = false, is_silent = false;
   int pauses = 0;
   OperatorSignals signals;
   std::function<void()> tick = [this] {
     ++pauses;
     const std::uint32_t asked = requests.asked.load();
-    if (stands) return;
+    if (is_silent) return;
     edges.emplace_back(std::array{"none", "arm", "reset", "disarm"}[asked & 3U]);
     requests.echo(asked, !refuses);
   };
@@ -129,13 +129,13 @@ TEST_F(Requests, AnswersByTheLoopsOwnCountersWithTheirAge) {
   EXPECT_TRUE(reported.ends_with(" ms ago")) << reported;
   EXPECT_NE(refusal("arm").find("it has stopped"), std::string::npos);
   progress.show({.time_ns = now_ns() - 60 * model::kMillisecond_ns, .state = State::kArmed});
-  EXPECT_NE(refusal("status").find("not answered: the loop stands still; puppet: armed"),
+  EXPECT_NE(refusal("status").find("not answered: the loop has stopped; puppet: armed"),
             std::string::npos);
   requests.trip(model::Fault::kLoopStalled);
   EXPECT_NE(refusal("status").find("stopped, 0.000 N, fault 120"), std::string::npos);
 }
 
-TEST_F(Requests, ARequestThatWaitsWhileTheWordsAreToldIsRefused) {
+TEST_F(Requests, ARequestThatWaitsWhileTheWordsArePrintedIsRefused) {
   const std::array<int, 3> early{say("arm"), say("arm"), say("reset")};
   show(State::kReady);
   request_handler->obey(0);
@@ -155,7 +155,7 @@ TEST_F(Requests, ResetsAStopAloneAndTheWordsComeAgainBeforeTheNextArming) {
   EXPECT_TRUE(edges.empty());
   EXPECT_TRUE(ask("reset").done);
   EXPECT_EQ(edges, (std::vector<std::string>{"reset"}));
-  EXPECT_FALSE(ask("arm").done) << "the words were not told yet";
+  EXPECT_FALSE(ask("arm").done) << "the words were not printed yet";
   EXPECT_NE(show(State::kReady).find("ready, force is off"), std::string::npos);
   EXPECT_TRUE(ask("arm").done);
   EXPECT_EQ(edges.back(), "arm");
@@ -169,14 +169,14 @@ TEST_F(Requests, WhatTheLoopRefusesIsTheAnswer) {
 }
 
 TEST_F(Requests, ALoopThatDoesNotAnswerIsNotAskedLater) {
-  stands = true;
+  is_silent = true;
   show(State::kReady);
   EXPECT_NE(refusal("arm").find("not armed: the loop gives no answer"), std::string::npos);
   EXPECT_EQ(requests.asked.load() & 3U, 0U) << "taken back";
   EXPECT_LT(pauses, 500) << "of 1 ms; five requests in a row stay below WatchdogSec";
 }
 
-TEST_F(Requests, ARequestThatWasDoneBeforeItWasTakenBackIsToldAsDone) {
+TEST_F(Requests, ARequestDoneBeforeItsCancellationIsAnsweredAsDone) {
   std::uint32_t taken = 0;  // by a tick that ends after the handler has given up
   request_handler = make_handler(view, [&] {
     const std::uint32_t asked = requests.asked.load();
@@ -208,9 +208,9 @@ TEST_F(Requests, DisarmsAtAnyTime) {
   EXPECT_EQ(edges, (std::vector<std::string>{"disarm", "disarm"}));
 }
 
-TEST_F(Requests, ADisarmThatIsNotAnsweredStandsForTheNextTick) {
+TEST_F(Requests, AnUnansweredDisarmIsKeptForTheNextTick) {
   show(State::kArmed);
-  stands = true;
+  is_silent = true;
   const Answer answer = ask("disarm");
   EXPECT_FALSE(answer.done);
   EXPECT_NE(answer.message.find("its next tick takes the force away"), std::string::npos);
@@ -227,12 +227,12 @@ TEST_F(Requests, WhatWouldArmItselfWaitsForAPersonOnceItIsDisarmed) {
   request_handler = make_handler(itself, tick);
   show(State::kReady);
   EXPECT_EQ(ask("arm").message, "puppet: not armed: it arms itself as soon as it has power");
-  stands = true;
+  is_silent = true;
   EXPECT_FALSE(ask("disarm").done);
   EXPECT_FALSE(ask("arm").done);
-  stands = false;
+  is_silent = false;
   EXPECT_TRUE(ask("disarm").done);
-  show(State::kReady);  // and the words are told
+  show(State::kReady);  // and the words are printed
   EXPECT_TRUE(ask("arm").done);
 }
 
@@ -243,7 +243,7 @@ TEST_F(Requests, StopsAtAnyTimeEvenInTheMomentOfTheWords) {
   EXPECT_TRUE(requests.stop.load());
 }
 
-TEST_F(Requests, ToldOfItsStateAndOfWordsThatItDoesNotKnow) {
+TEST_F(Requests, ReportsItsStateAndRefusesUnknownWords) {
   frame.force_N[0] = 3.0F, frame.force_N[1] = 4.0F;
   show(State::kArmed);
   EXPECT_EQ(ask("status").message, "puppet: armed, 5.000 N");

@@ -64,7 +64,7 @@ TEST_F(Service, FeedsTheWatchdogOnlyWhileTheLoopTicks) {
     EXPECT_EQ(heard(), words);
 }
 
-TEST_F(Service, IsHeardOnceASecondHoweverOftenItIsTold) {
+TEST_F(Service, GetsOneReportASecondHoweverOftenItIsCalled) {
   ServiceManager manager;
   for (int i = 0; i < 10; ++i) manager.report({.now_ns = i * kSecond_ns / 5, .status = "off"});
   for (int i = 0; i < 2; ++i) EXPECT_EQ(heard(), "STATUS=off\n");
@@ -80,7 +80,7 @@ TEST_F(Service, SaysWhenItStops) {
 
 TEST_F(Service, AManagerThatIsGoneOrWasNeverThereIsNoTrouble) {
   std::filesystem::remove(path_);
-  for (const char* path : {path_.c_str(), "", "/none/such", "@tact-nobody"}) {
+  for (const char* path : {path_.c_str(), "", "/none/such", "@tact-none"}) {
     setenv("NOTIFY_SOCKET", path, 1);
     ServiceManager manager;
     manager.report({.may_be_armed = true});

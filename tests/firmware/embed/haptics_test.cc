@@ -85,7 +85,7 @@ TEST(Haptics, ArmsDisarmsAndResetsInTheNextTick) {
   EXPECT_EQ(haptics->tick(samples.next()).state, State::kReady);
 }
 
-TEST(Haptics, UsesNumbersAsSoonAsTheToolTouchesNothing) {
+TEST(Haptics, UsesNumbersAsSoonAsTheToolIsOutOfContact) {
   const auto haptics = liver();
   Samples samples(haptics->scene());
   double before_N = 0.0, after_N = 0.0;
@@ -96,7 +96,7 @@ TEST(Haptics, UsesNumbersAsSoonAsTheToolTouchesNothing) {
   EXPECT_EQ(tests::message_of(haptics->set({"elastic.youngs_modulus_Pa=3000"})), "");
   EXPECT_EQ(tests::message_of(haptics->set({"elastic.youngs_modulus_Pa=2500"})), "");
   haptics->tick(samples.next());
-  EXPECT_FALSE(haptics->is_set()) << "it touches";
+  EXPECT_FALSE(haptics->is_set()) << "in contact";
   for (int tick = 0; tick < 300; ++tick) haptics->tick(samples.next());
   EXPECT_TRUE(haptics->is_set());
   for (int tick = 0; tick < 500; ++tick)

@@ -31,10 +31,10 @@ TEST(EnergyTank, ATankCountsForceTimesWay) {
   model::Tool tool;
   tool.position_m.x = 0.002;
   tank.observe(tool, true, 1.0, {{5, 0, 0}, {}});
-  EXPECT_NEAR(tank.given_J(), 0.01 - 1e-5, 1e-12) << "5 N * 2 mm, less 10 mW for 1 ms";
+  EXPECT_NEAR(tank.given_energy_J(), 0.01 - 1e-5, 1e-12) << "5 N * 2 mm, less 10 mW for 1 ms";
   tool.position_m.x = 0.0;
   tank.observe(tool, true, 1.0, {{5, 0, 0}, {}});
-  EXPECT_NEAR(tank.given_J(), -1e-5, 1e-12) << "taken back; what came back stays";
+  EXPECT_NEAR(tank.given_energy_J(), -1e-5, 1e-12) << "taken back; what came back stays";
 }
 
 TEST(EnergyTank, AMissedSampleIsCountedWithTheMeanForce) {
@@ -44,7 +44,7 @@ TEST(EnergyTank, AMissedSampleIsCountedWithTheMeanForce) {
   EXPECT_LT(tank.allowed_N(), 8.0 + 1e-9);
   tool.position_m.x = 0.002;
   tank.observe(tool, true, 1.0, {{2, 0, 0}, {}});
-  EXPECT_NEAR(tank.given_J(), 0.006 - 2e-5, 1e-12) << "3 N * 2 mm";
+  EXPECT_NEAR(tank.given_energy_J(), 0.006 - 2e-5, 1e-12) << "3 N * 2 mm";
 }
 
 TEST(EnergyTank, TheBrakeKnowsWhatAForceGivesWhileItFalls) {
@@ -61,7 +61,7 @@ TEST(EnergyTank, ATankForgetsWhatItTookBeyondTwoBudgets) {
   model::Tool tool;
   tool.position_m.x = -1.0;
   tank.observe(tool, true, 1.0, {{8, 0, 0}, {}});
-  EXPECT_EQ(tank.given_J(), -0.1);
+  EXPECT_EQ(tank.given_energy_J(), -0.1);
 }
 
 TEST(EnergyTank, AStepOfAnyClassLeavesATankThatIsSoundOrOverdrawn) {
@@ -73,7 +73,7 @@ TEST(EnergyTank, AStepOfAnyClassLeavesATankThatIsSoundOrOverdrawn) {
     const double allowed_N = tank.allowed_N();
     ASSERT_GE(allowed_N, 0.0);
     ASSERT_LE(allowed_N, 8.0);
-    if (!tank.is_overdrawn()) ASSERT_LE(tank.given_J(), 0.1 + 1e-9);
+    if (!tank.is_overdrawn()) ASSERT_LE(tank.given_energy_J(), 0.1 + 1e-9);
     if (!(std::abs(to_m.x) < kInfinity)) ASSERT_TRUE(tank.is_overdrawn() || to_m.x < 0.0);
   });
 }

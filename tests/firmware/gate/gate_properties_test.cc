@@ -19,7 +19,7 @@ std::string run(InputStrategy strategy, const GateSetting& setting, GateRules& r
   for (std::uint64_t seed = 0; seed < sequences; ++seed) {
     Sequence sequence(seed, strategy, setting);
     for (int tick = 0; tick < ticks; ++tick)
-      if (const char* broken = rules.check(sequence.next(rules.verdict().wrench)))
+      if (const char* broken = rules.check(sequence.next(rules.limited().wrench)))
         return std::string(broken) + ": " + setting.name + ", strategy " +
                std::to_string(static_cast<int>(strategy)) + ", seed " + std::to_string(seed) +
                ", tick " + std::to_string(tick);
@@ -54,14 +54,14 @@ TEST(GateProperties, EveryRuleHoldsForMoreThanAMillionShortSequences) {
 TEST(GateProperties, WhoFleesWithTheForceGetsNoMoreThanTheBudgetAndMostOfIt) {
   GateRules rules;
   EXPECT_EQ(run(InputStrategy::kFollow, {}, rules, 50, 2000), "");
-  EXPECT_GT(rules.most_given_J(), 0.5 * kRulesLimits.energy_J);
+  EXPECT_GT(rules.max_given_energy_J(), 0.5 * kRulesLimits.energy_J);
   EXPECT_GT(count(rules, firmware::gate::Stage::kPassivity), 1000u);
 }
 
 TEST(GateProperties, EnergyBoundHoldsWhenHandReverses) {
   GateRules rules;
   EXPECT_EQ(run(InputStrategy::kRattle, {}, rules, 50, 2000), "");
-  EXPECT_GT(rules.most_given_J(), 0.5 * kRulesLimits.energy_J);
+  EXPECT_GT(rules.max_given_energy_J(), 0.5 * kRulesLimits.energy_J);
 }
 
 TEST(GateProperties, WhoPushesForEverComesToTheContinuousForceFromBelow) {
@@ -71,8 +71,8 @@ TEST(GateProperties, WhoPushesForEverComesToTheContinuousForceFromBelow) {
   push.gate.fresh = push.gate.armed = true;
   for (int i = 0; i < 10000; ++i) ASSERT_EQ(rules.check(push), nullptr);
   EXPECT_GT(rules.most_thermal_ratio(), 0.999);
-  EXPECT_NEAR(rules.verdict().wrench.force_N.x, kRulesLimits.continuous_force_N, 0.01);
-  EXPECT_EQ(rules.verdict().acting, model::Fault::kContinuousLimited);
+  EXPECT_NEAR(rules.limited().wrench.force_N.x, kRulesLimits.continuous_force_N, 0.01);
+  EXPECT_EQ(rules.limited().acting, model::Fault::kContinuousLimited);
 }
 
 TEST(GateProperties, WhoTwistsForEverComesToTheContinuousTorqueFromBelow) {
@@ -82,13 +82,13 @@ TEST(GateProperties, WhoTwistsForEverComesToTheContinuousTorqueFromBelow) {
   twist.gate.fresh = twist.gate.armed = true;
   for (int i = 0; i < 10000; ++i) ASSERT_EQ(rules.check(twist), nullptr);
   EXPECT_GT(rules.most_torque_thermal_ratio(), 0.999);
-  EXPECT_NEAR(rules.verdict().wrench.torque_Nm.y, 0.1, 0.001) << "half of its peak, as the force";
-  EXPECT_EQ(rules.verdict().acting, model::Fault::kContinuousLimited);
+  EXPECT_NEAR(rules.limited().wrench.torque_Nm.y, 0.1, 0.001) << "half of its peak, as the force";
+  EXPECT_EQ(rules.limited().acting, model::Fault::kContinuousLimited);
 }
 
 // A hand of 150 g leans with 1 N on a wall, on a device of 1 Ns/m at 1 kHz: stable to 2000 N/m.
 struct Wall {
-  double given_J = 0.0, swing_m = 0.0;  // at most; in the last second
+  double given_energy_J = 0.0, swing_m = 0.0;  // at most; in the last second
   bool is_latched = false;
 };
 
@@ -101,7 +101,7 @@ Wall lean_on_wall(double stiffness_N_per_m, double budget_J) {
   limits.slew_N_per_s = 1e4;
   firmware::gate::Gate gate(limits, 0.001, 1.0);
   constexpr double kMass_kg = 0.15, kDamping_Ns_per_m = 1.0, kPush_N = 1.0, kStep_s = 0.25e-3;
-  double x_m = 0.001, v_mps = 0.0, low_m = 1.0, high_m = -1.0, given_J = 0.0;
+  double x_m = 0.001, v_mps = 0.0, low_m = 1.0, high_m = -1.0, given_energy_J = 0.0;
   Wall out;
   for (int tick = 0; tick < 40000; ++tick) {
     firmware::gate::GateInput input;
@@ -109,17 +109,17 @@ Wall lean_on_wall(double stiffness_N_per_m, double budget_J) {
     input.tool.position_m.x = x_m;
     input.tool.velocity_mps.x = v_mps;
     input.fresh = input.armed = true;
-    const firmware::gate::LimitedForce verdict = gate.limit(input);
-    out.is_latched = out.is_latched || latches(verdict.fault);
+    const firmware::gate::LimitedForce limited = gate.limit(input);
+    out.is_latched = out.is_latched || latches(limited.fault);
     const double from_m = x_m;
     for (int i = 0; i < 4; ++i) {
       v_mps +=
-          kStep_s / kMass_kg * (verdict.wrench.force_N.x - kPush_N - kDamping_Ns_per_m * v_mps);
+          kStep_s / kMass_kg * (limited.wrench.force_N.x - kPush_N - kDamping_Ns_per_m * v_mps);
       x_m += kStep_s * v_mps;
     }
     // Summed here, beyond the recovery: a tank that books wrongly would hide what it gives.
-    given_J += verdict.wrench.force_N.x * (x_m - from_m) - 1e-3 * limits.recovery_W;
-    out.given_J = std::max(out.given_J, given_J);
+    given_energy_J += limited.wrench.force_N.x * (x_m - from_m) - 1e-3 * limits.recovery_W;
+    out.given_energy_J = std::max(out.given_energy_J, given_energy_J);
     if (tick < 39000) continue;
     low_m = std::min(low_m, x_m);
     high_m = std::max(high_m, x_m);
@@ -134,24 +134,24 @@ TEST(GateProperties, AWallTooStiffShakesOnlyWithoutThePassivityStage) {
     EXPECT_GT(without.swing_m, 5e-4) << stiffness_N_per_m;
     if (stiffness_N_per_m == 20000.0)
       EXPECT_NEAR(without.swing_m, 4e-3, 0.5e-3) << "as the README of the gate says";
-    EXPECT_GT(without.given_J, 0.08) << stiffness_N_per_m;
+    EXPECT_GT(without.given_energy_J, 0.08) << stiffness_N_per_m;
     // Shaking is chaotic: the last bit of the stiffness decides whether it dies down for good.
     constexpr int kStarts = 40;
     int still = 0, early = 0;
     for (int i = 0; i < kStarts; ++i) {
       const Wall with = lean_on_wall(stiffness_N_per_m * (1.0 + 1e-12 * i), 0.08);
       EXPECT_LT(with.swing_m, 0.25 * without.swing_m) << stiffness_N_per_m;
-      EXPECT_LT(with.given_J, 0.08) << stiffness_N_per_m;
+      EXPECT_LT(with.given_energy_J, 0.08) << stiffness_N_per_m;
       EXPECT_FALSE(with.is_latched);
       still += with.swing_m < (stiffness_N_per_m > 5000.0 ? 1e-4 : 2e-4);
-      early += with.given_J < 0.042;
+      early += with.given_energy_J < 0.042;
     }
     EXPECT_GE(still, 36) << stiffness_N_per_m;
     EXPECT_GE(early, 36) << "the damping begins at half of the budget";
   }
   const Wall soft = lean_on_wall(1000.0, 0.08);
   EXPECT_LT(soft.swing_m, 1e-5) << "within the device's stiffness there is nothing to damp";
-  EXPECT_LT(soft.given_J, 0.02);
+  EXPECT_LT(soft.given_energy_J, 0.02);
 }
 
 TEST(GateProperties, EveryStageActsInEveryConfiguration) {
@@ -179,7 +179,7 @@ TEST(GateProperties, TheWholeBudgetAndTheContinuousForceAreThereInEverySetting) 
     const int ticks = setting.rate_Hz > 1000.0 ? 5000 : 2000;  // 25 s and more of heat
     EXPECT_EQ(run(InputStrategy::kFollow, setting, flee, 50, ticks), "");
     EXPECT_EQ(run(InputStrategy::kPush, setting, push, 50, ticks), "");
-    EXPECT_GT(flee.most_given_J(), 0.99 * setting.limits.energy_J) << setting.name;
+    EXPECT_GT(flee.max_given_energy_J(), 0.99 * setting.limits.energy_J) << setting.name;
     EXPECT_GT(push.most_thermal_ratio(), 0.99) << setting.name;
     EXPECT_GT(push.most_torque_thermal_ratio(), setting.limits.torque_Nm > 0.0 ? 0.99 : -1.0)
         << setting.name;

@@ -139,7 +139,7 @@ TEST(GateScalars, TakingAlongAMotionNeverLengthensAForceOrATorque) {
   });
 }
 
-TEST(GateScalars, WhateverIsTakenFromAForceOfAnyClassTheMagnitudeStageLimitsIt) {
+TEST(GateScalars, TheMagnitudeStageLimitsAForceOfAnyClass) {
   for_each_vector(all_classes(), [](const Vec3& v) {
     for (const Vec3& d : kMotions) {
       Wrench w{v, -0.1 * v};
@@ -165,7 +165,7 @@ TEST(GateScalars, AMotionTooSmallToBeSquaredTakesNothingFromAForce) {
   EXPECT_NEAR(w.torque_Nm.y, 0.1, 1e-15) << "1 mJ of 2 may stay";
 }
 
-TEST(GateScalars, AFaderStaysBetweenShutAndOpen) {
+TEST(GateScalars, ARampStaysBetweenShutAndOpen) {
   for (const double dt_s : all_classes())
     for (const bool open : {false, true})
       for (const double level : {0.0, Doubles::denorm_min(), beside(1.0, -1), 1.0}) {

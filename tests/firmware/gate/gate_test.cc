@@ -61,7 +61,7 @@ TEST(Gate, NotANumberGivesZeroAtOnceAndLatches) {
   }
 }
 
-TEST(Gate, TheFirstFaultOfATickIsTold) {
+TEST(Gate, TheFirstFaultOfATickIsReported) {
   Gate gate = open_gate({1, 0, 0});
   GateInput input = wanting({std::nan(""), 0, 0});
   input.tool.position_m.x = std::nan("");

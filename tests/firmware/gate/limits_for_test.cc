@@ -24,15 +24,15 @@ hal::DeviceInfo device(double times) {
   return info;
 }
 
-TEST(LimitsFor, AScaleOfTheMotionLimitsWhatTheHandFeels) {
+TEST(LimitsFor, AScaleOfTheMotionLimitsTheForceOnTheHand) {
   hal::DeviceInfo info = device(100.0);
   info.motion_scale = 4.0;
   const model::Limits limits = limits_for(scene(), info);
-  EXPECT_DOUBLE_EQ(limits.force_N, 0.25 * scene().force_N) << "the hand feels four times of it";
+  EXPECT_DOUBLE_EQ(limits.force_N, 0.25 * scene().force_N) << "the hand gets four times of it";
   EXPECT_DOUBLE_EQ(limits.slew_N_per_s, 0.25 * scene().slew_N_per_s);
   EXPECT_DOUBLE_EQ(limits.continuous_force_N, 0.25 * scene().continuous_force_N);
   info.motion_scale = 0.5;
-  EXPECT_DOUBLE_EQ(limits_for(scene(), info).force_N, scene().force_N) << "it feels half of it";
+  EXPECT_DOUBLE_EQ(limits_for(scene(), info).force_N, scene().force_N) << "it gets half of it";
 }
 
 TEST(LimitsFor, TheFingersBearWhatBothAllow) {
@@ -60,11 +60,11 @@ TEST(LimitsFor, AStrongerDeviceDoesNotRaiseTheScene) {
   EXPECT_DOUBLE_EQ(limits.workspace_half_length_m, 0.08);
 }
 
-TEST(LimitsFor, WhatTheMotorsBearForLongLimitsTheSceneWhereTheDeviceTellsIt) {
+TEST(LimitsFor, TheMotorsContinuousForceLimitsTheSceneWhereReported) {
   model::Limits limits = scene();
   limits.continuous_force_N = 1.5;
   hal::DeviceInfo info = device(1.0);
-  EXPECT_DOUBLE_EQ(limits_for(limits, info).continuous_force_N, 1.5) << "not told";
+  EXPECT_DOUBLE_EQ(limits_for(limits, info).continuous_force_N, 1.5) << "not reported";
   info.max_continuous_force_N = 0.88;
   EXPECT_DOUBLE_EQ(limits_for(limits, info).continuous_force_N, 0.88);
   info.max_continuous_force_N = 3.0;

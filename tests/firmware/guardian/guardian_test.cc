@@ -131,7 +131,7 @@ TEST(Guardian, SaysTheLastWordsOfAProgramThatIsHeld) {
   EXPECT_EQ(wire.hear(1, kSilence_ms), Words{}) << "once";
 }
 
-TEST(Guardian, SaysNothingWhileNobodyIsToCount) {
+TEST(Guardian, SaysNothingWithoutAWatchedProgram) {
   const Wire wire;
   const Guarded guarded(wire, [](Guardian& guardian) {
     guardian.page().holder_count.store(7);
@@ -165,11 +165,11 @@ TEST(Guardian, ItCountsUnlessItIsHeld) {
   kill(guardian->process(), SIGCONT);
 }
 
-TEST(Guardian, TellsThatTheDeviceTookNothing) {
+TEST(Guardian, ReportsThatTheDeviceTookNothing) {
   Wire wire;
-  close(wire.end[1]);  // nobody at the other end
+  close(wire.end[1]);  // no reader at the other end
   wire.end[1] = open("/dev/null", O_RDONLY | O_CLOEXEC);
-  const int own = dup(STDERR_FILENO), reported = memfd_create("told", MFD_CLOEXEC);
+  const int own = dup(STDERR_FILENO), reported = memfd_create("log", MFD_CLOEXEC);
   dup2(reported, STDERR_FILENO);
   Guarded guarded(wire, [](Guardian&) {});
   dup2(own, STDERR_FILENO);

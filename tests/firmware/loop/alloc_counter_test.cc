@@ -12,7 +12,7 @@
 
 namespace tact::firmware::loop::alloc_counter_test {
 
-// The compiler must not leave out an allocation that nobody reads.
+// The compiler must not leave out an allocation that is not read.
 template <class T>
 void keep(T* block) {
   asm volatile("" : : "g"(block) : "memory");

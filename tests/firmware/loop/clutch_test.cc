@@ -161,7 +161,7 @@ TEST_F(LoopClutch, TheWorkspaceIsThatOfTheHandle) {
   move_handle_to(edge_m - 0.01);
   lines.clutch_pressed = false;
   tick();
-  EXPECT_NE(device.shift_m, model::Vec3{}) << "a simulated hand is told";
+  EXPECT_NE(device.shift_m, model::Vec3{}) << "the simulated hand gets it";
   EXPECT_EQ(device.shift_m, last().input.clutch_shift_m);
   move_handle_to(edge_m + 0.02);
   run_ticks(100);

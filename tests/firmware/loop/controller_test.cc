@@ -14,7 +14,7 @@ namespace tact::firmware::loop::controller_test {
 constexpr double kPeriod_s = 1e-3;
 constexpr double kBall_m = 0.004;
 
-// A spring that can be told to break, and counts the blades that went through it.
+// A spring that can be set to break, and counts the blades that went through it.
 class PuppetLaw final : public model::contact::ContactLaw {
  public:
   model::contact::ContactLawResponse respond(
@@ -99,7 +99,7 @@ TEST_F(ControllerTest, ABrokenLawIsNeverArmed) {
   EXPECT_EQ(tick().state, State::kStopped);
 }
 
-TEST_F(ControllerTest, BeyondTheLawIsToldBeforeALimitThatLeavesTheForceOn) {
+TEST_F(ControllerTest, BeyondTheLawIsReportedBeforeALimitThatLeavesTheForceOn) {
   press();
   EXPECT_EQ(tick().limit, Fault::kNone);
   law.is_beyond = true;
@@ -156,10 +156,10 @@ TEST_F(ControllerTest, AJumpBeyondSpeedTimesPauseIsContactLost) {
   EXPECT_EQ(lost.fault, Fault::kNone);
   const TickOutput after = tick();
   EXPECT_EQ(after.contact_losses, 1u);
-  EXPECT_NE(after.limit, Fault::kContactLost) << "it is told in its tick alone";
+  EXPECT_NE(after.limit, Fault::kContactLost) << "it is reported in its tick alone";
 }
 
-TEST_F(ControllerTest, ContactLostIsToldWhereTheGateLetsGo) {
+TEST_F(ControllerTest, ContactLostIsReportedWhereTheGateLetsGo) {
   press();
   depth_m -= 0.010;
   input.sample.tool.velocity_mps.z = 10.0;
@@ -185,8 +185,8 @@ TEST_F(ControllerTest, MissedSamplesExtendTheReach) {
   EXPECT_EQ(tick(3).contact_losses, 1u) << "they count once";
 }
 
-TEST_F(ControllerTest, AToolInsideIsToldBeforeArmingAndFeelsNothingUntilOutside) {
-  depth_m = 0.010;  // the centre of the ball 6 mm below the skin
+TEST_F(ControllerTest, AToolInsideIsReportedBeforeArmingAndHasNoForceUntilOutside) {
+  depth_m = 0.010;  // the centre of the ball 6 mm below the surface
   EXPECT_EQ(tick().limit, Fault::kToolInside);
   EXPECT_EQ(tick().state, State::kReady);
   EXPECT_TRUE(controller->is_inside());
@@ -203,7 +203,7 @@ TEST_F(ControllerTest, AToolInsideIsToldBeforeArmingAndFeelsNothingUntilOutside)
   EXPECT_EQ(tick().contact_losses, 0u);
 }
 
-TEST_F(ControllerTest, ContactLostIsToldBeforeInsideAndInsideBeforeBeyondTheLaw) {
+TEST_F(ControllerTest, ContactLostIsReportedBeforeInsideAndInsideBeforeBeyondTheLaw) {
   press();
   law.is_beyond = true;
   EXPECT_EQ(tick().limit, Fault::kLawSaturated);
@@ -265,7 +265,7 @@ TEST_F(ControllerTest, BladeOfALostToolCutsNothing) {
   const int cuts = law.cuts;
   depth_m = -0.1;
   ASSERT_EQ(tick().limit, Fault::kContactLost);
-  EXPECT_EQ(law.cuts, cuts) << "on a way that nobody saw";
+  EXPECT_EQ(law.cuts, cuts) << "on an unseen path";
   tick();
   EXPECT_EQ(law.cuts, cuts + 1);
 }

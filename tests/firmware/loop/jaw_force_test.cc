@@ -101,7 +101,7 @@ TEST_F(LiverJaws, PressTheFingersThroughTheirGate) {
   EXPECT_EQ(device_.grip_force_N(), 0.0);
 }
 
-TEST_F(LiverJaws, PressNoFingersBeforeSomebodyArms) {
+TEST_F(LiverJaws, PressNoFingersBeforeArming) {
   play(false);
   EXPECT_GT(most_wanted_N_, 0.05) << "the tissue is gripped all the same";
   EXPECT_EQ(most_N_, 0.0);

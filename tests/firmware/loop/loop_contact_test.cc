@@ -22,7 +22,7 @@ TEST_F(LoopContact, ArmedWhilePressingTheForceIsFadedIn) {
   EXPECT_NEAR(device.last.force_N.z, force_N, 1e-6);
 }
 
-TEST_F(LoopContact, AToolFoundInsideTheOrganFeelsNothingAndIsCounted) {
+TEST_F(LoopContact, AToolFoundInsideTheOrganHasNoForceAndIsCounted) {
   device.height_m = -0.006;
   requests.arm_at_start.store(true);
   run_ticks(1000);
@@ -38,7 +38,7 @@ TEST_F(LoopContact, AToolFoundInsideTheOrganFeelsNothingAndIsCounted) {
   EXPECT_EQ(loop.statistics().contact_losses, 0u);
 }
 
-// A device that is real has a sample of then; what was skipped is told to the tick after it.
+// A device that is real has a sample of then; what was skipped is passed to the tick after it.
 TEST_F(LoopContact, AToolThatMovesWhileTheLoopWakesLateKeepsItsContact) {
   device.height_m = 0.006;
   requests.arm_at_start.store(true);

@@ -56,7 +56,7 @@ TEST_F(LoopStop, AnOpenEmergencyStopTakesTheForceInTheSameTick) {
   run_ticks(1);
   EXPECT_EQ(device.last, model::Wrench{});
   EXPECT_EQ(newest().output.fault, Fault::kEmergencyStop);
-  EXPECT_FALSE(lines.last.healthy) << "no heartbeat while a fault stands";
+  EXPECT_FALSE(lines.last.healthy) << "no heartbeat while a fault lasts";
   EXPECT_FALSE(lines.last.armed);
 }
 
@@ -114,7 +114,7 @@ TEST_F(LoopStop, AnEnableLineThatFallsAndRisesBringsNoForceBack) {
   EXPECT_EQ(device.last, model::Wrench{});
 }
 
-TEST_F(LoopStop, ADeviceWithoutPowerTellsWhereItIsAndIsNotArmed) {
+TEST_F(LoopStop, ADeviceWithoutPowerReportsWhereItIsAndIsNotArmed) {
   device.can_push = false;
   device.height_m = 0.006;
   requests.arm_at_start.store(true);
@@ -198,7 +198,7 @@ TEST_F(LoopStop, TheDeviceIsPoweredAsTheLinesSay) {
   EXPECT_TRUE(device.permitted);
   requests.stop.store(true);
   loop.run();
-  EXPECT_FALSE(device.permitted) << "whatever ends the loop";
+  EXPECT_FALSE(device.permitted) << "at every end of the loop";
 }
 
 TEST_F(LoopStop, LinesThatCannotBeSetStopInTheNextTick) {
@@ -225,7 +225,7 @@ TEST_F(LoopStop, TheScopeLineIsUpOncePerTick) {
   EXPECT_EQ(lines.downs, 7);
 }
 
-TEST_F(LoopStop, TellsWhenForceStopped) {
+TEST_F(LoopStop, ReportsWhenForceStopped) {
   press();
   const std::int64_t before_ns = clock.now_ns();
   device.silent = true;

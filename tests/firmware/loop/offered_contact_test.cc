@@ -39,7 +39,7 @@ TEST_F(OfferedContactLoop, IsTakenAfterTheToolHasLeftAndThenGivesAnotherForce) {
   const Made made(scene, 1, 1.5);
   loop.contacts().offer(*made.offer);
   run_ticks(100);
-  EXPECT_EQ(device.last.force_N.z, before_N) << "not while it touches";
+  EXPECT_EQ(device.last.force_N.z, before_N) << "not in contact";
   EXPECT_EQ(newest().input.variant, 0u);
   EXPECT_TRUE(loop.contacts().is_pending());
 
@@ -53,7 +53,7 @@ TEST_F(OfferedContactLoop, IsTakenAfterTheToolHasLeftAndThenGivesAnotherForce) {
 }
 
 // A tool that enters in the very tick of the change presses as if it had been there before.
-TEST_F(OfferedContactLoop, InTheTickThatTouchesLosesNoContact) {
+TEST_F(OfferedContactLoop, InTheTickOfFirstContactLosesNoContact) {
   device.height_m = 0.00405;  // the sphere is 0.05 mm above the plate
   requests.arm_at_start.store(true);
   run_ticks(600);

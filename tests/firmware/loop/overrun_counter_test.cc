@@ -27,7 +27,7 @@ TEST(OverrunCounter, WithHardRealTimeTwentyPeriodsSkippedAtOnceStopToo) {
   EXPECT_FALSE(OverrunCounter(true, 1e-3).step(19));
 }
 
-// SIGSTOP and SIGCONT, or a debugger: where the hand is now, nobody knows.
+// SIGSTOP and SIGCONT, or a debugger: the position of the hand is unknown.
 TEST(OverrunCounter, APauseOfAThirdOfASecondStopsOnAnyKernel) {
   EXPECT_FALSE(OverrunCounter(false, 1e-3).step(299));
   EXPECT_TRUE(OverrunCounter(false, 1e-3).step(300)) << "0.3 s, at any rate";

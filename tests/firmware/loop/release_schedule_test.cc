@@ -10,7 +10,7 @@ constexpr std::int64_t kPeriods_ns[] = {250'000, 500'000, 1'000'000, 2'000'000, 
 constexpr std::int64_t kStarts_ns[] = {0,         1,          299'999,           300'000,
                                        1'000'000, 12'345'678, 86'400'000'000'001};
 
-TEST(Grid, IsTheSameWheneverTheLoopStarts) {
+TEST(ReleaseSchedule, IsTheSameWheneverTheLoopStarts) {
   for (const std::int64_t period_ns : kPeriods_ns)
     for (const std::int64_t start_ns : kStarts_ns) {
       const std::int64_t first_ns = next_deadline_ns(start_ns, period_ns);
@@ -23,7 +23,7 @@ TEST(Grid, IsTheSameWheneverTheLoopStarts) {
 }
 
 // A tick of a kernel with HZ = 100, 250 or 1000 comes at whole milliseconds, if at all.
-TEST(Grid, WakesFarFromTheKernelsTick) {
+TEST(ReleaseSchedule, WakesFarFromTheKernelsTick) {
   for (const std::int64_t period_ns : kPeriods_ns)
     for (std::int64_t due_ns = next_deadline_ns(0, period_ns); due_ns < 20'000'000;
          due_ns += period_ns) {
@@ -33,7 +33,7 @@ TEST(Grid, WakesFarFromTheKernelsTick) {
     }
 }
 
-TEST(Grid, OtherThreadsWakeHalfAPeriodAwayFromEveryDeadline) {
+TEST(ReleaseSchedule, OtherThreadsWakeHalfAPeriodAwayFromEveryDeadline) {
   for (const std::int64_t period_ns : kPeriods_ns)
     for (const std::int64_t start_ns : kStarts_ns) {
       const std::int64_t wake_ns = next_half_way_ns(start_ns, period_ns);
@@ -43,7 +43,7 @@ TEST(Grid, OtherThreadsWakeHalfAPeriodAwayFromEveryDeadline) {
     }
 }
 
-TEST(Grid, ADeadlineIsMissedFromItsOwnInstantOn) {
+TEST(ReleaseSchedule, ADeadlineIsMissedFromItsOwnInstantOn) {
   EXPECT_EQ(periods_missed(5'000, 4'999, 1'000), 0);
   EXPECT_EQ(periods_missed(5'000, 5'000, 1'000), 1);
   EXPECT_EQ(periods_missed(5'000, 5'999, 1'000), 1);

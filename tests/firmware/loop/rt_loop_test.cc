@@ -16,7 +16,7 @@ namespace tact::firmware::loop::rt_loop_test {
 
 using RtLoopTest = PuppetLoop;
 
-TEST_F(RtLoopTest, FeelsThePlateThroughTheGate) {
+TEST_F(RtLoopTest, RendersThePlateThroughTheGate) {
   press();
   EXPECT_NEAR(device.last.force_N.z, tissue->law().curve()->respond(0.003).force_N, 0.01);
   EXPECT_EQ(newest().output.state, State::kArmed);
@@ -46,7 +46,7 @@ TEST_F(RtLoopTest, ADeviceThatWakesSlowlyIsNotLost) {
   EXPECT_EQ(newest().output.state, State::kArmed);
 }
 
-TEST_F(RtLoopTest, LetsGoWhateverEndsTheLoop) {
+TEST_F(RtLoopTest, LetsGoAtEveryKindOfEnd) {
   press();
   EXPECT_GT(device.last.force_N.z, 0.05);
   EXPECT_TRUE(loop.progress().running());
@@ -145,7 +145,7 @@ TEST_F(RtLoopTest, ASampleThatIsNotANumberStopsInTheSameTick) {
 TEST_F(RtLoopTest, AFullRingDropsRecordsAndChangesNothingElse) {
   press();
   const model::Wrench before = device.last;
-  run_ticks(10000);  // nobody empties the ring
+  run_ticks(10000);  // the ring is not emptied
   EXPECT_GT(ring->dropped(), 0u);
   EXPECT_NEAR(device.last.force_N.z, before.force_N.z, 1e-9);
   EXPECT_EQ(loop.statistics().late_ticks, 0u);
@@ -262,7 +262,7 @@ TEST(MarkedTime, IsTheClocksBetweenItsReadings) {
   time.set(2'000'000, 53'000'000);  // three marks a nanosecond
   EXPECT_EQ(time.at_ns(53'000'000), 2'000'000);
   EXPECT_EQ(time.at_ns(53'003'000), 2'001'000);
-  time.set(2'000'000, 53'006'000);  // a clock that stands, and one that runs back
+  time.set(2'000'000, 53'006'000);  // a clock that stops, and one that runs back
   time.set(1'500'000, 56'000'000);
   EXPECT_EQ(time.at_ns(56'003'000), 1'501'000) << "the rate of before";
   time.set(2'500'000, 1'000);  // a counter that began again

@@ -100,7 +100,7 @@ TEST(Supervisor, OnlyAResetEdgeWithAllInputsGoodLeavesStopped) {
   EXPECT_EQ(s.step({.arm = true, .reset = true},
                    {.sample_good = true, .ready = true, .fault = Fault::kNone}),
             State::kStopped)
-      << "an arm request that stands is no good input";
+      << "an arm request that lasts is no good input";
   s.step(kIdle, {.sample_good = true, .ready = true, .fault = Fault::kNone});
   EXPECT_EQ(s.step(kReset, {.sample_good = true, .ready = true, .fault = Fault::kNone}),
             State::kReady);
@@ -124,7 +124,7 @@ TEST(Supervisor, ARequestThatCouldNotArmIsSpent) {
     EXPECT_EQ(s.step(kArm, {.sample_good = true}), State::kReady);
     s.step(kIdle, {.sample_good = true});
     EXPECT_EQ(s.step(kArm, found), State::kReady) << "no power, or no sample";
-    EXPECT_EQ(s.step(kArm, {.sample_good = true}), State::kReady) << "the request still stands";
+    EXPECT_EQ(s.step(kArm, {.sample_good = true}), State::kReady) << "the request still lasts";
     s.step(kIdle, {.sample_good = true});
     EXPECT_EQ(s.step(kArm, {.sample_good = true}), State::kArmed);
   }
@@ -218,7 +218,7 @@ TEST(Supervisor, DoesWhatItsRulesSayInEveryStateForEveryInput) {
       const bool faulty = bit(8);
       const Commands before{.arm = bit(7), .reset = bit(6), .disarm = bit(10)};
       if (faulty && from != State::kStopped) continue;  // a kept fault is a stop
-      // A request to disarm leaves Armed in its own tick, and nothing arms while it stands.
+      // A request to disarm leaves Armed in its own tick, and nothing arms while it lasts.
       if (before.disarm && from == State::kArmed) continue;
       Supervisor s = supervisor_in(from, faulty, before);
       ASSERT_EQ(s.state(), from);

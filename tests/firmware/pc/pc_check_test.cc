@@ -61,7 +61,7 @@ class PcCheck : public testing::Test {
     put("/proc/irq/24/smp_affinity_list", "0-3\n");
     put("/proc/irq/24/effective_affinity_list", "0\n");  // where it really goes
     fs::create_directories(root + "/proc/irq/24/xhci_hcd");
-    put("/proc/irq/25/smp_affinity_list", "0-3\n");  // nobody waits for it
+    put("/proc/irq/25/smp_affinity_list", "0-3\n");  // no thread waits for it
     put("/proc/90/task/90/comm", "irq/24-xhci_hcd\n");
     put("/proc/90/task/90/stat", stat_of("90", 84));
     put("/proc/100/task/101/comm", "tact-loop\n");
@@ -107,7 +107,7 @@ TEST_F(PcCheck, ASoundPcHasNoRedRowAndOnlyTheDevicesAreUnknown) {
   EXPECT_EQ(name_red_rows(check()), "");
 }
 
-TEST_F(PcCheck, APcThatTellsNothingIsRedOnlyWhereTactdWouldBeRefused) {
+TEST_F(PcCheck, APcThatReportsNothingIsRedOnlyWhereTactdWouldBeRefused) {
   fs::remove_all(root + "/proc");
   fs::remove_all(root + "/sys");
   fs::remove_all(root + "/dev");
@@ -121,7 +121,7 @@ TEST_F(PcCheck, APcThatTellsNothingIsRedOnlyWhereTactdWouldBeRefused) {
 TEST_F(PcCheck, AStockKernelIsRed) {
   put("/proc/sys/kernel/version", "#1 SMP PREEMPT_DYNAMIC Debian\n");
   expect_red("kernel", "not PREEMPT_RT", "linux-image-rt-amd64");
-  put("/sys/kernel/realtime", "1\n");  // older real-time kernels tell it here alone
+  put("/sys/kernel/realtime", "1\n");  // older real-time kernels report it here alone
   EXPECT_EQ(row("kernel").verdict, Verdict::kGreen);
 }
 
@@ -253,7 +253,7 @@ TEST_F(PcCheck, JsonHasEveryRow) {
   EXPECT_EQ(json[0]["remedy"], "");
 }
 
-TEST(ShortForm, IsToldByTactdWhenItStartsInRealTime) {
+TEST(ShortForm, IsPrintedByTactdWhenItStartsInRealTime) {
   const auto red = name_red_rows(check_pc({.files = PcFiles{}, .core = choose_core(RtSettings{})}));
   const auto reports = [](const std::string& how) {
     const std::string said =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The whole controller with the simulated Delta and its hand: 60 simulated seconds of the liver
-// (touches, presses, holds, slides, pulls, tears, releases), a few of every other scene.
+// (approaches, presses, holds, slides, pulls, tears, releases), a few of every other scene.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ struct Summary {
   double max_force_N = 0.0, max_pull_N = 0.0, max_depth_m = 0.0, max_step_N = 0.0;
   double max_free_force_N = 0.0, max_torque_Nm = 0.0;
   std::map<model::Fault, int> limits;
-  double max_given_J = 0.0;
+  double max_given_energy_J = 0.0;
   model::Fault fault = model::Fault::kNone;
   std::uint64_t heap_calls = 0;
 };
@@ -54,7 +54,7 @@ void add(Summary& s, const loop::TickRecord& r, const loop::TickRecord& before) 
   for (const auto& sphere_contact : r.contacts.all())
     s.max_depth_m = std::max(s.max_depth_m, sphere_contact.depth_m);
   ++s.limits[r.output.limit];
-  s.max_given_J = std::max(s.max_given_J, r.output.given_energy_J);
+  s.max_given_energy_J = std::max(s.max_given_energy_J, r.output.given_energy_J);
   if (r.output.fault != model::Fault::kNone) s.fault = r.output.fault;
 }
 
@@ -105,7 +105,7 @@ TEST(ClosedLoop, SixtySecondsOfLiverStayWithinBoundsOnBothSides) {
   EXPECT_EQ(s.heap_calls, 0u);
 }
 
-TEST(ClosedLoop, ForcepsHeldFarFromTheirJawsAreFeltAsATorque) {
+TEST(ClosedLoop, ForcepsHeldFarFromTheirJawsRenderATorque) {
   const model::scene::Scene scene = tests::shipped_scene("liver_twist");
   const Summary s = run(scene, 10.0);
   EXPECT_EQ(s.fault, model::Fault::kNone);
@@ -127,7 +127,7 @@ TEST_P(EveryScene, IsTouchedWithinItsLimitsAndLeavesTheHeapAlone) {
                                    model::Fault::kContinuousLimited, model::Fault::kPowerLimited})
     EXPECT_EQ(s.limits.count(limit), 0u)
         << describe(limit).name << ": for trouble, not for a scene";
-  EXPECT_LT(s.max_given_J, 0.1 * scene.limits.energy_J) << "tissue takes energy";
+  EXPECT_LT(s.max_given_energy_J, 0.1 * scene.limits.energy_J) << "tissue takes energy";
   EXPECT_GT(s.max_depth_m, 0.0005);
   EXPECT_LT(s.max_depth_m, 0.020);
   EXPECT_EQ(s.max_free_force_N, 0.0) << "no contact, no force";

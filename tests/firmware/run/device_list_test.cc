@@ -28,7 +28,7 @@ bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-TEST(DeviceList, TellsWhatIsReadyWhatLacksAndWhatIsNotThere) {
+TEST(DeviceList, ReportsWhatIsReadyWhatLacksAndWhatIsNotThere) {
   EXPECT_EQ(
       devices_as_text(kParts, hal::registry::usb_parts()),
       "can0: CAN interface, down\n"
@@ -45,7 +45,7 @@ TEST(DeviceList, TellsWhatIsReadyWhatLacksAndWhatIsNotThere) {
       "  ready: device.kind = \"sim-delta\"\n");
 }
 
-TEST(DeviceList, TheJsonTellsTheSame) {
+TEST(DeviceList, TheJsonReportsTheSame) {
   const auto json = nlohmann::json::parse(devices_as_json(kParts));
   ASSERT_EQ(json["devices"].size(), 2u);
   EXPECT_EQ(json["devices"][0]["kind"], "can");

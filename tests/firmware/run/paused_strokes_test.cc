@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The whole controller with the simulated Delta, whose hand moves on while the loop stands: the
+// The whole controller with the simulated Delta, whose hand moves on while the loop is stopped: the
 // strokes of the liver are felt as without a pause.
 #include <gtest/gtest.h>
 

@@ -117,7 +117,7 @@ TEST_F(ReplayTest, AnotherSampleGivesAnotherForceAndIsNamed) {
   EXPECT_LE(outcome->first_different, 1801u) << "the gate hides one tick at most";
 }
 
-TEST_F(ReplayTest, EveryDamageIsToldWithHowMuchIsGood) {
+TEST_F(ReplayTest, EveryDamageIsReportedWithHowMuchIsGood) {
   std::remove(path.c_str());
   record(200);
   tests::expect_all_damage_is_reported(path, [&](const std::string& damaged) {
@@ -163,9 +163,9 @@ TEST_F(ReplayTest, TheTableHasEveryTickAndSaysWhichRunItWas) {
   std::remove(csv.c_str());
   EXPECT_EQ(comments, 13);
   EXPECT_EQ(rows, 3000);
-  for (const char* name :
-       {"tick,non_rt,due_ns,", ",tool_position_x_m,", ",wanted_force_x_N,", ",force_x_N,",
-        ",limit,limit_name,", ",rms_force_N,contact_losses,", ",phase_limit_ns,", ",utc_offset_ns,", ",event_word,"})
+  for (const char* name : {"tick,non_rt,due_ns,", ",tool_position_x_m,", ",wanted_force_x_N,",
+                           ",force_x_N,", ",limit,limit_name,", ",rms_force_N,contact_losses,",
+                           ",phase_limit_ns,", ",utc_offset_ns,", ",event_word,"})
     EXPECT_NE(names.find(name), std::string::npos) << name;
   EXPECT_EQ(std::count(names.begin(), names.end(), ','), std::count(row.begin(), row.end(), ','));
   EXPECT_EQ(row.find("1800,"), 0u) << row;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A run's report is written whatever its device is called.
+// A run's report is written for any name of its device.
 #include "firmware/run/report.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 
 namespace tact::firmware::run::report_test {
 
-TEST(Report, IsJsonWhateverBytesADeviceHasForItsName) {
+TEST(Report, IsJsonForAnyBytesInADevicesName) {
   model::Limits limits;
   limits.force_N = 1.0;
   limits.slew_N_per_s = 500.0;
@@ -22,7 +22,7 @@ TEST(Report, IsJsonWhateverBytesADeviceHasForItsName) {
   EXPECT_EQ(report.at("device"), "Touch \uFFFD\uFFFD");
 }
 
-TEST(Report, TellsTheLargestTorqueWhereThereWasOne) {
+TEST(Report, ReportsTheLargestTorqueWhereThereWasOne) {
   const gate::Gate gate(model::Limits{.force_N = 1.0, .slew_N_per_s = 500.0, .ramp_s = 0.5}, 1e-3,
                         1.0);
   loop::LoopStatistics loop;
@@ -33,7 +33,7 @@ TEST(Report, TellsTheLargestTorqueWhereThereWasOne) {
   EXPECT_NE(make_summary(RunFacts{}, loop).find(", torque max 27.9 mN m"), std::string::npos);
 }
 
-TEST(Report, TellsLossesOfContactTicksInsideTheOrganAndClutches) {
+TEST(Report, ReportsLossesOfContactTicksInsideTheOrganAndClutches) {
   const gate::Gate gate(model::Limits{.force_N = 1.0, .slew_N_per_s = 500.0, .ramp_s = 0.5}, 1e-3,
                         1.0);
   loop::LoopStatistics loop;

@@ -98,12 +98,12 @@ class LedHd : public LedDevice {
 
 constexpr int kPhantom = 0;
 
-/// Each stands in another way.
+/// Each is mounted in another way.
 struct RealDevice {
   const char* name;
   int type;  // of Force Dimension
   bool has_torque;
-  const tests::MountingCase& stands;
+  const tests::MountingCase& mounted;
 
   friend void PrintTo(const RealDevice& one, std::ostream* out) { *out << one.name; }
 };
@@ -115,7 +115,7 @@ const RealDevice kDevices[] = {{"omega7", 35, false, tests::kMountings[0]},
                                {"phantom", kPhantom, false, tests::kMountings[4]},
                                {"delta6_upside_down", 64, true, tests::kMountings[5]}};
 
-/// What the hand felt, from the first tick to the last.
+/// The force on the hand, from the first tick to the last.
 struct Rendered {
   double press_N = 0.0, pull_N = 0.0, twist_rad = 0.0, torque_Nm = 0.0;
   bool held = false, torn = false;
@@ -130,7 +130,7 @@ class TwistOnRealDevices : public testing::TestWithParam<RealDevice> {
       led_ = std::make_unique<LedHd>();
     else
       led_ = std::make_unique<LedDhd>(GetParam().type);
-    const Vec3& turned_deg = GetParam().stands.orientation_deg;
+    const Vec3& turned_deg = GetParam().mounted.orientation_deg;
     // The liver 93 mm lower: the handle, not the jaws, is in the middle of a small workspace.
     std::vector<std::string> keys = led_->keys();
     keys.insert(keys.end(), {fmt::format("device.base_orientation_deg=[{}, {}, {}]", turned_deg.x,
@@ -230,7 +230,7 @@ class TwistOnRealDevices : public testing::TestWithParam<RealDevice> {
   std::deque<model::Wrench> written_;
 };
 
-TEST_P(TwistOnRealDevices, PressGripTwistPullAndTearAreFelt) {
+TEST_P(TwistOnRealDevices, PressGripTwistPullAndTearAreRendered) {
   const Rendered rendered = render_force();
   EXPECT_EQ(rendered.fault, model::Fault::kNone) << model::describe(rendered.fault).name;
   EXPECT_GT(rendered.press_N, 0.1);

@@ -30,7 +30,7 @@ class LeaningLaw final : public model::contact::ContactLaw {
   }
 };
 
-TEST(FrameBuilder, CarriesHowTheDentOfATouchedSiteLeans) {
+TEST(FrameBuilder, CarriesTheTiltOfTheIndentation) {
   const LeaningLaw law;
   const auto shapes = std::make_unique<loop::ShapeSlot>();
   FrameBuilder builder(law, *shapes, false);
@@ -47,7 +47,7 @@ TEST(FrameBuilder, CarriesHowTheDentOfATouchedSiteLeans) {
   for (const float of_a_free_one : frame.contact[1].tilt) EXPECT_EQ(of_a_free_one, 0.0F);
 }
 
-TEST(FrameBuilder, CarriesLossesOfContactAndASphereInsideWithoutADent) {
+TEST(FrameBuilder, CarriesLossesOfContactAndASphereInsideWithoutIndentation) {
   const LeaningLaw law;
   const auto shapes = std::make_unique<loop::ShapeSlot>();
   FrameBuilder builder(law, *shapes, false);

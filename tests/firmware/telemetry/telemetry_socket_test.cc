@@ -51,7 +51,7 @@ int connect_to(const std::string& path) {
   return -1;
 }
 
-TEST_F(OwnFolder, ServesThirtyTwoClientsAndTellsTheNext) {
+TEST_F(OwnFolder, ServesThirtyTwoClientsAndRefusesTheNext) {
   auto socket_of_tactd = TelemetrySocket::open(path_, dup(0));
   ASSERT_TRUE(socket_of_tactd);
   std::vector<int> clients(TelemetrySocket::kMaxClients + 1);
@@ -111,7 +111,7 @@ bool is_heard_by(uid_t user, TelemetrySocket& socket_of_tactd, const std::string
 
 TEST_F(OwnFolder, AnotherUserHearsNothingEvenIfTheFileLetsHimIn) {
   if (geteuid() != 0) GTEST_SKIP() << "only root becomes another user";
-  const int meshes = dup(0);  // any file: nobody looks into it
+  const int meshes = dup(0);  // any file: it is not read
   auto socket_of_tactd = TelemetrySocket::open(path_, meshes);
   ASSERT_TRUE(socket_of_tactd);
   ASSERT_EQ(chmod(folder_.c_str(), 0755), 0);

@@ -136,7 +136,7 @@ TEST(Telemetry, GreetsAViewerWithTheMeshesAndFramesFollow) {
   ASSERT_EQ(fstat(memory_file, &info), 0);
   const auto size = static_cast<std::size_t>(info.st_size);
   EXPECT_EQ(mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, memory_file, 0), MAP_FAILED)
-      << "sealed: nobody can change what others see";
+      << "sealed: no client can change what others see";
   std::string bytes(size, '\0');
   ASSERT_EQ(pread(memory_file, bytes.data(), size, 0), info.st_size);
   close(memory_file);
@@ -257,7 +257,7 @@ TEST(Telemetry, TheSocketOfADeadControllerIsReplaced) {
   address.sun_family = AF_UNIX;
   path.copy(address.sun_path, sizeof address.sun_path - 1);
   ASSERT_EQ(bind(dead, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
-  close(dead);  // the file stays, nobody listens
+  close(dead);  // the file stays, no process listens
   EXPECT_TRUE(TelemetrySocket::open(path, -1));
 }
 

@@ -27,7 +27,7 @@ class FilteredLoop : public MonitoredLoop {
   void start_filtered() {
     start([this] { entered = filter->enter_thread(); }, [this] { filter->leave_loop(); });
   }
-  // What the tick of that sample told; they are taken out of the ring in one go.
+  // What the tick of that sample recorded; they are taken out of the ring in one go.
   model::Fault fault_of(std::uint64_t sequence) {
     loop::TickRecord record;
     while (ring->pop(record)) reported[record.input.sample.sequence] = record.output.fault;
@@ -65,7 +65,7 @@ TEST_F(FilteredLoop, AForbiddenCallFailsAndStopsTheForceInTheSameTick) {
   EXPECT_GT(ask_parent(), 0) << "other threads call what they like";
 }
 
-TEST_F(FilteredLoop, ASignalThatSomebodySendsIsNoCall) {
+TEST_F(FilteredLoop, ASignalFromAnotherProcessIsNoCall) {
   make({});
   if (filter == nullptr) return;
   start_filtered();
@@ -102,7 +102,7 @@ TEST_F(FilteredLoop, ALockThatHadToBeWaitedForIsNoticed) {
   EXPECT_NE(refused_call().find("futex"), std::string::npos) << refused_call();
 }
 
-TEST_F(FilteredLoop, ACallWithoutANameIsToldByItsNumber) {
+TEST_F(FilteredLoop, ACallWithoutANameIsReportedByItsNumber) {
   make({});
   if (filter == nullptr) return;
   constexpr long kNobodys = 5000;

@@ -129,7 +129,7 @@ TEST_F(MonitoredLoop, AGuardianThatIsHeldIsLost) {
   EXPECT_EQ(requests.fault.load(), model::Fault::kGuardianLost);
   EXPECT_GT(lines.drops.load(), 0);
   beside.stop();
-  EXPECT_EQ(own.load(), 0u) << "nobody is watched when the loop has ended";
+  EXPECT_EQ(own.load(), 0u) << "no thread is watched when the loop has ended";
 }
 
 TEST(SuspendDetector, SeesEachSuspensionOnce) {
@@ -170,7 +170,7 @@ TEST_F(MonitoredLoop, ABusyCallThatNeverReturnsLosesTheEnableLine) {
   device.busy.store(true);
   ASSERT_TRUE(soon([this] { return lines.drops.load() > 0; }));
   EXPECT_EQ(requests.fault.load(), model::Fault::kLoopRanAway) << "50 ms come before 250";
-  EXPECT_TRUE(requests.stop.load()) << "it is told to leave";
+  EXPECT_TRUE(requests.stop.load()) << "it is asked to leave";
   device.busy.store(false);
   finish();
   EXPECT_EQ(device.last, model::Wrench{});
@@ -193,7 +193,7 @@ TEST(Runaway, AThreadThatSleepsNowAndThenIsNone) {
   EXPECT_FALSE(requests.stop.load());
 }
 
-TEST(WatchTold, WhatTheWatchFoundIsShownAlthoughTheLoopGivesNoTicks) {
+TEST(WatchReport, AFaultOfTheWatchIsShownAlthoughTheLoopGivesNoTicks) {
   const model::scene::Scene scene = tests::make_plate_scene();
   const auto tissue = std::move(*model::scene::make_tissue(scene));
   const auto ring = std::make_unique<loop::TickRing>();

@@ -48,7 +48,7 @@ TEST(RttimeLimit, IsLiftedWhereTheSessionMayRaiseIt) {
   EXPECT_EXIT(lifted(), testing::ExitedWithCode(0), "");
 }
 
-TEST(RttimeLimit, IsToldWithItsNumberAndRaisedAsFarAsItGoesWhereItStays) {
+TEST(RttimeLimit, IsReportedWithItsNumberAndRaisedAsFarAsItGoesWhereItStays) {
   const auto reported = [] {
     limit_to(kShort_us / 2, kShort_us);
     drop_the_right_to_raise_limits();

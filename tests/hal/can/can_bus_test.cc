@@ -48,7 +48,7 @@ TEST(CanBus, OneCallSendsTheWholeBatchInOrder) {
   EXPECT_EQ(b.bus->counts().missed_cycles, 0u);
 }
 
-TEST(CanBus, MoreThanOneReadTakesIsLeftForTheNextAndTold) {
+TEST(CanBus, MoreThanOneReadTakesIsLeftForTheNextAndReported) {
   Bus b;
   for (int i = 0; i < 70; ++i) b.wire.say(frame(1));
   std::size_t heard = b.bus->receive().size();
@@ -73,7 +73,7 @@ TEST(CanBus, AFrameThatCannotBeIsAMissedCycleAndTheRestGoes) {
 }
 
 TEST(CanBus, AFullQueueOfTheKernelIsAMissedCycle) {
-  Bus b;  // a real one: nobody reads the other end
+  Bus b;  // a real one: the other end is not read
   std::uint64_t sent = 0;
   while (b.bus->counts().missed_cycles == 0 && sent < 100'000) {
     for (std::uint32_t id = 1; id <= 16; ++id) b.bus->push(frame(id));

@@ -163,7 +163,7 @@ TEST(CanDelta, AnglesThatCannotBeLoseTheHomingAndTouchNothing) {
   }
   EXPECT_EQ(tool.position_m, (Vec3{1.0, 2.0, 3.0}));
   EXPECT_EQ(delta.motor_torques_Nm({1.0, 0.0, 0.0}), delta::Joints{});
-  // Two degrees beyond a stop are the stop's own give.
+  // Two degrees beyond a stop are the stop's own compliance.
   EXPECT_FALSE(delta.check_home(turns_for({1.68, 1.68, 1.68}, settings)));
 }
 
@@ -199,7 +199,7 @@ TEST(CanDelta, VelocityAfterAGapIsThatOfTheGap) {
   EXPECT_LE(norm(tool.velocity_mps), 1.5 * mean_mps);
 }
 
-TEST(CanDelta, TellsWhatTheDeviceIsAtTheTool) {
+TEST(CanDelta, ReportsWhatTheDeviceIsAtTheTool) {
   const auto settings = absolute_settings();
   const auto info = CanDelta(settings.of<DeltaSettings>(), settings.of<CanSettings>())
                         .info("x", 100'000.0, 1.5e-3);

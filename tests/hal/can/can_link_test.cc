@@ -73,7 +73,7 @@ std::string refusal(const CanLink& link, int bits = 690, double rate_Hz = 1000.0
   return why ? why->error(": ").message : "";
 }
 
-TEST(CanLink, ReadsWhatTheKernelTellsOfAController) {
+TEST(CanLink, ReadsWhatTheKernelReportsOfAController) {
   const auto link = decode_can_link(can_message(1'000'000, 2, 100));
   ASSERT_TRUE(link);
   EXPECT_EQ(link->index, 7);
@@ -109,7 +109,7 @@ TEST(CanLink, DamagedMessagesAreNoLinkAndNeverReadBeyondTheirEnd) {
   EXPECT_TRUE(decode_can_link(zero_length));
 }
 
-TEST(CanLink, EveryUnfitInterfaceHasItsSentence) {
+TEST(CanLink, EveryUnfitInterfaceHasItsMessage) {
   CanLink good{.index = 7,
                .is_can = true,
                .up = true,
@@ -196,7 +196,7 @@ TEST(CanLink, ALinkForCanFdIsHeldToMoreThanOneForClassicFrames) {
   EXPECT_EQ(refusal_fd(link), "");
 }
 
-TEST(CanLink, ItsRateIsWhatItTellsAndAVirtualOneCountsAsWellSetUp) {
+TEST(CanLink, ItsRateIsTheReportedOneAndAVirtualOneCountsAsWellSetUp) {
   const CanFdBits bits{.slow = 300, .fast = 1000};
   CanLink link;
   EXPECT_DOUBLE_EQ(bus_time_s(230, link.rate()), 230e-6);

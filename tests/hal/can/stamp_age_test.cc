@@ -18,7 +18,7 @@ struct Clocks {
   void look(bool empties) { stamps.look(wall_ns, monotonic_ns, empties); }
 };
 
-TEST(StampAge, IsTheTimeSinceTheStampWhileNobodySetsTheClock) {
+TEST(StampAge, IsTheTimeSinceTheStampWhileTheClockIsNotSet) {
   Clocks clocks;
   const std::int64_t stamp_ns = clocks.wall_ns + kMs / 4;
   clocks.pass(kMs);

@@ -74,7 +74,7 @@ TEST(CanopenFrames, EveryReplyComesFromItsNodeItsMessageAndInFull) {
   check("emergency", decode_canopen_emergency, 0x080, {0x10, 0x23, 1, 0, 0, 0, 0, 0});
   check("sdo", decode_canopen_sdo, 0x580, {0x60, 0x60, 0x60, 0, 0, 0, 0, 0});
   EXPECT_FALSE(decode_canopen_emergency(can::make_can_frame(0x080, 8), 0))
-      << "SYNC is nobody's error";
+      << "SYNC is no node's error";
 }
 
 TEST(CanopenFrames, ASettingThatDoesNotFitItsSizeIsNotWritten) {

@@ -8,7 +8,7 @@
 
 namespace tact::hal::cia402::canopen_words_test {
 
-TEST(CanopenText, EveryCodeHasASentence) {
+TEST(CanopenText, EveryCodeHasAMessage) {
   for (std::uint32_t code = 0; code <= 0xFFFF; ++code)
     ASSERT_GT(std::string(emergency_message(static_cast<std::uint16_t>(code))).size(), 20u);
   for (const std::uint32_t code : {0u, 1u, 0x06040041u, 0x06090011u, 0x08000022u, 0x05040000u,

@@ -31,7 +31,7 @@ struct Cia402Bench : CanBench<PlayedCia402s> {
       EXPECT_NE(axis.status, 0x27);
     }
   }
-  /// Whatever comes now: the same fault, no torque, no reset.
+  /// From now on: the same fault, no torque, no reset.
   void expect_latched(model::Fault fault) {
     drives.bus.socket().send_error = drives.bus.socket().receive_error = 0;
     for (auto& axis : drives.axis) {

@@ -49,10 +49,10 @@ TEST(Cia402BringUp, WritesEverySettingToEveryDriveAndStartsThem) {
   EXPECT_EQ(bench.drives.host_heartbeats, 0) << "the loop's, not ours";
 }
 
-TEST(Cia402BringUp, EveryRefusedSettingIsToldWithItsReason) {
+TEST(Cia402BringUp, EveryRefusedSettingIsReportedWithItsReason) {
   const auto writes = cst_configuration(1, {});
   for (const SdoWrite& one : *writes) {
-    if (one.index == 0x6007 || one.index == 0x60C2) continue;  // told, not refused
+    if (one.index == 0x6007 || one.index == 0x60C2) continue;  // reported, not refused
     Bench bench;
     bench.drives.axis[0].refused = static_cast<std::uint32_t>(one.index) << 8 | one.sub;
     bench.drives.axis[0].abort_code = 0x06040041;
@@ -138,18 +138,18 @@ TEST(Cia402BringUp, NamesTheArmThatIsMissing) {
   bench.expect_refused("arm 3 (node 3 on can0) does not answer");
 }
 
-TEST(Cia402BringUp, NobodyThereIsToldFromWrongBitRateAndFromNoAcknowledge) {
+TEST(Cia402BringUp, NoDriveIsDistinguishedFromWrongBitRateAndNoAcknowledge) {
   Bench silent, unpowered, wrong;
   for (Bench* bench : {&silent, &unpowered, &wrong})
     for (auto& axis : bench->drives.axis) axis.powered = false;
   silent.expect_refused("no drive is heard on can0");
   unpowered.drives.bus.say_error(0x004, 0x20);
-  unpowered.expect_refused("nobody on can0 acknowledges a frame");
+  unpowered.expect_refused("no node on can0 acknowledges a frame");
   wrong.drives.bus.say_error(0x040, 0);
   wrong.expect_refused("bit rate");
 }
 
-TEST(Cia402BringUp, AnOldFaultIsResetOnceAndOneThatStaysIsToldInWords) {
+TEST(Cia402BringUp, AnOldFaultIsResetOnceAndOneThatStaysIsReportedInWords) {
   Bench killed, broken;
   for (auto& axis : killed.drives.axis) axis.status = 0x08;
   EXPECT_EQ(killed.open(), "");
@@ -176,7 +176,7 @@ TEST(Cia402BringUp, ADriveThatDoesNotStartIsNamed) {
   bench.expect_refused("arm 1 (node 1 on can0) does not say that it is operational");
 }
 
-TEST(Cia402BringUp, ADriveThatStaysOutOfOperationIsResetOnceAndThenTellsItsError) {
+TEST(Cia402BringUp, ADriveOutOfOperationIsResetOnceAndThenReportsItsError) {
   Bench noted, silent;
   for (Bench* bench : {&noted, &silent}) bench->drives.axis[1].starts = false;
   noted.drives.axis[1].written[0x100301] = 0x1234'8130;
@@ -197,7 +197,7 @@ TEST(Cia402BringUp, ATorqueScaleOfZeroIsRefused) {
   bench.expect_refused("has a rated torque of zero");
 }
 
-TEST(Cia402BringUp, ArmsAreHomedOrToldWhyNot) {
+TEST(Cia402BringUp, ArmsAreHomedOrTheReasonIsReported) {
   Bench moving, beyond;
   moving.drives.axis[1].turns_per_s = 1.0;
   moving.expect_refused("arm 2 (node 2 on can0) moves");

@@ -161,7 +161,7 @@ TEST(Cia402Delta, TheLastWriteOfTheLoopLeavesNoHeartbeatFault) {
   for (const auto& axis : killed.drives.axis) EXPECT_EQ(axis.error_code, 0x8130);
 }
 
-TEST(Cia402Delta, DrivesThatWereNeverPermittedMissNobodyEither) {
+TEST(Cia402Delta, DrivesThatWereNeverPermittedMonitorNoHeartbeat) {
   Bench bench;
   ASSERT_EQ(bench.open(), "");
   bench.permitted = false;
@@ -211,7 +211,7 @@ TEST(Cia402Delta, StopLetsGoForGoodAndLeavesNoFaultBehind) {
     EXPECT_EQ(axis.status, 0x40);
     EXPECT_EQ(axis.permille, 0);
     EXPECT_EQ(axis.nmt, NmtState::kPreOperational);
-    EXPECT_EQ(axis.written[0x101601], 127u << 16) << "nobody's heartbeat is waited for";
+    EXPECT_EQ(axis.written[0x101601], 127u << 16) << "no heartbeat is monitored";
   }
   bench.drives.forget();
   bench.device->stop();

@@ -132,7 +132,7 @@ TEST(Cia402Faults, ADriveWithoutPowerAtTheStartIsWaitedForAndNamed) {
   EXPECT_EQ(bench.device->trouble(), "");
 }
 
-TEST(Cia402Faults, ADriveThatKeepsNoWatchIsToldWhileAnEarlierOneWaits) {
+TEST(Cia402Faults, ADriveThatKeepsNoWatchIsReportedWhileAnEarlierOneWaits) {
   Bench bench;
   bench.run();
   bench.permitted = false;

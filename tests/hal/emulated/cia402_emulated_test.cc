@@ -97,7 +97,7 @@ TEST(Cia402Emulated, ALifeTimeThatAnotherHostLeftRunningStopsNoDriveUnderTactd) 
   }
 }
 
-TEST(Cia402Emulated, AKilledRunIsMissedInTimeWhateverLifeTimeAnotherHostHasSet) {
+TEST(Cia402Emulated, AKilledRunIsMissedInTimeForAnyStoredLifeTime) {
   Bench bench({.guard_time_ms = 1000, .life_time_factor = 200, .life_hides_host = true});
   bench.guard();
   ASSERT_TRUE(bench.run());
@@ -166,10 +166,10 @@ TEST(Cia402Emulated, AfterTheFaultOfOneDriveTheOthersNoteNone) {
   EXPECT_EQ(bench.allocations, 0u);
 }
 
-TEST(Cia402Emulated, ARatedTorqueThatNoDriveTellsStandsInTheScene) {
+TEST(Cia402Emulated, ARatedTorqueThatNoDriveReportsIsInTheScene) {
   Bench silent({.absent = {0x6076}}), reported({.absent = {0x6076}});
   const std::string message = silent.open();
-  EXPECT_NE(message.find("does not tell its rated torque (object 6076): set "
+  EXPECT_NE(message.find("does not report its rated torque (object 6076): set "
                          "device.can.rated_torque_Nm"),
             std::string::npos)
       << message;
@@ -188,7 +188,7 @@ TEST(Cia402Emulated, ARatedTorqueOfTheSceneOverridesTheDrives) {
     EXPECT_NEAR(bench.drives.drive[i]->torque_Nm(), 0.5 * wanted[i], 0.5e-3 * kRated_Nm);
 }
 
-TEST(Cia402Emulated, SettingsThatADriveDoesNotHaveAreToldOnce) {
+TEST(Cia402Emulated, SettingsThatADriveDoesNotHaveAreReportedOnce) {
   Bench all, none({.absent = {0x6007, 0x605A, 0x60C2}});
   ASSERT_EQ(all.open(), "");
   EXPECT_EQ(all.device->info().caution, "");

@@ -28,7 +28,7 @@ TEST(Cia402OtherHosts, AnErrorThatIsLeftFromAnEarlierHostNeedsNoPowerCycle) {
   }
 }
 
-TEST(Cia402OtherHosts, SyncIsWhatEachDriveExpectsWhateverAnotherHostHasStored) {
+TEST(Cia402OtherHosts, SyncIsWhatEachDriveExpectsAfterAnySettingsOfAnotherHost) {
   for (const int period_us : {0, 500, 10'000}) {
     for (const int counter : {0, 10}) {
       Bench bench({.sync_period_us = period_us, .sync_counter = counter});
@@ -40,7 +40,7 @@ TEST(Cia402OtherHosts, SyncIsWhatEachDriveExpectsWhateverAnotherHostHasStored) {
   }
 }
 
-TEST(Cia402OtherHosts, SyncHasItsIdentifierWhateverAnotherHostHasStored) {
+TEST(Cia402OtherHosts, SyncHasItsIdentifierAfterAnySettingsOfAnotherHost) {
   Bench bench({.sync_id = 0x90});
   ASSERT_TRUE(bench.run());
   bench.expect_torques_of({1.0, -2.0, 3.0});

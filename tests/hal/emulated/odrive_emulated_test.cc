@@ -34,7 +34,7 @@ struct Bench : tests::CanBench<Drives> {
                                        theta_rad[i] / (2.0 * std::numbers::pi);
     }
   }
-  /// How far the tool is told from where the arms are, m.
+  /// Distance of the reported tool from the pose of the arms, m.
   double error_m() const {
     const Vec3 p_D = published_pose().position_D_m;
     const Vec3 p_W{p_D.z - 0.345, -p_D.y, p_D.x};
@@ -89,7 +89,7 @@ TEST(OdriveEmulated, TheWayThroughClosedLoopIsOneAxisAfterTheOtherAtZeroTorque) 
   for (const auto& drive : bench.drives.drive) EXPECT_FALSE(drive->is_enabled());
 }
 
-TEST(OdriveEmulated, MotorsWithoutSupplyStillTellWhereTheyAre) {
+TEST(OdriveEmulated, MotorsWithoutSupplyStillReportWhereTheyAre) {
   // The enable line gives the motors their supply in the loop alone.
   for (const double turns : {0.7, 0.0}) {
     Bench bench({.generation = OdriveGeneration::k05, .motor_supply = false});
@@ -106,13 +106,13 @@ TEST(OdriveEmulated, APositionThatCannotBeProvedIsRefused) {
     Bench bench({.generation = OdriveGeneration::k05, .is_calibrated = false});
     for (auto& motor : bench.drives.motor) motor.position_turns = turns;
     const std::string message = bench.open();
-    EXPECT_NE(message.find("tells position 0 while its encoder counts"), std::string::npos)
+    EXPECT_NE(message.find("reports position 0 while its encoder counts"), std::string::npos)
         << message;
     EXPECT_NE(message.find("calibrate motor and encoder first"), std::string::npos) << message;
   }
 }
 
-TEST(OdriveEmulated, AnIndexSearchThatIsRefusedIsToldByTheDrivesOwnErrorAtOnce) {
+TEST(OdriveEmulated, ARefusedIndexSearchIsReportedAtOnceByTheDrivesOwnError) {
   Bench bench({.generation = OdriveGeneration::k05, .is_calibrated = false}, Homing::kIndex);
   const std::int64_t before_ns = bench.drives.now_ns;
   const std::string message = bench.open();
@@ -187,7 +187,7 @@ constexpr rig::OdriveSettings kAsDelivered{.generation = OdriveGeneration::k05,
                                            .torque_velocity_limit = true,
                                            .velocity_limit_turns_per_s = 2.0};
 
-TEST(OdriveEmulated, WhatTheVendorsVelocityLimitCutsIsToldWithTheDrivesOwnNumbers) {
+TEST(OdriveEmulated, TorqueCutByTheDrivesVelocityLimitIsReportedWithNumbers) {
   Bench bench(kAsDelivered);
   ASSERT_EQ(bench.open(), "");
   const std::string caution = bench.device->info().caution;

@@ -14,7 +14,7 @@ namespace tact::tests {
 
 using namespace hal;
 
-/// Never allocates: it stands inside the loop.
+/// Never allocates: it runs inside the loop.
 class ScriptedPipe final : public falcon::FalconPipe {
  public:
   bool submit(const falcon::FalconPacket& packet) RT_SAFE override {
@@ -66,7 +66,7 @@ inline falcon::FalconReport homed_at(const Vec3& p_W) {
   return report;
 }
 
-/// What the hand feels of these words: K^T tau, tau = -(word / gain).
+/// The force on the hand of these words: K^T tau, tau = -(word / gain).
 inline Vec3 force_of(const falcon::FalconWords& words, const hal::falcon::FalconSettings& s,
                      const Vec3& p_W) {
   const falcon::FalconKinematics kinematics;

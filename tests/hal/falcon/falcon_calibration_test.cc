@@ -56,7 +56,7 @@ TEST(FalconCalibration, FindsGainsDeadBandsAndTheMovingMass) {
   EXPECT_LT(fit->residual_words, 0.01);
 }
 
-TEST(FalconCalibration, StandsNoiseOfAFewWords) {
+TEST(FalconCalibration, BearsNoiseOfAFewWords) {
   const auto fit = fit_falcon(balances(kPoses_W, kMasses_kg, 8.0));
   ASSERT_TRUE(fit) << fit.error().message;
   EXPECT_NEAR(fit->gain_words_per_Nm[0], kGain[0], 0.05 * kGain[0]);
@@ -66,7 +66,7 @@ TEST(FalconCalibration, StandsNoiseOfAFewWords) {
   EXPECT_LT(fit->residual_words, 8.0);
 }
 
-TEST(FalconCalibration, OnePoseCannotTellDeadBandFromMovingMass) {
+TEST(FalconCalibration, OnePoseCannotSeparateDeadBandFromMovingMass) {
   const auto fit = fit_falcon(balances({kPoses_W[0]}, kMasses_kg));
   ASSERT_FALSE(fit);
   EXPECT_NE(fit.error().message.find("other poses"), std::string::npos);

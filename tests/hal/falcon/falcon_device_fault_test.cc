@@ -14,7 +14,7 @@ bool names(const FalconBench& bench, const char* what) {
   return bench.device.trouble().find(what) != std::string::npos;
 }
 
-/// The fault stays, without force, whatever comes back, and zeros go out in every tick.
+/// The fault stays, without force, for any further reply, and zeros go out in every tick.
 void expect_latched(FalconBench& bench, Fault fault) {
   bench.pipe->state = {};
   bench.pipe->gone_at_submit = bench.pipe->full = false;

@@ -49,7 +49,7 @@ TEST(FalconDevice, IsFreshWhenAllAxesAreHomedAndForgetsWhatWasBefore) {
   EXPECT_EQ(bench.pipe->command.lights, falcon::kFalconBlue);
 }
 
-TEST(FalconDevice, KeepsTheHomingRequestOnlyIfItIsTold) {
+TEST(FalconDevice, KeepsTheHomingRequestOnlyIfConfigured) {
   for (const bool keep : {true, false}) {
     hal::falcon::FalconSettings settings = falcon_settings();
     settings.keep_homing = keep;
@@ -240,7 +240,7 @@ TEST(FalconDevice, AForceThatIsNoNumberIsNoForce) {
   }
 }
 
-TEST(FalconDevice, TellsWhatItIsWorthAtTheTool) {
+TEST(FalconDevice, ReportsWhatItIsWorthAtTheTool) {
   const DeviceInfo info = FalconBench().device.info();
   EXPECT_EQ(info.workspace_radius_m, 0.04);
   EXPECT_EQ(info.max_torque_Nm, 0.0);

@@ -9,7 +9,7 @@ constexpr std::int64_t kMs = 1'000'000;
 
 TEST(FalconExchange, EachCommandIsAnsweredOnce) {
   FalconExchange exchange;
-  EXPECT_EQ(exchange.answered(1, 0), 0u);  // nobody asked
+  EXPECT_EQ(exchange.answered(1, 0), 0u);  // not requested
   exchange.sent(0);
   exchange.sent(1 * kMs);
   EXPECT_EQ(exchange.answered(1, 2 * kMs), 1u);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Falcon that hangs or stands holds its own weight along where down is.
+// A hanging or an upright Falcon compensates its own weight along gravity.
 #include <gtest/gtest.h>
 
 #include "hal/falcon/falcon_device.h"

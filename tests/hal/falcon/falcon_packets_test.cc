@@ -52,7 +52,7 @@ TEST(FalconPackets, EveryMotorWordOutOfTheRangeIsClamped) {
   EXPECT_EQ(clamped->motor, (FalconWords{4095, -4095, 4095}));
 }
 
-TEST(FalconPackets, AStrayLightBitAsksForNoHoming) {
+TEST(FalconPackets, AnExtraLightBitAsksForNoHoming) {
   const auto sent = decode_falcon_command(encode(FalconCommand{.lights = 0xFF, .homing = false}));
   ASSERT_TRUE(sent);
   EXPECT_FALSE(sent->homing);

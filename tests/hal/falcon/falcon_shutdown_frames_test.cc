@@ -17,7 +17,7 @@ TEST(FalconShutdownFrames, AreZeroWordsOverTheOpenDescriptorAndNoMore) {
   EXPECT_EQ(words->fd, 42);
   EXPECT_EQ(words->carrier, ShutdownFrames::Carrier::kUsbBulk);
   EXPECT_EQ(words->endpoint, falcon::kFalconEndpointOut);
-  ASSERT_GE(words->count, 2u) << "nobody sees whether one has come";
+  ASSERT_GE(words->count, 2u) << "the arrival of one is not reported";
   for (std::size_t i = 0; i < words->count; ++i) {
     const auto command = falcon::decode_falcon_command(words->bytes_of(i));
     ASSERT_TRUE(command);

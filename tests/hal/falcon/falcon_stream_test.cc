@@ -62,7 +62,7 @@ TEST(FalconStream, AMissingByteMakesNoReportOfTwo) {
   }
 }
 
-TEST(FalconStream, StraysBetweenPacketsAreDroppedAndCounted) {
+TEST(FalconStream, BytesBetweenPacketsAreDroppedAndCounted) {
   FalconStream stream;
   Bytes bytes{0x00, 0x3E, 0x41, 0xFF};
   append(bytes, numbered(1));

@@ -46,10 +46,10 @@ TEST(FalconReceiver, StatusAloneIsNoReport) {
   EXPECT_EQ(receiver.health().dropped_bytes, 0u);
 }
 
-TEST(FalconReceiver, DamageAndLineErrorsAreCountedAndTold) {
+TEST(FalconReceiver, DamageAndLineErrorsAreCountedAndReported) {
   FalconReceiver receiver;
   receiver.take(std::vector<std::uint8_t>{0x01}, 1);           // no status
-  receiver.take(std::vector<std::uint8_t>{1, 0x60, 9, 9}, 1);  // strays
+  receiver.take(std::vector<std::uint8_t>{1, 0x60, 9, 9}, 1);  // not a packet
   receiver.take(transfer_of({}, 0x62), 1);
   receiver.take(transfer_of({}, 0x68), 1);
   EXPECT_EQ(receiver.health().dropped_bytes, 3u);

@@ -68,7 +68,7 @@ TEST_F(FalconUsbTest, WithoutPermissionTheRuleAndItsRemedyAreNamed) {
                   why_refused("/dev/bus/usb/001/004", "").remedy});
 }
 
-TEST_F(FalconUsbTest, ARefusalThatUdevEndsIsNotTold) {
+TEST_F(FalconUsbTest, ARefusalThatUdevEndsIsNotReported) {
   usb.open_error = LIBUSB_ERROR_ACCESS;
   usb.refused_opens = 5;
   const auto opened = FalconUsb::open("");
@@ -76,13 +76,13 @@ TEST_F(FalconUsbTest, ARefusalThatUdevEndsIsNotTold) {
   EXPECT_EQ(usb.opens, 6);
 }
 
-TEST_F(FalconUsbTest, AnErrorThatIsNoRefusalIsToldAtOnce) {
+TEST_F(FalconUsbTest, AnErrorThatIsNoRefusalIsReportedAtOnce) {
   usb.open_error = LIBUSB_ERROR_NO_DEVICE;
   expect_refusal({"cannot be opened"});
   EXPECT_EQ(usb.opens, 1);
 }
 
-TEST_F(FalconUsbTest, AnotherProgramIsToldFromAKernelDriver) {
+TEST_F(FalconUsbTest, AnotherProgramIsDistinguishedFromAKernelDriver) {
   usb.claim_error = LIBUSB_ERROR_BUSY;
   expect_refusal({"another program", "fuser /dev/bus/usb/001/004"});
   usb.driver_active = 1;

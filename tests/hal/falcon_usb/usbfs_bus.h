@@ -38,7 +38,7 @@ struct Bus {
   int reaps = 0, discards = 0;
   bool closed = false;
 
-  /// Without the zeros of a thread that stands in: also a busy PC is a silent loop.
+  /// Without the zeros of the thread that sends zeros: also a busy PC is a silent loop.
   static std::vector<falcon::FalconPacket> of_loop(std::vector<falcon::FalconPacket> all) {
     std::erase(all, falcon_usb::LoopSilence::zero());
     return all;

@@ -33,7 +33,7 @@ TEST(UsbfsPipeEnd, ATransferThatSaysGoneEndsTheThreadToo) {
   EXPECT_EQ(pipe->health().end, falcon::FalconPipeEnd::kUnplugged);
 }
 
-TEST(UsbfsPipeEnd, ACommandThatMeetsNoDeviceTellsSoAtOnce) {
+TEST(UsbfsPipeEnd, ACommandThatMeetsNoDeviceReportsSoAtOnce) {
   Bus bus;
   const auto pipe = start(bus);
   bus.change([&] { bus.submit_error = ENODEV; });

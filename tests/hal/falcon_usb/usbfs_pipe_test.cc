@@ -94,7 +94,7 @@ TEST(UsbfsPipe, StoppingDoesNotWaitForADeviceThatTakesNothing) {
   EXPECT_TRUE(bus.closed);
 }
 
-TEST(UsbfsPipe, ALoopThatFallsSilentIsReplacedByZerosWhichIsTold) {
+TEST(UsbfsPipe, ALoopThatFallsSilentIsReplacedByZerosWhichIsReported) {
   Bus bus;
   const auto pipe = start(bus);
   const falcon::FalconPacket push = encode(falcon::FalconCommand{.motor = {900, 900, 900}});

@@ -46,7 +46,7 @@ TEST_F(ForceDimension, MakesNoForceBeforeTheLoopPermitsIt) {
   EXPECT_EQ(stub.strongest_N(), 0.0);
   double force[6];
   EXPECT_EQ(stub.last_force(force), 0) << "forces are off";
-  EXPECT_TRUE(sample.fresh || ready()) << "the pose is told without power";
+  EXPECT_TRUE(sample.fresh || ready()) << "the pose is reported without power";
 }
 
 TEST_F(ForceDimension, IsFreshOnlyAfterTheForcesAreOnWithZeroShown) {

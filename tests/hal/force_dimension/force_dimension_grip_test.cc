@@ -22,7 +22,7 @@ class ForceDimensionGrip : public tests::DeviceLoop {
   tests::StubDhd stub;
 };
 
-TEST_F(ForceDimensionGrip, AGripperTellsHowFarItIsClosedOnEitherHand) {
+TEST_F(ForceDimensionGrip, AGripperReportsHowFarItIsClosedOnEitherHand) {
   for (const int type : {35, 37, 104, 109}) {
     stub.reset();
     open(type);
@@ -97,7 +97,7 @@ TEST_F(ForceDimensionGrip, NoForceOnFingersThatItDoesNotHave) {
   EXPECT_EQ(stub.last_grip_N(), 0.0);
 }
 
-TEST_F(ForceDimensionGrip, AGripperThatIsNoNumberIsToldToTheLoop) {
+TEST_F(ForceDimensionGrip, AGripperAngleThatIsNoNumberIsReported) {
   open(35);
   stub.grip(std::nan(""), 0);
   EXPECT_TRUE(tick_until([&] { return std::isnan(sample.tool.grip_ratio); }));

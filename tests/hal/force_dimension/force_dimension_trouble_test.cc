@@ -60,14 +60,14 @@ TEST_F(ForceDimensionTrouble, ADeviceThatIsGoneIsUnplugged) {
   EXPECT_TRUE(reported("does not take a force: the device is gone")) << device->trouble();
 }
 
-TEST_F(ForceDimensionTrouble, AStatusThatFailsIsTold) {
+TEST_F(ForceDimensionTrouble, AStatusThatFailsIsReported) {
   stub.fail("dhdGetStatus", 7);
   EXPECT_EQ(lasting_fault(), Fault::kDeviceFailed);
   EXPECT_TRUE(reported("does not report its status: the device did not answer"))
       << device->trouble();
 }
 
-TEST_F(ForceDimensionTrouble, ForcesThatTheDeviceSwitchedOffAreToldByCause) {
+TEST_F(ForceDimensionTrouble, ForcesThatTheDeviceSwitchedOffAreReportedByCause) {
   const char* const words[] = {"does not say why", "button",     "too fast", "watchdog_s",
                                "a program",        "USB failed", "dead-man"};
   for (int cause = 0; cause <= 6; ++cause) {
@@ -101,7 +101,7 @@ TEST_F(ForceDimensionTrouble, TheDevicesOwnWatchdogEndsWhatALibraryThatHangsLeft
   stub.set_delay_us(0);
 }
 
-TEST_F(ForceDimensionTrouble, LostSupplyCableAndCalibrationAreToldApart) {
+TEST_F(ForceDimensionTrouble, LostSupplyCableAndCalibrationAreDistinguished) {
   const struct {
     int word, value;
     Fault fault;

@@ -45,7 +45,7 @@ TEST_F(Session, OpensADelta3) {
   EXPECT_FALSE(stub.is_open());
 }
 
-TEST_F(Session, BalancesItsWeightOnlyWhereItStandsAsDelivered) {
+TEST_F(Session, BalancesItsWeightOnlyWhereMountedAsDelivered) {
   for (const bool hangs : {false, true}) {
     model::DeviceSettings device;
     if (hangs) device.base_orientation_deg = {0.0, 90.0, 0.0};
@@ -69,7 +69,7 @@ TEST_F(Session, GripsByWhatTheLibraryHas) {
   s.type.grip = GripKind::kForce;
   EXPECT_EQ(grip_of(s), GripKind::kForce);
   s.sdk.gripper_gap = nullptr;
-  EXPECT_EQ(grip_of(s), GripKind::kAngle) << "it tells, and nobody could judge its force";
+  EXPECT_EQ(grip_of(s), GripKind::kAngle) << "it reports, and its force could not be limited";
   s.sdk.gripper_angle = nullptr;
   EXPECT_EQ(grip_of(s), GripKind::kNone);
   close_sdk_session(*session);
@@ -110,7 +110,7 @@ TEST_F(Session, AMissingLibrarySaysWhereItIsHad) {
   EXPECT_TRUE(has(why, "device.force_dimension.library")) << why;
 }
 
-TEST_F(Session, ALibraryOfNobodyKnownIsNotLoadedUnlessAPersonSaysSo) {
+TEST_F(Session, AnUntrustedLibraryIsNotLoadedUnlessAPersonSaysSo) {
   trusted = false;
   EXPECT_TRUE(has(refusal(), tests::kStubLibrary + " is not loaded")) << refusal();
   EXPECT_EQ(stub.calls("dhdGetDeviceCount"), 0);
@@ -129,11 +129,11 @@ TEST_F(Session, ADeviceThatIsNotThereIsNotAMissingRule) {
   EXPECT_FALSE(has(refusal(), "rule")) << refusal();
 }
 
-TEST_F(Session, ARefusedNodeIsToldOnlyWhereTheLibraryFindsNothing) {
+TEST_F(Session, ARefusedNodeIsReportedOnlyWhereTheLibraryFindsNothing) {
   const tests::UsbFolders usb("1451", "0402");
   const auto see_refusals = [&] {
     usb.add_node(usb.node, 0);
-    tests::become_nobody();
+    tests::drop_privileges();
     const auto open = [&] { return open_sdk_session(settings, true, {}, usb.roots()); };
     if (!open()) _exit(8);  // it opens another one
     stub.set_count(0);
@@ -204,7 +204,7 @@ TEST_F(Session, AWristThatDoesNotKnowItsAnglesIsNotCalibrated) {
   EXPECT_EQ(refusal(), "") << "an omega.3 has no wrist";
 }
 
-TEST_F(Session, NoPowerAndOwnErrorsAreTold) {
+TEST_F(Session, NoPowerAndOwnErrorsAreReported) {
   stub.set_status(kSdkPower, 0);
   EXPECT_TRUE(has(refusal(), "has no power")) << refusal();
   stub.reset();
@@ -212,7 +212,7 @@ TEST_F(Session, NoPowerAndOwnErrorsAreTold) {
   EXPECT_TRUE(has(refusal(), "error of its own")) << refusal();
 }
 
-TEST_F(Session, EveryCallThatFailsIsToldInWords) {
+TEST_F(Session, EveryCallThatFailsIsReportedAsText) {
   constexpr int kInUse = 20;
   for (const char* function :
        {"dhdOpenID", "dhdGetStatus", "dhdEnableForce", "dhdEnableExpertMode", "dhdSetTimeGuard",

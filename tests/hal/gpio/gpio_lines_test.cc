@@ -124,9 +124,9 @@ TEST_F(Sysfs, AChipThatDoesNotAnswerIsNamedWithItsPath) {
 TEST_F(Sysfs, ARefusedChipIsAskedAgainFor200Ms) {
   chip(0, {"pci"});
   const auto see_refusal = [this] {
-    constexpr uid_t kNobody = 65534;
+    constexpr uid_t kOther = 65534;
     fs::permissions(roots().dev + "/gpiochip0", fs::perms::none);
-    if (geteuid() == 0 && setreuid(kNobody, kNobody) != 0) _exit(2);  // root may open any node
+    if (geteuid() == 0 && setreuid(kOther, kOther) != 0) _exit(2);  // root may open any node
     const auto begun = std::chrono::steady_clock::now();
     const auto lines = open_safety_lines(wired(), roots());
     const bool waited = std::chrono::steady_clock::now() - begun >= std::chrono::milliseconds(200);
@@ -183,7 +183,7 @@ TEST(GpioLines, AMissingChipListsThoseThatAreHere) {
   EXPECT_TRUE(has(refusal({board()}, "rig-gpio"), "here are only gpiochip0 \"pci-idio-16\""));
 }
 
-TEST(GpioLines, TwoChipsOfOneLabelAreToldApartByPath) {
+TEST(GpioLines, TwoChipsOfOneLabelAreDistinguishedByPath) {
   GpioChip second = board();
   second.name = "gpiochip1", second.path = "/dev/gpiochip1";
   EXPECT_TRUE(has(refusal({board(), second}, "pci-idio-16"), "fits /dev/gpiochip0 and"));

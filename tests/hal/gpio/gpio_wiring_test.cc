@@ -210,7 +210,7 @@ TEST_F(GpioWiring, WhatIsNotWiredIsLeftAlone) {
   EXPECT_EQ((*opened)->event_word(), 16) << "of the lines that are wired";
 }
 
-TEST_F(GpioWiring, ALineInUseIsToldWithItsUserAndTheOthersAreFreeAgain) {
+TEST_F(GpioWiring, ALineInUseIsReportedWithItsUserAndTheOthersAreFreeAgain) {
   played().user = {{kHeartbeat, "lamp"}};
   const auto opened = open();
   ASSERT_FALSE(opened);

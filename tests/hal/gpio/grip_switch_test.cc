@@ -81,7 +81,7 @@ TEST(GripSwitch, ALineThatChangesEvery30msFlapsUntilItWasQuietForASecond) {
   EXPECT_FALSE(bench.grip.flaps());
 }
 
-TEST(GripSwitch, TheLinesTellItAsTheirFaultBehindTheEmergencyStop) {
+TEST(GripSwitch, ItsFaultComesAfterTheEmergencyStop) {
   SafetyLogic logic{{.estop = true, .grip = true}};
   SafetyLevels levels{.estop_a = true, .estop_b = true};
   std::int64_t now_ns = 0;

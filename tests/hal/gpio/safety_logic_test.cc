@@ -113,7 +113,7 @@ TEST(SafetyLogic, AWeldedContactIsNotForgottenWhenTheEStopIsReleased) {
   EXPECT_EQ(bench.fault, Fault::kNone);
 }
 
-TEST(SafetyLogic, TellsWhichChannelSticks) {
+TEST(SafetyLogic, ReportsWhichChannelSticks) {
   const SafetyLevels only_a{true, false, true}, only_b{false, true, true}, open{false, false, true};
   const struct {
     SafetyLevels before, after;
@@ -224,7 +224,7 @@ TEST(SimLines, AreLostForGoodWithTheirChip) {
   EXPECT_NE(lines.trouble().find("gpiodetect"), std::string::npos);
 }
 
-TEST(SimLines, OnceDroppedByTheWatchStayLowWhateverTheLoopWrites) {
+TEST(SimLines, OnceDroppedByTheWatchStayLowForAnyWriteOfTheLoop) {
   sim::SimLines lines;
   std::int64_t now_ns = 0;
   const auto tick = [&] {

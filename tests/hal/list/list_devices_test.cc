@@ -18,7 +18,7 @@ namespace tact::hal::list::list_devices_test {
 namespace fs = std::filesystem;
 
 int all_may(const std::string&) { return 0; }
-int nobody_may(const std::string&) { return EACCES; }
+int deny_all(const std::string&) { return EACCES; }
 int gone(const std::string&) { return ENOENT; }
 std::optional<can::CanLink> half_speed(const std::string&) {
   return can::CanLink{
@@ -145,7 +145,7 @@ TEST_F(ListDevices, AForceDimensionDeviceShowsItsOwnWords) {
 }
 
 TEST_F(ListDevices, APhantomIsFoundByItsSerialPortOrItsHidNode) {
-  probes.access_error = nobody_may;
+  probes.access_error = deny_all;
   const struct {
     const char *vendor, *product, *inside, *node, *rule;
   } cases[] = {
@@ -170,7 +170,7 @@ TEST_F(ListDevices, APhantomIsFoundByItsSerialPortOrItsHidNode) {
 }
 
 TEST_F(ListDevices, AMissingPermissionPrintsTheRuleOfThatDevice) {
-  probes.access_error = nobody_may;
+  probes.access_error = deny_all;
   usb("1-2", "0403", "cb48");
   EXPECT_TRUE(has(only().lacking, falcon::kFalconParts[0].rule));
   EXPECT_TRUE(has(only().lacking, "/dev/bus/usb/001/007"));

@@ -23,7 +23,7 @@ TEST(MoteusBringUp, OpensThreeDrivesWithoutPower) {
   EXPECT_EQ(bench.device->info().caution, "");
 }
 
-TEST(MoteusBringUp, NamesTheArmThatIsMissingAndTellsWhenAllAre) {
+TEST(MoteusBringUp, NamesTheArmThatIsMissingAndReportsWhenAllAre) {
   MoteusBench bench;
   bench.drives.drive[1] = std::make_unique<tests::DeadDrive>();
   bench.expect_refused("arm 2 (node 2 on can0) does not answer");
@@ -85,7 +85,7 @@ TEST(MoteusBringUp, AFaultThatAStopClearsIsReportedAndOneThatStaysIsRefused) {
   stays.expect_refused("arm 1 (node 1 on can0): The power stage reports a fault");
 }
 
-TEST(MoteusBringUp, TakesPowerFromDrivesThatStillHaveItAndFromNobodyElse) {
+TEST(MoteusBringUp, TakesPowerOnlyFromDrivesThatStillHaveIt) {
   const auto command = [](MoteusBench& bench) {
     canfd_frame frame{};
     const auto bytes = can::pack_can_frame(*moteus_torque(2, 0.0, 1.0));

@@ -71,7 +71,7 @@ TEST(MoteusDelta, WithdrawnPermissionStopsAtOnceAndReturnsWithoutTorque) {
   }
 }
 
-TEST(MoteusDelta, ForceBecomesTheTorquesOfTheStaticsWhateverTheGainsOfTheDrive) {
+TEST(MoteusDelta, ForceBecomesTheTorquesOfTheStaticsForAnyGainsOfTheDrive) {
   MoteusBench bench({.kp_Nm = 20.0, .kd_Nms = 3.0});
   bench.run();
   for (auto& motor : bench.drives.motor) motor.velocity_turns_per_s = 0.5;

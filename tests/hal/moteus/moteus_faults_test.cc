@@ -12,7 +12,7 @@ namespace tact::hal::moteus::moteus_faults_test {
 
 struct Bench : tests::MoteusBench {
   using MoteusBench::MoteusBench;
-  /// The fault stays, whatever the bus and the drives do from now on; the hand feels nothing.
+  /// The fault stays, for all further behaviour of bus and drives; the hand has no force.
   void expect_latched(Fault fault) {
     drives.bus.socket().send_error = drives.bus.socket().receive_error = 0;
     for (int i = 0; i < 100; ++i) {
@@ -24,7 +24,7 @@ struct Bench : tests::MoteusBench {
   }
 };
 
-TEST(MoteusFaults, ADrivesFaultIsToldInWordsAndStopsAllThree) {
+TEST(MoteusFaults, ADrivesFaultIsReportedAsTextAndStopsAllThree) {
   Bench bench;
   bench.run();
   bench.tick({0.0, 0.0, 5.0});
@@ -72,7 +72,7 @@ TEST(MoteusFaults, ASupplyThatIsTooLowAtTheStartIsWaitedFor) {
   EXPECT_EQ(bench.allocations, 0u);
 }
 
-TEST(MoteusFaults, AFaultIsToldWhileAnEarlierArmWaitsForItsSupply) {
+TEST(MoteusFaults, AFaultIsReportedWhileAnEarlierArmWaitsForItsSupply) {
   Bench bench;
   ASSERT_EQ(bench.open(), "");
   bench.axis(0).sag(true);
@@ -122,7 +122,7 @@ TEST(MoteusFaults, ADriveWithATorqueOfItsOwnNeverGetsReady) {
   ASSERT_EQ(bench.open(), "");
   EXPECT_GT(bench.ticks_until(Fault::kDriveFault, 4000), 0);
   EXPECT_TRUE(
-      bench.says("arm 2 (node 2 on can0): the drive gives -0.50 N m that nobody asked for: set "
+      bench.says("arm 2 (node 2 on can0): the drive gives -0.50 N m that was not commanded: set "
                  "servo.pid_position.ki"))
       << bench.device->trouble();
 }
@@ -137,14 +137,14 @@ TEST(MoteusFaults, ATorqueThatGrowsSlowlyIsAFaultOfAReadyDrive) {
   bench.expect_latched(Fault::kDriveFault);
 }
 
-TEST(MoteusFaults, GravityAndForceAreNoTorqueThatNobodyAskedFor) {
+TEST(MoteusFaults, GravityAndForceAreNoUncommandedTorque) {
   Bench bench;
   bench.run();
   for (int i = 0; i < 500; ++i) bench.tick();
   EXPECT_TRUE(bench.device->ready()) << bench.device->trouble();
 }
 
-TEST(MoteusFaults, ADriveThatIsStoppedBySomebodyElseIsAFault) {
+TEST(MoteusFaults, ADriveThatAnotherHostStopsIsAFault) {
   Bench bench;
   bench.run();
   canfd_frame frame{};
@@ -191,7 +191,7 @@ TEST(MoteusFaults, RepliesThatLackWhatWasAskedForAreNoSamplesAndTenAreAFault) {
   EXPECT_EQ(bench.count("incomplete"), 10u);
 }
 
-TEST(MoteusFaults, AFaultIsToldAlsoByADriveThatHasLostItsPosition) {
+TEST(MoteusFaults, AFaultIsReportedAlsoByADriveThatHasLostItsPosition) {
   Bench bench;
   bench.run();
   bench.axis(0).lose_position();

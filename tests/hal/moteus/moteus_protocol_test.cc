@@ -54,7 +54,7 @@ TEST(MoteusProtocol, AReplyIsReadByNodeAndDirection) {
   EXPECT_EQ(moteus_address(frame).source, 5);
 }
 
-TEST(MoteusProtocol, AFrameThatIsCutAnywhereTellsNothingThatItDoesNotHold) {
+TEST(MoteusProtocol, AFrameThatIsCutAnywhereGivesNothingThatItDoesNotHold) {
   const std::vector<std::uint8_t> whole{0x21, 0x00, 0x0A, 0x2F, 0x01, 0,   0, 0x80,
                                         0x3F, 0,    0,    0,    0x40, 0,   0, 0x40,
                                         0x40, 0x23, 0x0D, 0x30, 0x1E, 0x00};
@@ -95,7 +95,7 @@ TEST(MoteusProtocol, ARegisterInAnotherTypeIsNotTheOneThatWasAskedFor) {
   EXPECT_FALSE(reply->register_map);
 }
 
-TEST(MoteusProtocol, ARefusedRegisterIsTold) {
+TEST(MoteusProtocol, ARefusedRegisterIsReported) {
   const auto reply = decode_moteus(reply_of(1, {0x31, 0x82, 0x02, 0x01, 0x50, 0x50}), 1);
   ASSERT_TRUE(reply);
   EXPECT_EQ(reply->refused_register, 0x102);

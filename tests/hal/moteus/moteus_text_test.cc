@@ -7,7 +7,7 @@
 
 namespace tact::hal::moteus::moteus_words_test {
 
-TEST(MoteusWords, EveryFaultIsOneSentenceWithItsNumberAndNoneIsALimit) {
+TEST(MoteusWords, EveryFaultHasOneMessageWithItsNumberAndNoneIsALimit) {
   std::set<int> codes;
   for (const MoteusFaultText& one : moteus_fault_texts()) {
     EXPECT_TRUE(codes.insert(one.code).second) << one.code;
@@ -21,11 +21,11 @@ TEST(MoteusWords, EveryFaultIsOneSentenceWithItsNumberAndNoneIsALimit) {
   EXPECT_EQ(codes.size(), 18u);  // 32 to 50 but for 45, which needs a command that is never sent
 }
 
-TEST(MoteusWords, AFaultThatIsNotKnownIsToldWithItsNumber) {
+TEST(MoteusWords, AFaultThatIsNotKnownIsReportedWithItsNumber) {
   EXPECT_NE(moteus_fault_message(77).find("(fault 77)"), std::string::npos);
 }
 
-TEST(MoteusWords, LimitsAreToldFromFaultsByTheirNumber) {
+TEST(MoteusWords, LimitsAreDistinguishedFromFaultsByTheirNumber) {
   EXPECT_FALSE(is_moteus_limit(0));
   EXPECT_FALSE(is_moteus_limit(50));
   EXPECT_TRUE(is_moteus_limit(96));

@@ -51,7 +51,7 @@ TEST(OdriveBringUp, LeavesTheDrivesOwnLimitsUnlessTheSceneNamesOthers) {
   }
 }
 
-TEST(OdriveBringUp, FindsTheGenerationByWhoTellsItsVersion) {
+TEST(OdriveBringUp, FindsTheGenerationByTheReportedVersion) {
   for (const bool v06 : {true, false}) {
     tests::PlayedOdrives drives;
     for (auto& axis : drives.axis) axis.v06 = v06;
@@ -81,7 +81,7 @@ TEST(OdriveBringUp, NamesTheArmThatIsMissing) {
   bench.expect_refused("arm 2 (node 2 on can0) sends no heartbeat");
 }
 
-TEST(OdriveBringUp, NobodyThereIsToldFromWrongBitRateAndFromNoAcknowledge) {
+TEST(OdriveBringUp, NoDriveIsDistinguishedFromWrongBitRateAndNoAcknowledge) {
   const auto silent = [](std::uint32_t classes, std::uint8_t controller) {
     auto bench = std::make_unique<Bench>();
     for (auto& axis : bench->drives.axis) axis.powered = false;
@@ -89,17 +89,17 @@ TEST(OdriveBringUp, NobodyThereIsToldFromWrongBitRateAndFromNoAcknowledge) {
     return bench;
   };
   silent(0, 0)->expect_refused("no drive is heard on can0");
-  silent(0x020, 0)->expect_refused("nobody on can0 acknowledges a frame: switch the drives on");
-  silent(0x004, 0x20)->expect_refused("nobody on can0 acknowledges a frame");
+  silent(0x020, 0)->expect_refused("no node on can0 acknowledges a frame: switch the drives on");
+  silent(0x004, 0x20)->expect_refused("no node on can0 acknowledges a frame");
   silent(0x008, 0)->expect_refused("bit rate");
   silent(0x004, 0x10)->expect_refused("can0 understands nothing of what is on the bus");
   silent(0x040, 0)->expect_refused("can0 understands nothing of what is on the bus");
   auto full = silent(0, 0);
   full->drives.bus.socket().send_error = ENOBUFS;  // frames wait for an acknowledge in the queue
-  full->expect_refused("nobody on can0 acknowledges a frame");
+  full->expect_refused("no node on can0 acknowledges a frame");
 }
 
-TEST(OdriveBringUp, AnErrorThatStaysIsToldInWords) {
+TEST(OdriveBringUp, AnErrorThatStaysIsReportedAsText) {
   Bench bench;
   bench.drives.axis[2].error = 0x4000000;
   bench.drives.axis[2].stuck_error = true;
@@ -109,10 +109,11 @@ TEST(OdriveBringUp, AnErrorThatStaysIsToldInWords) {
 TEST(OdriveBringUp, ThreeFirmwaresOfTwoGenerationsAreRefused) {
   Bench bench;
   bench.drives.axis[1].v06 = false;
-  bench.expect_refused("arm 2 (node 2 on can0) does not tell its version while another drive does");
+  bench.expect_refused(
+      "arm 2 (node 2 on can0) does not report its version while another drive does");
 }
 
-TEST(OdriveBringUp, ADriveThatTellsItsPositionTooSeldomIsNamed) {
+TEST(OdriveBringUp, ADriveThatReportsItsPositionTooSeldomIsNamed) {
   Bench bench;
   bench.drives.axis[0].position_every_ms = 10;  // the vendor's default
   bench.expect_refused("arm 1 (node 1 on can0) sends its position 100 times a second, not 1000");
@@ -146,7 +147,7 @@ TEST(OdriveBringUp, AHeartbeatThatItsWatchBearsIsTaken) {
   }
 }
 
-TEST(OdriveBringUp, ADriveThatSomebodyElseHoldsIsNamed) {
+TEST(OdriveBringUp, ADriveThatAnotherHostHoldsIsNamed) {
   Bench bench;
   bench.drives.axis[1].state = 3;
   bench.drives.axis[1].obeys = false;

@@ -10,7 +10,7 @@
 
 namespace tact::hal::odrive::odrive_errors_test {
 
-TEST(OdriveErrors, EveryBitOfTheVendorHasItsOwnSentence) {
+TEST(OdriveErrors, EveryBitOfTheVendorHasItsOwnMessage) {
   const auto check = [](std::span<const OdriveErrorText> table, std::uint32_t all) {
     std::uint32_t bits = 0;
     std::set<std::string> names, messages;

@@ -23,7 +23,7 @@ struct OdriveFaultsBench : CanBench<PlayedOdrives> {
     tick({0.0, 0.0, 5.0});
   }
   bool says(const char* words) const { return device->trouble().find(words) != std::string::npos; }
-  /// The fault stays, whatever the bus and the drives do from now on; the hand feels nothing.
+  /// The fault stays, for all further behaviour of bus and drives; the hand has no force.
   void expect_latched(model::Fault fault) {
     for (auto& axis : drives.axis) axis.error = 0, axis.powered = axis.says_heartbeat = true;
     drives.bus.socket().send_error = drives.bus.socket().receive_error = 0;

@@ -212,7 +212,7 @@ TEST(OdriveFaults, ArmsBeyondTheirStopsAreALostHoming) {
   bench.expect_stopped();
 }
 
-TEST(OdriveFaults, TheFirstFaultIsTheOneThatIsTold) {
+TEST(OdriveFaults, TheFirstFaultIsTheReportedOne) {
   Bench bench;
   bench.run();
   bench.drives.axis[1].error = 0x200;

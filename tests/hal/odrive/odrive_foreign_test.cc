@@ -10,7 +10,7 @@ namespace tact::hal::odrive::odrive_foreign_test {
 
 using Bench = tests::OdriveFaultsBench;
 
-// At random ticks, one or a burst, with and without force: whatever makes a drive act.
+// At random ticks, one or a burst, with and without force: every frame that makes a drive act.
 TEST(OdriveForeign, ACommandOfAnotherSenderLatchesInTheTickThatHearsIt) {
   std::mt19937 random(7);
   const auto any = [&random](int low, int high) {

@@ -124,7 +124,7 @@ TEST(OdriveProtocol, ANumberThatIsNoneIsNeverBelieved) {
   check("estimates", decode_odrive_estimates, OdriveCommand::kGetEncoderEstimates);
 }
 
-TEST(OdriveProtocol, TheVersionTellsItsFirmware) {
+TEST(OdriveProtocol, TheVersionReportsItsFirmware) {
   can::CanFrame frame = reply(1, OdriveCommand::kGetVersion);
   frame.data = {2, 4, 5, 58, 0, 6, 10, 1};
   const auto version = decode_odrive_version(frame, 1);
@@ -149,7 +149,7 @@ TEST(OdriveProtocol, AnOldHeartbeatTakesEveryBitOfAPartForAnError) {
   }
 }
 
-TEST(OdriveProtocol, AnOldDriveTellsItsEncodersCount) {
+TEST(OdriveProtocol, AnOldDriveReportsItsEncodersCount) {
   can::CanFrame frame = can::make_can_frame(7u << 5 | 0x0A, 8);
   frame.data = {0xFE, 0xFF, 0xFF, 0xFF, 0xFE, 0x1F, 0, 0};
   const auto count = decode_odrive_count_05(frame, 7);

@@ -38,7 +38,7 @@ TEST_F(Phantom, MakesNoForceBeforeTheLoopPermitsIt) {
   for (int i = 0; i < 50; ++i) tick({.force_N = {0, 0, 2}, .torque_Nm = {}});
   EXPECT_EQ(stub.strongest_N(), 0.0);
   EXPECT_FALSE(output_is_on());
-  EXPECT_TRUE(sample.fresh || ready()) << "the pose is told without power";
+  EXPECT_TRUE(sample.fresh || ready()) << "the pose is reported without power";
 }
 
 TEST_F(Phantom, IsFreshOnlyAfterTheForceOutputIsOnWithZeroShown) {
@@ -218,7 +218,7 @@ TEST_F(Phantom, ItsFirstButtonClosesTheJaws) {
   EXPECT_TRUE(tick_until([&] { return sample.tool.grip_ratio == 0.0; }));
 }
 
-TEST_F(Phantom, InfoIsWhatTheLibraryTells) {
+TEST_F(Phantom, InfoIsWhatTheLibraryReports) {
   open();
   const DeviceInfo info = device->info();
   EXPECT_EQ(info.name, "Touch no. " + std::to_string(getpid()));
@@ -244,12 +244,12 @@ TEST_F(Phantom, ADampingOfTheSceneIsNotCalledAssumed) {
   EXPECT_EQ(device->info().caution.find("assumed"), std::string::npos) << device->info().caution;
 }
 
-TEST_F(Phantom, WhatItsMotorsBearForLongMayNotBeTold) {
+TEST_F(Phantom, TheContinuousForceOfItsMotorsMayBeUnknown) {
   for (const double reported_N : {0.0, -1.0, std::nan("")}) {
     stub.set_number(kHdContinuousForce, reported_N);
     open();
     EXPECT_EQ(device->info().max_continuous_force_N, 0.0);
-    EXPECT_NE(device->info().caution.find("for long: not told"), std::string::npos);
+    EXPECT_NE(device->info().caution.find("for long: not known"), std::string::npos);
   }
 }
 

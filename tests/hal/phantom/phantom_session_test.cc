@@ -43,7 +43,7 @@ TEST_F(PhantomSessions, OpensTheDeviceOfThatNameAndTheDefaultOneWithoutAName) {
   EXPECT_STREQ(stub.name(), "(default)");
 }
 
-TEST_F(PhantomSessions, AMissingLibraryIsToldWithWhereToGetIt) {
+TEST_F(PhantomSessions, AMissingLibraryIsReportedWithItsSource) {
   settings.of<PhantomSettings>().library = "libHD-that-is-not-here.so";
   settings.trust_library = false;
   expect_refusal({"3D Systems' library cannot be loaded", "OpenHaptics at 3dsystems.com",
@@ -60,17 +60,17 @@ TEST_F(PhantomSessions, AnotherLibraryIsRefusedByTheFunctionThatItLacks) {
   expect_refusal({"libm.so.6 has no function hdInitDevice", "device.phantom.library"});
 }
 
-TEST_F(PhantomSessions, ADeviceThatIsNotThereIsToldWithItsName) {
+TEST_F(PhantomSessions, ADeviceThatIsNotThereIsReportedWithItsName) {
   stub.fail("hdInitDevice", 0x0302);
   expect_refusal({"the PHANTOM \"" + settings.of<PhantomSettings>().name + "\" does not open",
                   "the device does not answer", "device.phantom.name"});
 }
 
-TEST_F(PhantomSessions, ARefusedNodeIsToldOnlyWhereTheLibraryOpensNothing) {
+TEST_F(PhantomSessions, ARefusedNodeIsReportedOnlyWhereTheLibraryOpensNothing) {
   const tests::UsbFolders usb("2988", "0302");
   const auto see_refusals = [&] {
     usb.add_node(usb.node, 0);
-    tests::become_nobody();
+    tests::drop_privileges();
     const auto open = [&] {
       return open_phantom_session(settings.of<PhantomSettings>(), true, usb.roots());
     };
@@ -121,7 +121,7 @@ TEST_F(PhantomSessions, EncodersThatAreResetByHandAreNeverResetByTact) {
 
 TEST_F(PhantomSessions, ADeviceWithoutLimitsIsRefused) {
   stub.set_number(kHdMaxForce, 0.0);
-  expect_refusal({"tells 0 N and a workspace of 0.12 x 0.07 m, which cannot be"});
+  expect_refusal({"reports 0 N and a workspace of 0.12 x 0.07 m, which cannot be"});
 }
 
 TEST_F(PhantomSessions, AWorkspaceThatIsNoNumberIsRefused) {
@@ -133,7 +133,7 @@ TEST_F(PhantomSessions, AWorkspaceThatIsNoNumberIsRefused) {
   }
 }
 
-TEST_F(PhantomSessions, EveryCallThatFailsIsToldInWords) {
+TEST_F(PhantomSessions, EveryCallThatFailsIsReportedAsText) {
   for (const char* function :
        {"hdInitDevice", "hdGetDoublev", "hdGetIntegerv", "hdSetSchedulerRate", "hdStartScheduler",
         "hdBeginFrame", "hdCheckCalibration", "hdEndFrame"}) {
@@ -143,7 +143,7 @@ TEST_F(PhantomSessions, EveryCallThatFailsIsToldInWords) {
   }
 }
 
-TEST_F(PhantomSessions, ASchedulerThatNeverCallsIsTold) {
+TEST_F(PhantomSessions, ASchedulerThatNeverCallsIsReported) {
   stub.silence(1);
   const auto device = open_phantom(settings, rate_Hz);
   EXPECT_EQ(stub.calls("hdSetDoublev"), 0);

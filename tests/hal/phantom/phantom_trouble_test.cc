@@ -47,7 +47,7 @@ TEST_F(PhantomTrouble, NothingIsWrongAtFirst) {
   EXPECT_EQ(device->trouble(), "");
 }
 
-TEST_F(PhantomTrouble, EveryErrorOfTheLibraryEndsTheForceAndIsToldInWords) {
+TEST_F(PhantomTrouble, EveryErrorOfTheLibraryEndsTheForceAndIsReportedAsText) {
   const struct {
     const char* function;
     unsigned code;
@@ -119,7 +119,7 @@ TEST_F(PhantomTrouble, ASilentSchedulerLeavesNoFreshSampleAndIsReported) {
   EXPECT_TRUE(comes([&] { return device->trouble().empty(); }));
 }
 
-TEST_F(PhantomTrouble, AStopThatTheLibraryDoesNotAnswerIsTold) {
+TEST_F(PhantomTrouble, AStopThatTheLibraryDoesNotAnswerIsReported) {
   stub.silence(1);
   device->stop();
   EXPECT_EQ(device->why_not_off(), "the library does not return: switch the device's supply off");

@@ -57,7 +57,7 @@ TEST(OpenDevice, ABaseThatHangsIsTurnedBetweenLoopAndDevice) {
   hanging.hand.path = {{.position_m = {0.0, 0.0, 0.05}}};
   const auto device = open_device(hanging);
   ASSERT_TRUE(device) << device.error().message;
-  EXPECT_EQ((*device)->info().name, "simulated delta 360 x 300 mm, hangs") << "as the page tells";
+  EXPECT_EQ((*device)->info().name, "simulated delta 360 x 300 mm, hangs") << "as the page reports";
   EXPECT_LT((*device)->info().workspace_radius_m, 0.15);
   EXPECT_TRUE(is_simulated(**device)) << "its hand can be moved";
   Sample sample;
@@ -68,7 +68,7 @@ TEST(OpenDevice, ABaseThatHangsIsTurnedBetweenLoopAndDevice) {
       **device, testing::TempDir() + "tact-hang-" + std::to_string(getpid()) + ".sock"));
 }
 
-TEST(OpenDevice, IsStoppedWhateverEndsItsHolder) {
+TEST(OpenDevice, IsStoppedAtEveryEndOfItsHolder) {
   int stops = 0;
   {
     auto* real = new RealDevice;

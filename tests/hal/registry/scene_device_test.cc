@@ -86,7 +86,7 @@ TEST(SceneDevice, RefusesALimitThatItsDrivesWouldNotKeep) {
   }
 }
 
-TEST(SceneDevice, ADeltaOfOnesOwnHasNoLengthOrMassThatNobodyNamed) {
+TEST(SceneDevice, ACustomDeltaHasNoDefaultLengthOrMass) {
   const std::string can = scene_on_real_devices();
   EXPECT_EQ(why_refused(can), "");
   for (const std::string key : {"base_radius_m",

@@ -32,7 +32,7 @@ delta::Joints motors_Nm(const DeltaPlant& plant, const model::Vec3& force_N) {
   return torque_Nm;
 }
 
-TEST(DeltaPlant, StartsWhereItIsToldOrInTheMiddle) {
+TEST(DeltaPlant, StartsAtItsSettingOrInTheMiddle) {
   EXPECT_EQ(DeltaPlant({}, kStart).position_D_m(), kStart);
   EXPECT_DOUBLE_EQ(DeltaPlant({}, {9.0, 0.0, 0.0}).position_D_m().z, 0.345);
 }

@@ -37,7 +37,7 @@ void send_bytes(const std::string& path, const void* bytes, std::size_t size) {
       static_cast<ssize_t>(size));
   close(sender);
 }
-bool wait_for(LatestSlot<HandTarget>& slot, HandTarget& target) {
+bool wait_for(threads::LatestSlot<HandTarget>& slot, HandTarget& target) {
   for (int i = 0; i < 400; ++i) {
     if (slot.read(target)) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -50,7 +50,7 @@ HandTarget at(double x_m) {
 
 TEST(HandSocket, PassesTheNewestTarget) {
   const std::string path = fresh_path("pass");
-  LatestSlot<HandTarget> slot;
+  threads::LatestSlot<HandTarget> slot;
   auto listener = HandSocket::start(path, slot);
   ASSERT_TRUE(listener) << listener.error().message;
   const HandTarget sent = at(0.01);
@@ -62,7 +62,7 @@ TEST(HandSocket, PassesTheNewestTarget) {
 
 TEST(HandSocket, IsTheOwnersAloneAndLeavesNothingBehind) {
   const std::string path = fresh_path("mode");
-  LatestSlot<HandTarget> slot;
+  threads::LatestSlot<HandTarget> slot;
   auto listener = HandSocket::start(path, slot);
   ASSERT_TRUE(listener) << listener.error().message;
   struct stat status{};
@@ -75,7 +75,7 @@ TEST(HandSocket, IsTheOwnersAloneAndLeavesNothingBehind) {
 
 TEST(HandSocket, IgnoresGarbage) {
   const std::string path = fresh_path("garbage");
-  LatestSlot<HandTarget> slot;
+  threads::LatestSlot<HandTarget> slot;
   auto listener = HandSocket::start(path, slot);
   ASSERT_TRUE(listener) << listener.error().message;
   HandTarget magic = at(0.1), version = at(0.1), far = at(50.0), nan = at(0.1), grip = at(0.1);
@@ -106,20 +106,20 @@ TEST(HandSocket, IgnoresGarbage) {
   EXPECT_EQ(seen.position_m[0], 0.07);
 }
 
-TEST(HandSocket, ReplacesASocketThatNobodyListensTo) {
+TEST(HandSocket, ReplacesASocketWithoutAListener) {
   const std::string path = fresh_path("stale");
   const int dead = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   const sockaddr_un address = address_of(path);
   ASSERT_EQ(bind(dead, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
   close(dead);
-  LatestSlot<HandTarget> slot;
+  threads::LatestSlot<HandTarget> slot;
   const auto listener = HandSocket::start(path, slot);
   EXPECT_TRUE(listener) << listener.error().message;
 }
 
 TEST(HandSocket, LeavesALivingListenerAndAFileAlone) {
   const std::string path = fresh_path("taken");
-  LatestSlot<HandTarget> slot, other;
+  threads::LatestSlot<HandTarget> slot, other;
   const auto listener = HandSocket::start(path, slot);
   ASSERT_TRUE(listener);
   const auto second = HandSocket::start(path, other);
@@ -136,7 +136,7 @@ TEST(HandSocket, LeavesALivingListenerAndAFileAlone) {
 
 TEST(HandSocket, LeavesTheFileOfTheNextOneWhenItEnds) {
   const std::string path = fresh_path("next");
-  LatestSlot<HandTarget> slot;
+  threads::LatestSlot<HandTarget> slot;
   const auto first = HandSocket::start(path, slot);
   ASSERT_TRUE(first);
   unlink(path.c_str());
@@ -148,7 +148,7 @@ TEST(HandSocket, LeavesTheFileOfTheNextOneWhenItEnds) {
 }
 
 TEST(HandSocket, SaysWhatIsWrongWithAPath) {
-  LatestSlot<HandTarget> slot;
+  threads::LatestSlot<HandTarget> slot;
   EXPECT_FALSE(HandSocket::start("", slot));
   EXPECT_FALSE(HandSocket::start(std::string(200, 'x'), slot));
   const auto missing = HandSocket::start("/nonexistent/place/hand.sock", slot);

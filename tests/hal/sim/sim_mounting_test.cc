@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The simulated delta as it stands: its weight, its hand and its force follow the mounting.
+// The simulated delta as mounted: its weight, its hand and its force follow the mounting.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -36,10 +36,10 @@ TEST(SimMounting, StaysWhereItIsLetGoInSixMountings) {
 
 TEST(SimMounting, ItsHandGoesWhereTheSceneSaysInEveryMounting) {
   for (const auto& one : kMountings) {
-    model::DeviceSettings stands = settings_of(one);
-    stands.motion_scale = 1.5;
-    stands.base_position_m = {0.01, 0.0, 0.02};
-    const Mounting mounting = mounting_of(stands);
+    model::DeviceSettings mounted = settings_of(one);
+    mounted.motion_scale = 1.5;
+    mounted.base_position_m = {0.01, 0.0, 0.02};
+    const Mounting mounting = mounting_of(mounted);
     MountedDevice device(
         std::make_unique<SimDelta>(settings(), hand_at({0.03, -0.02, 0.04}, 600.0), mounting),
         mounting);

@@ -57,7 +57,7 @@ class Worker final : public LibraryWorker {
 TEST(LibraryWorker, TheForcesComeThroughTwoMillisecondsOfZero) {
   Worker worker;
   EXPECT_EQ(worker.cycle_N(), 0.0);
-  EXPECT_FALSE(worker.on) << "nobody has asked";
+  EXPECT_FALSE(worker.on) << "no force was permitted";
   worker.want(true);
   EXPECT_EQ(worker.cycle_N(), 0.0);
   EXPECT_TRUE(worker.on);
@@ -94,7 +94,7 @@ TEST(LibraryWorker, ACommandLivesFiveMillisecondsAndTheForcesAHundred) {
   EXPECT_FALSE(worker.on);
 }
 
-TEST(LibraryWorker, ForcesThatDoNotSwitchAreTold) {
+TEST(LibraryWorker, ForcesThatDoNotSwitchAreReported) {
   Worker worker;
   worker.switches = false;
   worker.want(true);

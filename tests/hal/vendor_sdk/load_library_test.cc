@@ -36,7 +36,7 @@ TEST(LoadLibrary, NamesTheFirstFunctionThatIsMissingAndNoneThatMayBe) {
             "one; let device.example.library name libexample.so.1 of a current SDK");
 }
 
-TEST(LoadLibrary, WhatIsNotThereIsToldWithWhereToGetIt) {
+TEST(LoadLibrary, AMissingLibraryIsReportedWithItsSource) {
   const auto library = load_library("libexample.so.1", false, kVendor);
   ASSERT_FALSE(library);
   for (const char* part : {"libexample.so.1: in no system folder", "the SDK at example.org",

@@ -109,7 +109,7 @@ TEST_P(Binding, AKneeGoesToTheSideWhereItsLegIsAndNothingElseMoves) {
     const Vector3d along = (ankle_m - hip_m).normalized();
     return ((p_m - hip_m) - (p_m - hip_m).dot(along) * along).normalized();
   };
-  // What is bound is the hint, which stands before the leg.
+  // What is bound is the hint, which is in front of the leg.
   const Vector3d hint_m = 0.5 * (hip_m + ankle_m) - 0.1 * Vector3d::UnitX();
   EXPECT_LT((across(figures.stays[leg[1]]) - across(hint_m)).norm(), 1e-9);
   const Vector3d wanted = across(figures.motion * hint_m);

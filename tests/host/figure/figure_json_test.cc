@@ -7,7 +7,7 @@
 
 namespace tact::host::figure::figure_json_test {
 
-TEST(FigureJson, StaysInItsLengthWhateverTheFigureDoes) {
+TEST(FigureJson, StaysInItsLengthForAnyFigure) {
   FigurePose pose;
   for (Eigen::Vector3d& at_m : pose.joint_m) at_m.setConstant(-1e30);
   pose.grip_m.setConstant(-1e30);

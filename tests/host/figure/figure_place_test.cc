@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the figure stands: by the tracked shoulder, else by the scene's, else before the device.
+// The place of the figure: by the tracked shoulder, else by the scene's, else before the device.
 #include <gtest/gtest.h>
 
 #include "host/figure/figure.h"
@@ -36,16 +36,16 @@ TEST(FigurePlace, ATrackedShoulderGoesBeforeTheScenes) {
 TEST(FigurePlace, AShoulderTooFarAwayIsSaidAndNotBelieved) {
   Figure untracked, near, far;
   const Vector3d home_m = shoulder_after_s(untracked, 0.1);
-  const auto stands = [&](Figure& figure, double off_m) -> Vector3d {
+  const auto place = [&](Figure& figure, double off_m) -> Vector3d {
     TrackedOperator bodies;
     bodies[BodyRole::kShoulder].state = BodyState::kTracked;
     bodies[BodyRole::kShoulder].pose.position_m = home_m + off_m * Vector3d::UnitX();
     for (int i = 0; i < 600; ++i) figure.update(i * test::kMotionFrame_s, tool_at(0.0), bodies);
     return figure.pose()[FigureJoint::kPelvis] - untracked.pose()[FigureJoint::kPelvis];
   };
-  EXPECT_GT(stands(near, kMaxPosition_m - 0.05).norm(), 0.4);
+  EXPECT_GT(place(near, kMaxPosition_m - 0.05).norm(), 0.4);
   EXPECT_EQ(near.pose().words.find("too far"), std::string::npos) << near.pose().words;
-  EXPECT_LT(stands(far, kMaxPosition_m + 0.05).norm(), 0.02);
+  EXPECT_LT(place(far, kMaxPosition_m + 0.05).norm(), 0.02);
   EXPECT_EQ(far.pose().words, "the tracked shoulder is too far off to be believed");
 }
 

@@ -28,7 +28,7 @@ double angle_rad(const Vector3d& a, const Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-TrackedOperator nobody(double) { return {}; }
+TrackedOperator untracked(double) { return {}; }
 
 /// Every bone that the plan names.
 std::array<std::pair<std::array<FigureJoint, 2>, double>, 21> bones(const BodyPlan& plan) {
@@ -101,8 +101,8 @@ TEST(Figure, BendsAndTurnsTheNeckNoFartherThanANeckGoes) {
   EXPECT_NEAR(thorax.angularDistance(pose.head), kHeadTurn_rad, 1e-6);
 }
 
-TEST(Figure, HoldsTheToolWithinAMillimetreWhateverTheTrackersDo) {
-  for (const auto bodies : {nobody, bodies_at, troubled_bodies_at}) {
+TEST(Figure, HoldsTheToolWithinAMillimetreForAnyTrackers) {
+  for (const auto bodies : {untracked, bodies_at, troubled_bodies_at}) {
     Figure figure;
     play(figure, bodies, [&](double t_s, const FigurePose& pose) {
       const Vector3d grip_m = pose::to_world(tool_at(t_s), FigureSettings{}.grip_m);
@@ -117,7 +117,7 @@ TEST(Figure, TurnsTheHandWithTheToolWhereTheWristLetsIt) {
   Figure figure;
   const Vector3d palm = holding_hand() * arm_along();
   double most_rad = 0.0;
-  play(figure, nobody, [&](double t_s, const FigurePose& pose) {
+  play(figure, untracked, [&](double t_s, const FigurePose& pose) {
     const Vector3d now = pose[FigureJoint::kRightKnuckles] - pose[FigureJoint::kRightWrist];
     const Vector3d wanted = tool_at(t_s).rotation * palm;
     if (t_s > 0.5) most_rad = std::max(most_rad, angle_rad(now, wanted));
@@ -139,7 +139,7 @@ double fastest_mps(const std::function<TrackedOperator(double)>& bodies) {
 }
 
 TEST(Figure, NeverJumps) {
-  const double calm_mps = fastest_mps(nobody), tracked_mps = fastest_mps(bodies_at),
+  const double calm_mps = fastest_mps(untracked), tracked_mps = fastest_mps(bodies_at),
                troubled_mps = fastest_mps(troubled_bodies_at);
   std::printf("fastest joint: tool alone %.2f m/s, tracked %.2f m/s, with losses %.2f m/s\n",
               calm_mps, tracked_mps, troubled_mps);
@@ -178,7 +178,7 @@ TEST(Figure, HoldsFadesAndComesBackWithItsTracker) {
   EXPECT_NEAR(run_s(0.5, head_at(0.15, BodyState::kTracked)), moved_m, 3e-3);
 }
 
-TEST(Figure, StandsWhereItsShoulderMeetsTheTrackedOne) {
+TEST(Figure, IsAtItsShoulderOnTheTrackedOne) {
   Figure figure;
   TrackedOperator bodies;
   bodies[BodyRole::kShoulder].state = BodyState::kTracked;
@@ -197,7 +197,7 @@ TEST(Figure, StandsWhereItsShoulderMeetsTheTrackedOne) {
   EXPECT_LT((stays.pose()[FigureJoint::kPelvis] - before_m).norm(), 1e-12);
 }
 
-TEST(Figure, StandsStillOnUntrackedLegs) {
+TEST(Figure, RestsOnUntrackedLegs) {
   Figure figure;
   const FigurePose first = figure.pose();
   TrackedOperator bodies;
@@ -267,10 +267,10 @@ TEST(Figure, LetsNoNumberOutThatIsNotFinite) {
   const FigurePose before = figure.update(40.0, tool, {});
   tool.position_m[0] = none;
   const FigurePose& after = figure.update(40.0, tool, {});
-  EXPECT_LT((after.grip_m - before.grip_m).norm(), 1e-12) << "the last good one stands";
+  EXPECT_LT((after.grip_m - before.grip_m).norm(), 1e-12) << "the last good one is kept";
 }
 
-TEST(Figure, BeginsAnewWhenTimeGoesBack) {
+TEST(Figure, BeginsAgainWhenTimeGoesBack) {
   Figure figure, fresh;
   play(figure, bodies_at, [](double, const FigurePose&) {});
   const FigurePose again = figure.update(1.0, tool_at(1.0), bodies_at(1.0));

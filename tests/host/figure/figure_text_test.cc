@@ -33,7 +33,7 @@ TEST(FigureWords, SayWhichAnkleItsLegCannotReach) {
 }
 
 TEST(FigureWords, OfALegAreNotSaidWithoutATrackerAtItsAnkle) {
-  // On tiptoe: the hips rise beyond what the feet, of which nobody knows, would allow.
+  // On tiptoe: the hips rise beyond what the untracked feet would allow.
   Figure figure;
   TrackedOperator bodies;
   bodies[BodyRole::kWaist].state = BodyState::kTracked;

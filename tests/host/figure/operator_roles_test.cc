@@ -47,7 +47,7 @@ const std::vector<Case> kCases{
     {"left_hand", BodyRole::kLeftHand, {0.10, -0.30, 0.05}, kLeftWrist, kRightArm},
     {"elbow", BodyRole::kElbow, {0.42, 0.28, 0.06}, kRightElbow, kLeftArm}};
 
-/// The camera stands behind the device and looks at the operator.
+/// The camera is behind the device and looks at the operator.
 const std::string kRegistration =
     "[registration]\nposition_m = [-1.6, 0, -0.2]\n"
     "rotation_wxyz = [0.70710678118654752, 0, 0.70710678118654752, 0]\n";

@@ -92,7 +92,7 @@ TEST(ToolArm, NeitherElbowNorShoulderJumpsBetweenNeighbouringFrames) {
   }
 }
 
-TEST(ToolArm, StandsUprightAgainWhenTheToolComesBack) {
+TEST(ToolArm, IsUprightAgainWhenTheToolComesBack) {
   ToolArm arm(kPlan);
   arm.hold(goal(-0.85, 0.0, 0.25));
   for (int i = 0; i < 600; ++i) {
@@ -103,7 +103,7 @@ TEST(ToolArm, StandsUprightAgainWhenTheToolComesBack) {
   EXPECT_LT((arm.points_m()[kShoulderBone] - shoulder_m).norm(), 1e-3);
 }
 
-TEST(ToolArm, KeepsLengthsLimitsAndItsWordWhateverTheGoalIs) {
+TEST(ToolArm, KeepsLengthsAndLimitsForAnyGoal) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> side(-1.0, 1.0);
   ToolArm arm(kPlan);
@@ -131,7 +131,7 @@ TEST(ToolArm, KeepsLengthsLimitsAndItsWordWhateverTheGoalIs) {
   EXPECT_LT(reached, 2000) << "and some are not";
 }
 
-TEST(ToolArm, TurnsTheElbowToWhereItIsToldUnlessALimitIsInTheWay) {
+TEST(ToolArm, TurnsTheElbowToItsGoalUnlessALimitIsInTheWay) {
   int free = 0, by_cone = 0;
   // High and near the cone of the upper arm leaves the elbow no room above.
   for (const ArmGoal& same : {goal(-0.40, 0.09, 0.22), goal(-0.22, 0.12, 0.45)}) {

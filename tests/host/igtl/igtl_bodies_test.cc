@@ -33,7 +33,7 @@ TEST(IgtlBodies, AreAbsentUntilTheyCameAndLostWhenTheyAreSilent) {
   EXPECT_EQ(bodies.at(2.0)[BodyRole::kHead].state, BodyState::kLost);
 }
 
-TEST(IgtlBodies, WhatJumpsStandsOrComesLateIsNotBelieved) {
+TEST(IgtlBodies, AJumpAFrozenPoseAndALateOneAreRejected) {
   IgtlBodies bodies;
   const auto head = [&](double now_s) { return bodies.at(now_s)[BodyRole::kHead]; };
   bodies.take(BodyRole::kHead, at_x(0.1), 100.0, 1.0);

@@ -138,7 +138,7 @@ TEST(LinkOptions, SayWhatIsWrongWithThem) {
   EXPECT_NE(opened({.port = port}).find("choose another"), std::string::npos);
 }
 
-TEST(LinkOptions, TheProgramRefusesThemInASentence) {
+TEST(LinkOptions, TheProgramRefusesThemWithAMessage) {
   for (const auto& [options, words] :
        {std::pair{"--igtl 70000", "--igtl"}, std::pair{"--igtl-bind 127.0.0.1", "--igtl"},
         std::pair{"--igtl-from plus", "not an IP address and a port"},

@@ -43,7 +43,8 @@ TEST_F(LinkAndStrangers, ADamagedMessageIsLeftOutAndTheNextIsTaken) {
   EXPECT_NEAR(head().raw.position_m.x(), 0.3, 1e-6);
   EXPECT_EQ(refused(), 2u);
   for (const char* kind : {"its checksum is not that of its bytes", "the size is wrong"})
-    EXPECT_NE(said().find(kind), std::string::npos) << "the first of each kind is told: " << said();
+    EXPECT_NE(said().find(kind), std::string::npos)
+        << "the first of each kind is reported: " << said();
   EXPECT_EQ(clients(), 1u);
 }
 
@@ -81,7 +82,7 @@ int batches_kept() {
   return static_cast<int>((most + 500'000) / kBatch_B);
 }
 
-TEST_F(LinkAndStrangers, WhoDoesNotReadHoldsNobodyUp) {
+TEST_F(LinkAndStrangers, AClientThatDoesNotReadDelaysNone) {
   ASSERT_EQ(open(), "");
   tcp::socket lazy(other_, tcp::v4());
   lazy.set_option(boost::asio::socket_base::receive_buffer_size(65'536));

@@ -27,7 +27,7 @@ using tests::message_of;
 const pose::Pose kPose{.rotation = Quaterniond(0.8, 0.2, -0.4, 0.4).normalized(),
                        .position_m = {0.125, -0.25, 1.5}};
 
-/// The library's message from our bytes; its checksum is judged.
+/// The library's message from our bytes; its checksum is evaluated.
 template <typename Message>
 typename Message::Pointer unpacked(const std::string& bytes) {
   auto header = ::igtl::MessageHeader::New();
@@ -247,7 +247,7 @@ TEST(IgtlWire, OfVersion2TheTrackersOwnStatusIsHeard) {
   }
 }
 
-TEST(IgtlWire, OfAnyBytesComesAFinitePoseOrASentence) {
+TEST(IgtlWire, OfAnyBytesComesAFinitePoseOrAMessage) {
   std::mt19937 random(11);
   std::uniform_int_distribution<int> byte(0, 255), edits(1, 6);
   const std::string kinds[] = {version_2("TransformStatus", "OK"),

@@ -114,7 +114,8 @@ inline std::string transform_of(const char* device, float x_mm) {
           static_cast<std::size_t>(message->GetPackSize())};
 }
 
-/// The next message of the library's client as `Message`, its checksum judged; the type is told.
+/// The next message of the library's client as `Message`, its checksum evaluated; the type is
+/// reported.
 struct Received {
   std::string type, device;
   ::igtl::MessageHeader::Pointer header = ::igtl::MessageHeader::New();

@@ -68,7 +68,7 @@ TEST(CoordinateChain, MovingTheWorldMovesTheBoneAlike) {
               1e-14);
 }
 
-TEST(CoordinateChain, BetweenTakesTheShorterWayWhateverTheSigns) {
+TEST(CoordinateChain, BetweenTakesTheShorterWayForAnySigns) {
   Pose to = bone_then;
   for (int sign = 0; sign < 2; ++sign) {
     expect_same(between(tracker_then, to, 0.0), tracker_then, 1e-14);

@@ -26,7 +26,7 @@ tracking::TrackingCamera sweep() {
   return out;
 }
 
-/// What a camera sees, and where it says it stands.
+/// What a camera sees, and its stated pose.
 struct Picture {
   tracking::TrackingCamera camera;
   Pose eye{};
@@ -179,7 +179,7 @@ TEST(JointPose, IsNeverWorseThanItsBestStart) {
 }
 
 TEST(JointPose, ASweepAndACameraOfPixelsCountAlike) {
-  // The same noise in angles: whichever view is told in pixels or in tangents, the pose is the
+  // The same noise in angles: whichever view is reported in pixels or in tangents, the pose is the
   // same.
   Scenes scenes;
   for (int i = 0; i < 50; ++i) {
@@ -219,7 +219,7 @@ TEST(JointPose, ViewsThatContradictEachOtherGiveNoPose) {
     EXPECT_EQ(scene.joint().status, PoseStatus::kNoPose) << i;
     scene.b.eye.position_m -= 0.1 * across;
     EXPECT_EQ(scene.joint().status, PoseStatus::kOk) << i;
-    // Along what the other sees, which takes it for depth: only the body's size tells.
+    // Along what the other sees, which takes it for depth: only the body's size shows it.
     const Vector3d depth = across.cross(sight).normalized();
     scene.b.eye.position_m += 0.1 * depth;
     refused += scene.joint().status == PoseStatus::kNoPose ? 1 : 0;

@@ -115,7 +115,7 @@ TEST_F(RecordingFile, OfAnEarlierFormatIsRefusedWithTheRemedy) {
   EXPECT_NE(read.damage.find("record it again"), std::string::npos) << read.damage;
 }
 
-TEST_F(RecordingFile, EveryDamageIsTold) {
+TEST_F(RecordingFile, EveryDamageIsReported) {
   tests::expect_all_damage_is_reported(
       path_, [](const std::string& path) { return !read_recording(path).damage.empty(); });
 }
@@ -199,7 +199,7 @@ TEST(RecordingCsv, HasOneNameForEveryColumn) {
   EXPECT_EQ(std::count(row.begin(), row.end(), '\n'), 1);
 }
 
-TEST(RecordingCsv, TellsASphereInsideAndLossesOfContact) {
+TEST(RecordingCsv, ReportsASphereInsideAndLossesOfContact) {
   Frame frame = test::make_frame(0.5f, firmware::protocol::ContactState::kInside);
   frame.contact_losses = 21;
   std::string row;
@@ -209,7 +209,7 @@ TEST(RecordingCsv, TellsASphereInsideAndLossesOfContact) {
   EXPECT_NE(csv_header({}).find(",non_rt,contact_losses,cut_triangles,"), std::string::npos);
 }
 
-TEST(RecordingCsv, TellsCutsAndTheLargestDisplacementOfAPatch) {
+TEST(RecordingCsv, ReportsCutsAndTheLargestDisplacementOfAPatch) {
   Frame frame;
   frame.patch.cut_total = 40;
   frame.patch.vertex_count = 2;

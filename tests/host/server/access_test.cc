@@ -22,7 +22,7 @@ TEST(Access, LetsOnlyLoopbackNamesReachALoopbackServer) {
 }
 
 // Other users of this PC reach its loopback address, too.
-TEST(Access, NeedsTheWholeTokenWhateverTheAddress) {
+TEST(Access, NeedsTheWholeTokenForAnyAddress) {
   for (const bool loopback : {false, true}) {
     Access access = kNetwork;
     access.loopback = loopback;
@@ -38,7 +38,7 @@ TEST(Access, NeedsTheWholeTokenWhateverTheAddress) {
   }
 }
 
-// Of the right length, so that only its characters tell it from the right one.
+// Of the right length, so that only its characters differ.
 TEST(Access, RefusesATokenWithOneBitWrongAnywhere) {
   for (std::size_t at = 0; at < kNetwork.token.size(); ++at) {
     for (unsigned bit = 0; bit < 8; ++bit) {

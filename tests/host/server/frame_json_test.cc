@@ -32,7 +32,7 @@ record::Frame longest_frame() {
   return frame;
 }
 
-TEST(FrameJson, StaysInItsLengthWhateverItsNumbersAre) {
+TEST(FrameJson, StaysInItsLengthForAnyNumbers) {
   const std::string text = frame_json(longest_frame(), busiest_header());
   EXPECT_LE(text.size(), kMaxFrameJsonBytes);
   EXPECT_GT(text.size(), kMaxFrameJsonBytes - 200) << "the bound is no larger than it must be";
@@ -128,7 +128,7 @@ TEST(SceneJson, SurvivesANameWithBrokenUtf8) {
   EXPECT_TRUE(nlohmann::json::accept(scene_json(header)));
 }
 
-TEST(FrameJson, TellsDisplacedVerticesAndCutsOfALawWithoutProfiles) {
+TEST(FrameJson, ReportsDisplacedVerticesAndCutsOfALawWithoutProfiles) {
   record::Frame frame{};
   frame.patch.vertex_count = 2;
   frame.patch.vertex[0] = 7;

@@ -60,7 +60,7 @@ TEST_F(HttpSession, EndsAConnectionThatSaysNothing) {
   EXPECT_EQ(say(""), "");
 }
 
-TEST_F(HttpSession, TurnsTheSixtyFifthPageAwayAndTellsIt) {
+TEST_F(HttpSession, TurnsTheSixtyFifthPageAwayWithTheReason) {
   start();
   start_source();
   std::list<Socket> pages;
@@ -74,13 +74,13 @@ TEST_F(HttpSession, TurnsTheSixtyFifthPageAwayAndTellsIt) {
   EXPECT_EQ(get("/").result(), http::status::ok) << "the page itself is public";
   EXPECT_TRUE(wait_until([this] {
     return warnings_.size() == 1 && warnings_[0].starts_with("64 pages and downloads are open");
-  })) << "told once";
+  })) << "reported once";
   pages.pop_back();
   EXPECT_TRUE(wait_until([this] { return view_.listeners() == 63; }));
   EXPECT_EQ(get("/session").result(), http::status::no_content) << "there is room again";
 }
 
-TEST_F(HttpSession, AConnectionWithoutTheTokenTakesNobodysPlace) {
+TEST_F(HttpSession, AConnectionWithoutTheTokenTakesNoSlot) {
   start();
   start_source();
   Socket page(client_io_);

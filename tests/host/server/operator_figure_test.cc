@@ -39,7 +39,7 @@ TEST(OperatorFigure, TakesTheToolByTheUpperPartOfItsMesh) {
   EXPECT_NEAR(grip_of(header, {}).z(), figure::FigureSettings{}.grip_m.z(), 1e-12);
 }
 
-TEST(OperatorFigure, HoldsTheToolThatTelemetryTells) {
+TEST(OperatorFigure, HoldsTheToolThatTelemetryReports) {
   OperatorFigure figure(1.75);
   figure.begin(test::make_header(3, 1, 3, 1), mesh_with_tool());
   record::Frame frame = frame_at(0.02f, 0);
@@ -62,7 +62,7 @@ TEST(OperatorFigure, AToolThatIsNotFiniteStaysWhereItWas) {
   EXPECT_EQ(reported(figure, none)["grip_m"], before["grip_m"]);
 }
 
-TEST(OperatorFigure, StandsWhereTheSceneHasItsShoulder) {
+TEST(OperatorFigure, IsWhereTheSceneHasItsShoulder) {
   OperatorFigure figure(1.75);
   const Eigen::Vector3d shoulder_m(0.55, 0.20, 0.45);
   figure.put_shoulder_at(shoulder_m);
@@ -85,7 +85,7 @@ TEST(OperatorFigure, SaysWhetherAViewMayGoWithTheHead) {
   EXPECT_EQ(reported(figure, frame_at(0.0f, 0), &tracked)["head_tracked"], false);
 }
 
-TEST(OperatorFigure, TellsWhatTheTrackerLost) {
+TEST(OperatorFigure, ReportsWhatTheTrackerLost) {
   OperatorFigure figure(1.75);
   tracking::TrackedOperator tracked;
   tracked[tracking::BodyRole::kHead] = {.state = tracking::BodyState::kLost,
@@ -94,7 +94,7 @@ TEST(OperatorFigure, TellsWhatTheTrackerLost) {
   EXPECT_EQ(reported(figure, frame_at(0.0f, 0))["words"], "");
 }
 
-TEST_F(Viewer, TellsTheFigureAfterEachFrameAndItsSkeletonWithTheStatus) {
+TEST_F(Viewer, SendsTheFigureAfterEachFrameAndItsSkeletonWithTheStatus) {
   OperatorFigure figure(1.75);
   view_.accompany(&figure);
   start();
@@ -115,7 +115,7 @@ TEST_F(Viewer, TellsTheFigureAfterEachFrameAndItsSkeletonWithTheStatus) {
   }
 }
 
-TEST_F(Viewer, TellsTheFigureRightAfterItsFrameEvenIfAStatusCameMeanwhile) {
+TEST_F(Viewer, SendsTheFigureRightAfterItsFrameEvenIfAStatusCameMeanwhile) {
   OperatorFigure figure(1.75);
   view_.accompany(&figure);
   start();
@@ -152,7 +152,7 @@ TEST_F(Viewer, GivesASlowBrowserTheFigureOfTheFrameThatItGets) {
   record::Frame frame;
   constexpr std::uint64_t kSent = 100;
   for (frame.tick = 1; frame.tick <= kSent; ++frame.tick) {
-    source_->send(frame);  // the browser sleeps; nobody is held up
+    source_->send(frame);  // the browser sleeps; no other client waits
     ASSERT_TRUE(wait_until([&] { return frames_ == frame.tick; }));
   }
   std::uint64_t shown = 0;

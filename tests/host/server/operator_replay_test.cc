@@ -40,7 +40,7 @@ void expect_near(const nlohmann::json& got, const nlohmann::json& wanted, double
     EXPECT_NEAR(got[i].get<double>(), wanted[i].get<double>(), tolerance);
 }
 
-/// One step of the last digit that is told.
+/// One step of the last digit that is reported.
 void expect_same(const nlohmann::json& got, const nlohmann::json& wanted) {
   expect_near(got["joint_m"], wanted["joint_m"], 1.01e-4);
   expect_near(got["grip_m"], wanted["grip_m"], 1.01e-4);
@@ -103,7 +103,7 @@ TEST_F(OperatorReplay, OfADownloadFromTheMiddleIsTheFigureThatWasSeenLive) {
   EXPECT_EQ(again.figures_.at(kTo)["words"], "head lost (silent)");
 }
 
-TEST_F(OperatorReplay, StaysBoundWhenTheDeviceBeginsAnew) {
+TEST_F(OperatorReplay, StaysBoundWhenTheDeviceBeginsAgain) {
   OperatorFigure live(1.75);
   const auto head_m = [&](const Vector3d& at_m, std::uint64_t tick) {
     tracking::TrackedOperator bodies;

@@ -100,7 +100,7 @@ class Replay : public ::testing::Test {
   Playback playback_{io_, view_, recording(), "made-up"};
 };
 
-TEST_F(Replay, BeginsWhenSomebodyLooksAndRestsAtItsEnd) {
+TEST_F(Replay, BeginsWithItsFirstViewerAndRestsAtItsEnd) {
   playback_.start();
   run_for(100);
   view_.subscribe(heard_);
@@ -115,7 +115,7 @@ TEST_F(Replay, BeginsWhenSomebodyLooksAndRestsAtItsEnd) {
   EXPECT_EQ(heard_.ticks_.back(), 0U) << "played again it begins again";
 }
 
-TEST_F(Replay, TellsItsLengthAndWhereItStopped) {
+TEST_F(Replay, ReportsItsLengthAndWhereItStopped) {
   playback_.start();
   view_.subscribe(heard_);
   EXPECT_EQ(heard_.status_["link"], "replay");
@@ -127,7 +127,7 @@ TEST_F(Replay, TellsItsLengthAndWhereItStopped) {
   EXPECT_EQ(heard_.replay()["stops"][0]["fault"], 131);
 }
 
-TEST_F(Replay, GoesWhereItIsToldAndRestsThere) {
+TEST_F(Replay, SeeksToTheRequestedTimeAndRestsThere) {
   playback_.start();
   view_.subscribe(heard_);
   rest();
@@ -150,7 +150,7 @@ TEST_F(Replay, GoesWhereItIsToldAndRestsThere) {
   view_.unsubscribe(late);
 }
 
-TEST_F(Replay, ItsTableIsTheWholeFileWhateverWasShown) {
+TEST_F(Replay, ItsTableIsTheWholeFileAfterAnySeek) {
   playback_.start();
   view_.subscribe(heard_);
   rest();
@@ -165,7 +165,7 @@ TEST_F(Replay, ItsTableIsTheWholeFileWhateverWasShown) {
   EXPECT_TRUE(view_.recent(0, UINT64_MAX).frames.empty()) << "not of the run after it";
 }
 
-TEST_F(Replay, PlaysInOneRowWhateverIsAsked) {
+TEST_F(Replay, PlaysInOneRowForAnyRequests) {
   playback_.start();
   view_.subscribe(heard_);
   for (int i = 0; i < 50; ++i) play(20.0), io_.poll();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a page's message to the line for the launcher, and what the pages are told of it.
+// From a page's message to the line for the launcher, and the report to the pages.
 #include "host/server/scene_picker.h"
 
 #include <gtest/gtest.h>
@@ -55,7 +55,7 @@ class Picker : public ::testing::Test {
                                     [this](const std::string& line) { lines_.push_back(line); }};
 };
 
-TEST_F(Picker, SendsAGoodRequestAndTellsWhenItRuns) {
+TEST_F(Picker, SendsAGoodRequestAndReportsWhenItRuns) {
   show("liver", true);
   EXPECT_EQ(reported()["scene"], "liver");
   ask(R"({"scene":"heart","set":{"disc_stack.layers":12,"disc_stack.poisson_ratio":1e-5}})");
@@ -125,7 +125,7 @@ TEST_F(Picker, SendsOneRequestAtATime) {
   EXPECT_NE(answer().find("is being started"), std::string::npos);
 }
 
-TEST_F(Picker, TellsWhyARequestWasRefusedAndTakesTheNext) {
+TEST_F(Picker, ReportsWhyARequestWasRefusedAndTakesTheNext) {
   show("liver", true);
   ask(R"({"scene":"heart"})");
   picker_.answer("tactd: too stiff \xff");

@@ -52,7 +52,7 @@ TEST_P(ViewerAt, ShowsNothingWithoutItsToken) {
                              "/session", "/live", "/none"}) {
       EXPECT_EQ(get(path).result(), http::status::unauthorized) << path;
       EXPECT_EQ(get(path + ("?token=" + server_.token())).result(), http::status::unauthorized)
-          << "an address stands in histories and logs";
+          << "an address is kept in histories and logs";
     }
     Socket without(client_io_);
     EXPECT_EQ(open_live(without, "http://localhost:1"), websocket::error::upgrade_declined);
@@ -103,7 +103,7 @@ TEST_F(Viewer, GivesASlowBrowserTheNewestFrameAndNotTheOldOnes) {
   Frame frame;
   constexpr std::uint64_t kSent = 200;
   for (frame.tick = 1; frame.tick <= kSent; ++frame.tick) {
-    source_->send(frame);  // the browser sleeps; nobody is held up
+    source_->send(frame);  // the browser sleeps; no other client waits
     ASSERT_TRUE(wait_until([&] { return frames_ == frame.tick; }));
   }
   std::uint64_t shown = 0;
@@ -161,7 +161,7 @@ TEST_F(Viewer, SaysThatTactdWentAwayAndFindsItAgain) {
   EXPECT_EQ(status["scene_number"], 2);
 }
 
-TEST_F(Viewer, HearsThatATactdStandsStillAndThatItGoesOn) {
+TEST_F(Viewer, SeesThatATactdIsPausedAndThatItGoesOn) {
   start();
   start_source();
   Frame frame;
@@ -174,7 +174,7 @@ TEST_F(Viewer, HearsThatATactdStandsStillAndThatItGoesOn) {
   std::this_thread::sleep_for(std::chrono::milliseconds(700));
   source_->send(frame);
   EXPECT_TRUE(wait_until([this] { return silences_s_ == std::vector<double>{0.3, 0.0}; }))
-      << "told once each";
+      << "reported once each";
 }
 
 TEST_F(Viewer, SaysWhatIsWrongWithTelemetryOfAnotherBuild) {

@@ -30,7 +30,7 @@ class Body : public ::testing::Test {
     now_s += period_s;
     ++sequence;
   }
-  TrackedBody at_once() const { return tracker.at(now_s); }
+  TrackedBody now() const { return tracker.at(now_s); }
 
   BodyTracker tracker{2};
   double time_s = 100.0, now_s = 5.0;
@@ -41,18 +41,18 @@ class Body : public ::testing::Test {
 };
 
 TEST_F(Body, NeverSeenIsLostAndSilent) {
-  EXPECT_EQ(at_once().state, BodyState::kLost);
-  EXPECT_EQ(at_once().trouble, TrackingTrouble::kSilent);
-  EXPECT_TRUE(std::isfinite(at_once().age_s));
+  EXPECT_EQ(now().state, BodyState::kLost);
+  EXPECT_EQ(now().trouble, TrackingTrouble::kSilent);
+  EXPECT_TRUE(std::isfinite(now().age_s));
   EXPECT_FALSE(tracker.last_pose());
 }
 
 TEST_F(Body, IsTrackedThenHeldThenLost) {
   see(0.2);
-  EXPECT_EQ(at_once().state, BodyState::kTracked);
-  EXPECT_EQ(at_once().trouble, TrackingTrouble::kNone);
-  EXPECT_EQ(at_once().raw.position_m.x(), 0.2);
-  EXPECT_EQ(at_once().rms_px, 0.4);
+  EXPECT_EQ(now().state, BodyState::kTracked);
+  EXPECT_EQ(now().trouble, TrackingTrouble::kNone);
+  EXPECT_EQ(now().raw.position_m.x(), 0.2);
+  EXPECT_EQ(now().rms_px, 0.4);
   const auto state = [&](double age_s) { return tracker.at(now_s + age_s).state; };
   EXPECT_EQ(state(kHold_s), BodyState::kTracked);
   EXPECT_EQ(state(kHold_s + 1e-9), BodyState::kHeld);
@@ -60,7 +60,7 @@ TEST_F(Body, IsTrackedThenHeldThenLost) {
   EXPECT_EQ(state(kLose_s + 1e-9), BodyState::kLost);
   EXPECT_EQ(tracker.at(now_s + 0.2).trouble, TrackingTrouble::kSilent);
   EXPECT_NEAR(tracker.at(now_s + 0.2).age_s, 0.2, 1e-12);
-  EXPECT_EQ(tracker.at(now_s + 0.2).raw.position_m.x(), 0.2);  // the last one stands
+  EXPECT_EQ(tracker.at(now_s + 0.2).raw.position_m.x(), 0.2);  // the last one is kept
 }
 
 TEST_F(Body, APoseThatCannotBeHadSaysWhy) {
@@ -74,63 +74,63 @@ TEST_F(Body, APoseThatCannotBeHadSaysWhy) {
     step();
     status = wrong;
     see(9.0);
-    EXPECT_EQ(at_once().trouble, trouble);
-    EXPECT_EQ(at_once().raw.position_m.x(), 0.0);
+    EXPECT_EQ(now().trouble, trouble);
+    EXPECT_EQ(now().raw.position_m.x(), 0.0);
   }
   step();
   status = pose::PoseStatus::kOk;
   see(0.01);
-  EXPECT_EQ(at_once().trouble, TrackingTrouble::kNone);
+  EXPECT_EQ(now().trouble, TrackingTrouble::kNone);
 }
 
 TEST_F(Body, AJumpIsHeldAndBelievedWithTheThirdPoseThatAgrees) {
   for (int i = 0; i < 10; ++i, step()) see(0.0);
   for (int i = 0; i < 2; ++i, step()) {
     see(1.0 + 0.01 * i);  // 60 m/s
-    EXPECT_EQ(at_once().trouble, TrackingTrouble::kJump);
-    EXPECT_EQ(at_once().raw.position_m.x(), 0.0);
+    EXPECT_EQ(now().trouble, TrackingTrouble::kJump);
+    EXPECT_EQ(now().raw.position_m.x(), 0.0);
   }
   see(1.02);
-  EXPECT_EQ(at_once().trouble, TrackingTrouble::kNone);
-  EXPECT_EQ(at_once().raw.position_m.x(), 1.02);
-  EXPECT_EQ(at_once().pose.position_m.x(), 1.02);  // the filter does not drag it over
+  EXPECT_EQ(now().trouble, TrackingTrouble::kNone);
+  EXPECT_EQ(now().raw.position_m.x(), 1.02);
+  EXPECT_EQ(now().pose.position_m.x(), 1.02);  // the filter does not drag it over
 }
 
 TEST_F(Body, PosesThatJumpAboutAreNeverBelieved) {
   for (int i = 0; i < 10; ++i, step()) see(0.0);
   for (int i = 0; i < 60; ++i, step()) {
     see(i % 2 == 0 ? 1.0 : -1.0);
-    EXPECT_EQ(at_once().trouble, TrackingTrouble::kJump);
+    EXPECT_EQ(now().trouble, TrackingTrouble::kJump);
     const double since_s = (i + 1) * kPeriod_s;  // the last good pose
     if (since_s > kHold_s + 1e-6 && since_s < kLose_s - 1e-6)
-      EXPECT_EQ(at_once().state, BodyState::kHeld) << i;
+      EXPECT_EQ(now().state, BodyState::kHeld) << i;
   }
-  EXPECT_EQ(at_once().raw.position_m.x(), 0.0);
-  EXPECT_EQ(at_once().state, BodyState::kLost);
-  EXPECT_EQ(at_once().trouble, TrackingTrouble::kJump) << "and still says why";
+  EXPECT_EQ(now().raw.position_m.x(), 0.0);
+  EXPECT_EQ(now().state, BodyState::kLost);
+  EXPECT_EQ(now().trouble, TrackingTrouble::kJump) << "and still says why";
 }
 
 TEST_F(Body, OneWildPoseDoesNotDisturbTheFilter) {
   BodyTracker calm{2};
   std::swap(calm, tracker);
   for (int i = 0; i < 30; ++i, step()) see(i % 2 == 0 ? 0.0 : 0.004);
-  const double before_m = at_once().pose.position_m.x();
+  const double before_m = now().pose.position_m.x();
   see(1.0);
   step();
   see(0.004);
-  EXPECT_LT(std::abs(at_once().pose.position_m.x() - before_m), 0.002);
+  EXPECT_LT(std::abs(now().pose.position_m.x() - before_m), 0.002);
 }
 
-TEST_F(Body, AMirroredPoseIsAJumpThoughItStandsStill) {
+TEST_F(Body, AMirroredPoseIsAJumpThoughItIsAtRest) {
   for (int i = 0; i < 10; ++i, step()) see(0.0);
   see(Pose{.rotation = Eigen::Quaterniond(0, 1, 0, 0), .position_m = {0, 0, 1}});
-  EXPECT_EQ(at_once().trouble, TrackingTrouble::kJump);
+  EXPECT_EQ(now().trouble, TrackingTrouble::kJump);
 }
 
 TEST_F(Body, AHandAtFourMetresASecondIsNoJump) {
   for (int i = 0; i < 20; ++i, step()) {
     see(4.0 * i * kPeriod_s);
-    EXPECT_EQ(at_once().trouble, TrackingTrouble::kNone) << i;
+    EXPECT_EQ(now().trouble, TrackingTrouble::kNone) << i;
   }
 }
 
@@ -138,19 +138,19 @@ TEST_F(Body, TheSameNumbersForHalfASecondAreFrozen) {
   moving = false;
   int wanted = 0;
   for (int i = 0; i < 60; ++i, step()) wanted += see(0.0) ? 1 : 0;
-  EXPECT_EQ(at_once().trouble, TrackingTrouble::kFrozen);
+  EXPECT_EQ(now().trouble, TrackingTrouble::kFrozen);
   EXPECT_NEAR(wanted, kFrozen_s / kPeriod_s, 1.5);
   for (int i = 0; i < 60; ++i, step()) see(0.0);
-  EXPECT_EQ(at_once().state, BodyState::kLost);
+  EXPECT_EQ(now().state, BodyState::kLost);
   moving = true;
   EXPECT_TRUE(see(0.0));
-  EXPECT_EQ(at_once().state, BodyState::kTracked);
+  EXPECT_EQ(now().state, BodyState::kTracked);
 }
 
 TEST_F(Body, AnOlderOrRepeatedObservationIsNotTaken) {
   see(0.0);
   EXPECT_FALSE(see(0.3));  // a datagram twice
-  EXPECT_EQ(at_once().trouble, TrackingTrouble::kOutOfOrder);
+  EXPECT_EQ(now().trouble, TrackingTrouble::kOutOfOrder);
   step();
   see(0.01);
   time_s -= 0.5 * kPeriod_s;
@@ -159,8 +159,8 @@ TEST_F(Body, AnOlderOrRepeatedObservationIsNotTaken) {
   time_s += kPeriod_s;
   sequence -= 2;
   EXPECT_FALSE(see(0.3));
-  EXPECT_EQ(at_once().raw.position_m.x(), 0.01);
-  EXPECT_EQ(at_once().trouble, TrackingTrouble::kOutOfOrder);
+  EXPECT_EQ(now().raw.position_m.x(), 0.01);
+  EXPECT_EQ(now().trouble, TrackingTrouble::kOutOfOrder);
 }
 
 TEST_F(Body, ARecordingThatStartsAgainIsANewBeginning) {
@@ -168,9 +168,9 @@ TEST_F(Body, ARecordingThatStartsAgainIsANewBeginning) {
   time_s = 0.0;
   sequence = 0;
   EXPECT_TRUE(see(1.0));  // and elsewhere: no jump
-  EXPECT_EQ(at_once().trouble, TrackingTrouble::kNone);
-  EXPECT_EQ(at_once().raw.position_m.x(), 1.0);
-  EXPECT_EQ(at_once().pose.position_m.x(), 1.0);
+  EXPECT_EQ(now().trouble, TrackingTrouble::kNone);
+  EXPECT_EQ(now().raw.position_m.x(), 1.0);
+  EXPECT_EQ(now().pose.position_m.x(), 1.0);
 }
 
 TEST_F(Body, ASenderThatCountsFromNoughtAgainIsANewBeginningWhenItPaused) {
@@ -187,12 +187,12 @@ TEST_F(Body, OfTwoCamerasTheNewerPoseCounts) {
   see(0.0, 0);
   time_s += 0.004;
   EXPECT_TRUE(see(0.002, 1));
-  EXPECT_EQ(at_once().raw.position_m.x(), 0.002);
+  EXPECT_EQ(now().raw.position_m.x(), 0.002);
   time_s -= 0.002;
   ++sequence;
   see(0.1, 0);  // in order for its camera, but older than the other's
-  EXPECT_EQ(at_once().trouble, TrackingTrouble::kNone);
-  EXPECT_EQ(at_once().raw.position_m.x(), 0.002);
+  EXPECT_EQ(now().trouble, TrackingTrouble::kNone);
+  EXPECT_EQ(now().raw.position_m.x(), 0.002);
 }
 
 TEST_F(Body, ALookThatComesLateIsWantedWhileItIsOfTheSameMoment) {
@@ -205,7 +205,7 @@ TEST_F(Body, ALookThatComesLateIsWantedWhileItIsOfTheSameMoment) {
   time_s = good_s;
   ++sequence;
   EXPECT_TRUE(see(0.1, 0));  // of the same moment exactly
-  EXPECT_EQ(at_once().raw.position_m.x(), 0.001);
+  EXPECT_EQ(now().raw.position_m.x(), 0.001);
 
   step(0.1);
   see(0.002, 1);
@@ -221,17 +221,17 @@ TEST_F(Body, ARefinedPoseReplacesTheGoodOneOfItsTimeAndNoOther) {
                                   .pose = {.position_m = {0.004, 0, 1}}};
   twin.take(better, time_s, now_s);
   see(0.010);
-  const TrackedBody before = at_once();
+  const TrackedBody before = now();
   EXPECT_FALSE(tracker.refine(better, time_s - 1e-3));
   EXPECT_FALSE(tracker.refine(better, time_s + 1e-3));
   EXPECT_FALSE(tracker.refine({.status = pose::PoseStatus::kNoPose, .pose = better.pose}, time_s));
-  EXPECT_EQ(at_once().raw.position_m.x(), 0.010);
+  EXPECT_EQ(now().raw.position_m.x(), 0.010);
   EXPECT_TRUE(tracker.refine(better, time_s));
-  EXPECT_EQ(at_once().raw.position_m.x(), 0.004);
+  EXPECT_EQ(now().raw.position_m.x(), 0.004);
   // The filter has forgotten the pose that was replaced.
-  EXPECT_EQ(at_once().pose.position_m.x(), twin.at(now_s).pose.position_m.x());
-  EXPECT_LT(at_once().pose.position_m.x(), 0.003);
-  EXPECT_EQ(at_once().age_s, before.age_s);
+  EXPECT_EQ(now().pose.position_m.x(), twin.at(now_s).pose.position_m.x());
+  EXPECT_LT(now().pose.position_m.x(), 0.003);
+  EXPECT_EQ(now().age_s, before.age_s);
 }
 
 TEST_F(Body, KnowsACameraThatRepeatsItself) {

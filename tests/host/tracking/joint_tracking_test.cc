@@ -127,7 +127,7 @@ TEST_F(TwoCameras, OneCoveredLeavesTheOther) {
 }
 
 TEST_F(TwoCameras, ThatContradictEachOtherCountOneByOne) {
-  // The side camera stands 3 cm beside its place: within what a jump may be.
+  // The side camera is 3 cm from its place: within what a jump may be.
   gap_s = 0.010;
   side.pose->position_m += 0.03 * Vector3d::UnitY();
   tracker = OperatorTracker(setup());

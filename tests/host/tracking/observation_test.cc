@@ -41,7 +41,7 @@ TEST(Observation, KeysThatAreNotKnownArePassedOver) {
   EXPECT_EQ(seen->points.size(), 2u);
 }
 
-TEST(Observation, OneSentenceSaysWhatIsWrong) {
+TEST(Observation, OneMessageSaysWhatIsWrong) {
   const std::pair<std::string, const char*> cases[] = {
       {"", "no JSON object"},
       {"[]", "no JSON object"},

@@ -36,7 +36,7 @@ class Input : public ::testing::Test {
     test::write_file(path_, test::description(input, {{"h", "hand"}}, more));
     return message_of(tracking_.open(path_));
   }
-  /// A port that nobody has, by asking the kernel for one.
+  /// A free port, by asking the kernel for one.
   static std::uint16_t free_port() {
     boost::asio::io_context io;
     udp::socket socket(io, {boost::asio::ip::address_v4::loopback(), 0});
@@ -79,7 +79,7 @@ TEST_F(Input, ADatagramBecomesAPose) {
   EXPECT_EQ(hand().trouble, TrackingTrouble::kSilent);
 }
 
-TEST_F(Input, BadDatagramsAreCountedAndTheFirstIsTold) {
+TEST_F(Input, BadDatagramsAreCountedAndTheFirstIsReported) {
   ASSERT_EQ(open("udp_port = " + std::to_string(free_port()),
                  "[registration]\nposition_m = [0, 0, "
                  "0]\nrotation_wxyz = [1, 0, 0, 0]\n"),
@@ -154,7 +154,7 @@ TEST_F(Input, AFileThatCannotBeginAgainIsRefused) {
   EXPECT_EQ(open("recording = \"a.jsonl\""), "");
 }
 
-TEST_F(Input, BadLinesOfAFileAreCountedAndTheFirstIsToldWithItsLine) {
+TEST_F(Input, BadLinesOfAFileAreCountedAndTheFirstIsReportedWithItsLine) {
   test::write_file(folder_ + "/a.jsonl",
                    line(0.0, 0.0, 0) + "\nx\n\n" + line(0.0, 1.5, 1) + "\n{}\n");
   ASSERT_EQ(open("recording = \"a.jsonl\""), "");

@@ -154,7 +154,7 @@ class Collector : public ::testing::Test {
   Vector3d look_m = Vector3d::Zero();
 };
 
-TEST_F(Collector, TakesOnePoseWhereverTheToolStandsStill) {
+TEST_F(Collector, TakesOnePoseForEachRestOfTheTool) {
   EXPECT_EQ(visit(0.00, 1.2), 0);  // not long enough
   EXPECT_EQ(visit(0.01, 0.1, 0.05), 0);
   EXPECT_EQ(visit(0.02, 5.0), 1);  // once
@@ -195,7 +195,7 @@ TEST_F(Collector, AToolThatCreepsIsNotStandingStill) {
   for (int i = 0; i < 3600; ++i) EXPECT_EQ(visit(4e-3 * now_s, 1e-3, 4e-3), 0) << i;  // one minute
 }
 
-TEST_F(Collector, AfterAPoseTheMeanBeginsAnew) {
+TEST_F(Collector, AfterAPoseTheMeanBeginsAgain) {
   // Within the millimetre the tool goes on; far from the first place it is taken where it is then.
   ASSERT_EQ(visit(0.0, 30.0), 1);
   ASSERT_EQ(visit(0.0158, 2.5), 1);  // without a rest between them

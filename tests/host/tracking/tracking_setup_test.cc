@@ -41,7 +41,7 @@ class SetupFile : public ::testing::Test {
   TrackingSetup setup_;
 };
 
-TEST_F(SetupFile, IsReadAsItStands) {
+TEST_F(SetupFile, IsReadAsWritten) {
   ASSERT_EQ(load(good("[registration]\nposition_m = [1, 2.0, 3]\nrotation_wxyz = [0, 0, 0, 2]\n")),
             "");
   EXPECT_EQ(setup_.udp_port, 8322);

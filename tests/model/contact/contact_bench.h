@@ -56,7 +56,7 @@ struct Bench {
 
 inline Bench plate_bench() { return Bench(tests::make_plate(100_mm, 20)); }
 
-// Moves the tool and returns what it feels there.
+// Moves the tool and returns the force there.
 inline Wrench render_at(Contact& contact, const Vec3& position_m, double grip_ratio = 0.0) {
   const Tool tool{.position_m = position_m, .grip_ratio = grip_ratio};
   contact.detect_contact(tool);

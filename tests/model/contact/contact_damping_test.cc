@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A law that resists speed, felt by a whole tool: it takes energy in every tick, and never pulls.
+// A law that resists speed, on a whole tool: it takes energy in every tick, and never pulls.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -134,7 +134,7 @@ TEST(Contact, BeyondTheRimOfAnOpenSurfaceNothingPullsTheToolBack) {
   EXPECT_EQ(render_at(contact, {60_mm, 0, -10_mm}), Wrench{});
 }
 
-TEST(Contact, FoundInsideFeelsNothingUntilOutsideOnce) {
+TEST(Contact, FoundInsideHasNoForceUntilOutsideOnce) {
   Bench bench = plate_bench();
   Contact contact = bench.contact();
   EXPECT_EQ(render_at(contact, {0, 0, -8_mm}), Wrench{});
@@ -187,7 +187,7 @@ TEST(Contact, ToolThatMovedTooFarUnseenIsLostAndFoundAgain) {
   EXPECT_TRUE(rendered.is_inside);
   EXPECT_EQ(rendered.wrench, Wrench{});
   contact.detect_contact(inside, 1, 4_mm);
-  EXPECT_FALSE(contact.render_force(inside, true).is_lost) << "told once";
+  EXPECT_FALSE(contact.render_force(inside, true).is_lost) << "reported once";
   contact.detect_contact(outside, 1, 4_mm);
   EXPECT_TRUE(contact.render_force(outside, true).is_lost);
   EXPECT_EQ(contact.contacts()[0].state, ContactState::kFree);

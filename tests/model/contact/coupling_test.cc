@@ -87,7 +87,7 @@ TEST(Coupling, SolvesEveryGroupFromAnyGuess) {
   }
 }
 
-TEST(Coupling, ASphereInTheDentOfAnotherIsNotTouchedAndNeverPulls) {
+TEST(Coupling, ASphereInTheIndentationOfAnotherNeverPulls) {
   HalfSpace half;
   Group pair(half.field, {{0, 0, 0}, {8_mm, 0, 0}}, {10_mm, 0.5_mm});
   press_together(half.field, pair.c, pair.sphere);

@@ -49,7 +49,7 @@ TEST(Shear, AFewStiffenedSpringsAreSolvedAsIfAllWereNew) {
   }
 }
 
-// Whatever couplings are asked for, W = sum f_i . t_i / 2 > 0.
+// For any couplings, W = sum f_i . t_i / 2 > 0.
 TEST(Shear, CouplingsOfManySpheresStayBounded) {
   for (const double wanted_m_per_N : {0.001, 0.01, 1.0, -1.0}) {
     Shear shear = coupled(wanted_m_per_N);

@@ -85,7 +85,7 @@ Stroke random_stroke(std::mt19937& random, double grips) {
 }
 
 /// Work that the tool does on the hand, J, beside what is stored at the end; < 0: the hand gave it.
-double given_J(Contact& contact, const Stroke& stroke, int ticks) {
+double given_energy_J(Contact& contact, const Stroke& stroke, int ticks) {
   Tool before = stroke.at(0.0);
   Wrench rendered_before = render_at(contact, before);
   double work_J = 0.0;
@@ -110,7 +110,7 @@ TEST(WholeTool, NoStrokeGivesBackMoreThanItTook) {
     Bench bench(jaws(2 + static_cast<std::size_t>(k) % 3));
     if (k % 2 == 0) bench.parameters.sliding_stiffness_N_per_m = 0.0;  // the tissue's own
     Contact contact = bench.contact();
-    const double given = given_J(contact, random_stroke(random, 0.7), 4000);
+    const double given = given_energy_J(contact, random_stroke(random, 0.7), 4000);
     EXPECT_LE(given, 2e-8) << "stroke " << k;
     most_lost_J = std::min(most_lost_J, given);
   }
@@ -131,7 +131,7 @@ TEST(WholeTool, AStrokeOfSixteenSpheresGivesBackNoMoreThanItTook) {
     Bench bench(grasper());
     bench.parameters.sliding_stiffness_N_per_m = k % 2 == 0 ? 20.0 : 0.0;
     Contact contact = bench.contact();
-    EXPECT_LE(given_J(contact, random_stroke(random, 0.5), 4000), 1e-7) << k;
+    EXPECT_LE(given_energy_J(contact, random_stroke(random, 0.5), 4000), 1e-7) << k;
   }
 }
 
@@ -141,7 +141,8 @@ TEST(WholeTool, WithoutFrictionAStrokeReturnsAll) {
     Bench bench(jaws(2 + static_cast<std::size_t>(k) % 3));
     bench.parameters.friction_ratio = 0.0;
     Contact contact = bench.contact();
-    EXPECT_NEAR(given_J(contact, random_stroke(random, 0.0), 4000), 0.0, 2e-8) << "stroke " << k;
+    EXPECT_NEAR(given_energy_J(contact, random_stroke(random, 0.0), 4000), 0.0, 2e-8)
+        << "stroke " << k;
   }
 }
 
@@ -162,7 +163,7 @@ TEST(WholeTool, NoStrokeThroughTissueThatRelaxesGivesBackMoreThanItTook) {
          .relaxation = *make_relaxation(terms, 0.001),
          .neighbours = {.contact_modulus_Pa = modulus_Pa, .poisson_ratio = 0.45}});
     Contact contact = bench.contact();
-    const double given = given_J(contact, random_stroke(random, 0.5), 4000);
+    const double given = given_energy_J(contact, random_stroke(random, 0.5), 4000);
     EXPECT_LE(given, 2e-8) << "stroke " << k;
     most_lost_J = std::min(most_lost_J, given);
   }
@@ -183,7 +184,7 @@ TEST(WholeTool, LettingGoNeverAddsEnergy) {
       Tool tool = stroke.at(i / 1000.0);
       tool.position_m.z += 50_mm;
       const bool was_held = contact.contacts()[0].state == ContactState::kHeld;
-      // Opened where it stands: only the state changes.
+      // Opened in place: only the state changes.
       if (was_held && tool.grip_ratio == 0.0) {
         Tool still = stroke.at((i - 1) / 1000.0);
         still.position_m.z += 50_mm;
@@ -278,10 +279,10 @@ TEST(WholeTool, RepeatsAStrokeToTheBitAndLeavesTheHeapAlone) {
   const Stroke stroke = random_stroke(random, 1.0);
   Contact contact = bench.contact();
   const tests::NoAlloc guard;
-  const double first_J = given_J(contact, stroke, 1000);
+  const double first_J = given_energy_J(contact, stroke, 1000);
   render_at(contact, stroke.at(0.5));
   contact.reset();
-  EXPECT_EQ(given_J(contact, stroke, 1000), first_J);
+  EXPECT_EQ(given_energy_J(contact, stroke, 1000), first_J);
   EXPECT_EQ(guard.calls(), 0u);
 }
 

@@ -80,7 +80,7 @@ TEST(ComplianceTip, AgreesWithAnIndependentSolution) {
   }
 }
 
-TEST(ComplianceTip, TheDentFollowsTheSphereAndFadesAsThePointForce) {
+TEST(ComplianceTip, TheIndentationFollowsTheSphereAndFadesAsThePointForce) {
   const TipState at = tip_state(kTip, 1.2);
   const double a_m = at.contact_radius_m;
   EXPECT_NEAR(pressed_shape_m(kTip, at, 0.0), at.depth_m, 1e-15);

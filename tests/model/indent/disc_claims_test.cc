@@ -35,7 +35,7 @@ DiscStack make(DiscForm form, const Disc& disc = kPrintedDisc,
 }
 
 TEST(DiscClaims, X8LayersDoNotShapeTheResponseTheyCancelOut) {
-  // Whatever the layers, the linear stack is one spring: F = k d.
+  // For any layers, the linear stack is one spring: F = k d.
   for (const double travel_m : {5e-6, 9e-6, 23e-6}) {
     for (const double ratio : {0.9, 1.0, 1.1}) {
       Disc disc = kPrintedDisc;
@@ -104,7 +104,7 @@ TEST(DiscClaims, X11TheDiscStiffnessIsOnlyTheSecantToFlat) {
   EXPECT_NEAR(make(DiscForm::kAlmenLaszlo).at_force(kPrintedForce_N).depth_m, 42.375e-6, 5e-10);
 }
 
-TEST(DiscClaims, RealDiscsInSequenceFeelLikeASaw) {
+TEST(DiscClaims, RealDiscsInSequenceRenderASaw) {
   const DiscStack stack = make(DiscForm::kAlmenLaszlo);
   const double h0 = kPrintedDisc.travel_m;
   for (const double layer : {1.0, 7.0, 23.0}) {

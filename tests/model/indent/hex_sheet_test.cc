@@ -13,14 +13,14 @@
 namespace tact::model::indent::hex_sheet_test {
 
 // The defaults of HX-26.
-constexpr HexSheetParameters kSkin{.ring_pitch_m = 2_mm,
-                                   .contact_stiffness_N_per_m = 20.0,
-                                   .body_stiffness_N_per_m = 20.0,
-                                   .surface_stiffness_N_per_m = 200.0,
-                                   .tension_N = 0.1,
-                                   .rings = 15,
-                                   .weight = HexWeight::kNode,
-                                   .working_depth_m = 10_mm};
+constexpr HexSheetParameters kSheet{.ring_pitch_m = 2_mm,
+                                    .contact_stiffness_N_per_m = 20.0,
+                                    .body_stiffness_N_per_m = 20.0,
+                                    .surface_stiffness_N_per_m = 200.0,
+                                    .tension_N = 0.1,
+                                    .rings = 15,
+                                    .weight = HexWeight::kNode,
+                                    .working_depth_m = 10_mm};
 
 HexSheet make(const HexSheetParameters& p) {
   auto sheet = make_hex_sheet(p);
@@ -29,12 +29,12 @@ HexSheet make(const HexSheetParameters& p) {
 }
 
 HexSheetParameters with(auto change) {
-  HexSheetParameters p = kSkin;
+  HexSheetParameters p = kSheet;
   change(p);
   return p;
 }
 
-TEST(HexSheet, KeepsTheLawContract) { tests::check_law_contract(make(kSkin)); }
+TEST(HexSheet, KeepsTheLawContract) { tests::check_law_contract(make(kSheet)); }
 
 TEST(HexSheet, KeepsTheLawContractWithRingWeightAndWithoutTension) {
   tests::check_law_contract(make(with([](auto& p) {
@@ -59,12 +59,12 @@ TEST(HexSheet, HasConsistentDimensions) {
 
 TEST(HexSheet, MatchesTheTableOfItsDefaults) {
   // HX-26: F(2, 5, 8 mm) = 0.533, 1.731, 3.20 N; indentation 5.0, 2.46, 1.38, 0.78, 0.45 mm
-  const HexSheet skin = make(kSkin);
-  EXPECT_NEAR(skin.respond(2_mm).force_N, 0.533, 0.0005);
-  EXPECT_NEAR(skin.respond(5_mm).force_N, 1.731, 0.0005);
-  EXPECT_NEAR(skin.respond(8_mm).force_N, 3.20, 0.005);
+  const HexSheet sheet = make(kSheet);
+  EXPECT_NEAR(sheet.respond(2_mm).force_N, 0.533, 0.0005);
+  EXPECT_NEAR(sheet.respond(5_mm).force_N, 1.731, 0.0005);
+  EXPECT_NEAR(sheet.respond(8_mm).force_N, 3.20, 0.005);
   std::vector<double> ring_m(32);
-  ASSERT_EQ(skin.profile(5_mm, ring_m), 16u);
+  ASSERT_EQ(sheet.profile(5_mm, ring_m), 16u);
   const double indentation_mm[] = {5.0, 2.46, 1.38, 0.78, 0.45};
   for (std::size_t j = 0; j < 5; ++j) EXPECT_NEAR(1e3 * ring_m[j], indentation_mm[j], 0.005);
 }
@@ -77,9 +77,10 @@ TEST(HexSheet, OneRingIsPenAndPaper) {
 }
 
 TEST(HexSheet, WithoutSurfaceItIsOneSpring) {
-  const HexSheet loose =
+  const HexSheet untensioned =
       make(with([](auto& p) { p.surface_stiffness_N_per_m = 0.0, p.tension_N = 0.0; }));
-  for (const double d : {-3_mm, 1_mm, 9_mm}) EXPECT_NEAR(loose.respond(d).force_N, 20.0 * d, 1e-15);
+  for (const double d : {-3_mm, 1_mm, 9_mm})
+    EXPECT_NEAR(untensioned.respond(d).force_N, 20.0 * d, 1e-15);
 }
 
 TEST(HexSheet, SpringsOfZeroRestLengthMakeItLinear) {
@@ -92,7 +93,7 @@ TEST(HexSheet, SpringsOfZeroRestLengthMakeItLinear) {
   }
 }
 
-TEST(HexSheet, WithoutTensionASmallDentIsOneNodeWide) {
+TEST(HexSheet, WithoutTensionASmallIndentationIsOneNodeWide) {
   const HexSheetState at = make(with([](auto& p) { p.tension_N = 0.0; })).at_depth(0.01_mm);
   // HX-25  F = K_N0 d + O(d^3); the third order is six springs of K_T: 3 K_T d^3/r^2
   const double d = 0.01e-3, cubic_N = 3.0 * 200.0 * d * d * d / 4e-6;
@@ -107,7 +108,7 @@ TEST(HexSheet, AllSpringsTogetherCarryTheForce) {
     for (const double d : {0.1_mm, 3_mm, 10_mm, -6_mm}) {
       const HexSheetState at = sheet.at_depth(d);
       double carried_N = 20.0 * d + at.boundary_force_N;
-      for (std::size_t i = 1; i < kSkin.rings; ++i)
+      for (std::size_t i = 1; i < kSheet.rings; ++i)
         carried_N +=
             (weight == HexWeight::kNode ? 6.0 * static_cast<double>(i) : 1.0) * 20.0 * at.ring_m[i];
       EXPECT_NEAR(carried_N, at.force_N, 1e-12 * std::abs(at.force_N));
@@ -116,10 +117,10 @@ TEST(HexSheet, AllSpringsTogetherCarryTheForce) {
 }
 
 TEST(HexSheet, HardensWithDepthAndPullsAsItPresses) {
-  const HexSheet skin = make(kSkin);
+  const HexSheet sheet = make(kSheet);
   double before_N_per_m = 0.0;
   for (double d = 0.0; d <= 10_mm; d += 0.5_mm) {
-    const law::LawResponse press = skin.respond(d), pull = skin.respond(-d);
+    const law::LawResponse press = sheet.respond(d), pull = sheet.respond(-d);
     EXPECT_GT(press.stiffness_N_per_m, before_N_per_m);
     EXPECT_EQ(pull.force_N, -press.force_N);
     EXPECT_EQ(pull.energy_J, press.energy_J);
@@ -128,17 +129,17 @@ TEST(HexSheet, HardensWithDepthAndPullsAsItPresses) {
 }
 
 TEST(HexSheet, BeyondTheWorkingDepthTheForceStays) {
-  const HexSheet skin = make(kSkin);
-  const law::LawResponse at = skin.respond(10_mm), beyond = skin.respond(12_mm);
+  const HexSheet sheet = make(kSheet);
+  const law::LawResponse at = sheet.respond(10_mm), beyond = sheet.respond(12_mm);
   EXPECT_EQ(at.status, law::LawStatus::kOk);
   EXPECT_EQ(beyond.status, law::LawStatus::kSaturated);
   EXPECT_EQ(beyond.force_N, at.force_N);
   EXPECT_EQ(beyond.stiffness_N_per_m, 0.0);
   EXPECT_NEAR(beyond.energy_J - at.energy_J, at.force_N * 2e-3, 1e-14);
-  EXPECT_EQ(skin.respond(-12_mm).energy_J, beyond.energy_J);
+  EXPECT_EQ(sheet.respond(-12_mm).energy_J, beyond.energy_J);
 }
 
-TEST(HexSheet, SolvesWithinTwentyStepsWhateverTheSheet) {
+TEST(HexSheet, SolvesWithinTwentyStepsForAnySheet) {
   for (const HexWeight weight : {HexWeight::kNode, HexWeight::kRing}) {
     for (const double surface_N_per_m : {1.0, 1e3, 1e6}) {
       for (const double tension_N : {0.0, 1e-3, 1.0}) {
@@ -158,12 +159,12 @@ TEST(HexSheet, SolvesWithinTwentyStepsWhateverTheSheet) {
 
 TEST(HexSheet, ATableOf65KnotsIsEnoughForTheLoop) {
   // LW-1: 4e-8 of the largest force, NODE with tension; the table ends at 0.95
-  const HexSheet skin = make(kSkin);
-  const auto table = law::tabulate(skin, 65);
+  const HexSheet sheet = make(kSheet);
+  const auto table = law::tabulate(sheet, 65);
   ASSERT_TRUE(table);
-  const double largest_N = skin.respond(10_mm).force_N;
+  const double largest_N = sheet.respond(10_mm).force_N;
   for (double d = -9.4_mm; d < 9.4_mm; d += 0.037_mm)
-    EXPECT_NEAR(table->respond(d).force_N, skin.respond(d).force_N, 1e-6 * largest_N);
+    EXPECT_NEAR(table->respond(d).force_N, sheet.respond(d).force_N, 1e-6 * largest_N);
 }
 
 TEST(HexSheet, RingsAreChosenFromTheForceTolerance) {

@@ -21,7 +21,7 @@ double total_N(const law::Law& law, double depth_m, double speed_mps) {
   return force_N + law::resistance_N(law.damping_Ns_per_m(depth_m), speed_mps, force_N, false);
 }
 
-TEST(HuntCrossley, KeepsTheLawContractWhateverIsPutAroundIt) {
+TEST(HuntCrossley, KeepsTheLawContractInsideAnyWrapper) {
   for (const double exponent : {1.0, 1.5, 3.0}) {
     HuntCrossleyParameters p = kSoft;
     p.exponent = exponent;
@@ -58,7 +58,7 @@ TEST(HuntCrossley, MatchesNumbersWorkedByHand) {
   EXPECT_NEAR(total_N(law, 20_mm, 0.1), 0.6, 1e-15) << "beyond the range it stays";
 }
 
-TEST(HuntCrossley, LetsGoInsteadOfStickingAndTouchesWithoutAJump) {
+TEST(HuntCrossley, LetsGoInsteadOfStickingAndBeginsContactWithoutAJump) {
   const HuntCrossley law = make();
   EXPECT_EQ(total_N(law, 3_mm, -0.6), 0.0) << "faster than 1 / lambda";
   EXPECT_LT(total_N(law, 1e-6, 0.5), 1e-5);

@@ -11,16 +11,16 @@ namespace tact::model::indent::inertia_test {
 
 // as liver.toml has it
 constexpr ElasticTip kLiver{.youngs_modulus_Pa = 5000.0, .poisson_ratio = 0.45, .radius_m = 4_mm};
-constexpr double kFelt = 0.07;
+constexpr double kNoticed = 0.07;
 
 TEST(Inertia, IsSevenPercentOfTheForceAtTheSpeedsOfTheReadme) {
-  EXPECT_NEAR(inertia_speed_mps(kLiver, 1_mm, kFelt), 0.037, 0.0005);
-  EXPECT_NEAR(inertia_speed_mps(kLiver, 5_mm, kFelt), 0.109, 0.0005);
-  EXPECT_NEAR(inertia_speed_mps(kLiver, 10_mm, kFelt), 0.216, 0.0005);
+  EXPECT_NEAR(inertia_speed_mps(kLiver, 1_mm, kNoticed), 0.037, 0.0005);
+  EXPECT_NEAR(inertia_speed_mps(kLiver, 5_mm, kNoticed), 0.109, 0.0005);
+  EXPECT_NEAR(inertia_speed_mps(kLiver, 10_mm, kNoticed), 0.216, 0.0005);
 }
 
 TEST(Inertia, OfALightTouchIsThatOfAHertzContact) {
-  // IN-2: 8 / 10.2 q sqrt(G / rho) sqrt(d / R), whatever nu
+  // IN-2: 8 / 10.2 q sqrt(G / rho) sqrt(d / R), for any nu
   for (const double nu : {0.0, 0.3, 0.5}) {
     const ElasticTip tip{.youngs_modulus_Pa = 2.0 * (1.0 + nu) * kTissueDensity_kg_per_m3,
                          .poisson_ratio = nu,

@@ -50,8 +50,8 @@ TEST(RhombusPatch, HasConsistentDimensions) {
   });
 }
 
-TEST(RhombusPatch, AddsUpTheChainsThatTheTipTouches) {
-  // RC-15 as it stands: rings of chains under the paraboloid
+TEST(RhombusPatch, AddsUpTheChainsUnderTheTip) {
+  // RC-15 as written: rings of chains under the paraboloid
   const RhombusChain chain = *make_rhombus_chain(kLiver);
   const RhombusPatch patch = make(kLiver);
   for (const double depth_m : {0.5_mm, 3_mm, 12_mm}) {
@@ -83,7 +83,7 @@ TEST(RhombusPatch, FollowsASphereOnAHalfSpaceFromLightTouchToFourRadii) {
     EXPECT_NEAR(patch.respond(depth_m).force_N / half_space_N(depth_m), 1.0, 0.0205) << depth_m;
 }
 
-TEST(RhombusPatch, DentIsTheTipItself) {
+TEST(RhombusPatch, IndentationIsTheTipItself) {
   const RhombusPatch patch = make(kLiver);
   std::vector<double> ring_m(64);
   const std::size_t count = patch.profile(5_mm, ring_m);

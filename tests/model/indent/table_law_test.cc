@@ -139,7 +139,7 @@ Rows with_unloading(double share) {
   return rows;
 }
 
-TEST(TableLaw, TellsUnloadingApartAndNeverAveragesIt) {
+TEST(TableLaw, ReportsUnloadingApartAndNeverAveragesIt) {
   const auto refused = make_table_law(with_unloading(0.7), {});
   ASSERT_FALSE(refused);
   EXPECT_TRUE(refused.error().message.starts_with(

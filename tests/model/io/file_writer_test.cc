@@ -69,19 +69,19 @@ TEST_F(FileWriterTest, AFileOfAnotherKindIsRefused) {
 TEST_F(FileWriterTest, APipeIsWrittenStraightAndNotWaitedForWithoutAReader) {
   ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
   EXPECT_EQ(message_of(write_file(path("pipe"), "one")),
-            path("pipe") + ": nobody reads this pipe; start its reader first");
+            path("pipe") + ": this pipe has no reader; start its reader first");
   std::string got;
   std::thread reader([&] { got = text("pipe"); });
   std::optional<Error> error;
   do error = write_file(path("pipe"), std::string(200'000, 'x'));  // until the reader is there
-  while (error && error->message.find("nobody reads") != std::string::npos);
+  while (error && error->message.find("has no reader") != std::string::npos);
   reader.join();
   EXPECT_EQ(message_of(error), "");
   EXPECT_EQ(got.size(), 200'000u);
   EXPECT_TRUE(fs::is_fifo(path("pipe")));
 }
 
-TEST_F(FileWriterTest, ADeviceWithoutRoomIsTold) {
+TEST_F(FileWriterTest, ADeviceWithoutRoomIsReported) {
   EXPECT_NE(message_of(write_file("/dev/full", "{}")).find("No space left on device"),
             std::string::npos);
   EXPECT_EQ(message_of(write_file("/dev/null", "{}")), "");

@@ -20,7 +20,7 @@ class InputFileTest : public Scratch {
   }
 };
 
-TEST_F(InputFileTest, IsReadWholeWhateverItHolds) {
+TEST_F(InputFileTest, IsReadWholeForAnyContent) {
   std::string bytes(200'000, '\0');
   bytes += "\r\n\xff";
   for (const std::string& content : {std::string(), std::string("one"), bytes}) {
@@ -62,7 +62,7 @@ TEST_F(InputFileTest, LargerThanAllowedIsRefused) {
   EXPECT_FALSE(read_file("/proc/self/status", "cut it", 10));  // which says no size
 }
 
-TEST_F(InputFileTest, AReadThatFailsIsToldAndNoShorterText) {
+TEST_F(InputFileTest, AReadThatFailsIsReportedAndGivesNoShorterText) {
   // A page of our memory that is not mapped: the file is regular, the read gives EIO.
   const auto read = read_file("/proc/self/mem");
   ASSERT_FALSE(read);

@@ -68,14 +68,14 @@ TEST(Nesting, BehindAStringIsCountedAgain) {
         << text;
 }
 
-TEST(Json, ThatIsBrokenIsToldWithItsPlace) {
+TEST(Json, ThatIsBrokenIsReportedWithItsPlace) {
   EXPECT_EQ(
       refusal(parse_json("{\n\"a\": }", "s.json")).find("s.json: not JSON: parse error at line 2"),
       0u);
   EXPECT_NE(refusal(read_json("/tmp", "name a file")), "");
 }
 
-TEST(Toml, ThatIsBrokenIsToldWithItsLine) {
+TEST(Toml, ThatIsBrokenIsReportedWithItsLine) {
   EXPECT_EQ(refusal(parse_toml("a = 1\nb = \n", "s.toml")).find("s.toml:2: not TOML: "), 0u);
 }
 

@@ -31,7 +31,7 @@ TEST_F(SealTest, OfAWholeFileIsGood) {
   EXPECT_EQ(file->read(bytes.data(), 500), 7u);
   EXPECT_EQ(bytes.substr(0, 7), "the end");
   EXPECT_EQ(file->trouble(), "");
-  EXPECT_EQ(trouble("good"), "") << "read by nobody else";
+  EXPECT_EQ(trouble("good"), "") << "read by no other";
 }
 
 TEST(Seal, IsTheSha256OfFips180) {

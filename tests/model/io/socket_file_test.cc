@@ -16,7 +16,7 @@
 namespace tact::model::io::socket_file_test {
 
 namespace fs = std::filesystem;
-constexpr uid_t kStranger = 65534;  // nobody
+constexpr uid_t kStranger = 65534;  // the user nobody
 
 class SocketFileTest : public ::testing::Test {
  protected:
@@ -51,7 +51,7 @@ TEST(SocketAddress, OfAnEmptyOrTooLongPathIsAnErrorThatSaysHowLongItMayBe) {
       << refused.error().message;
 }
 
-TEST_F(SocketFileTest, GoesWithWhoMadeItUnlessAnotherStandsThere) {
+TEST_F(SocketFileTest, GoesWithItsMakerUnlessAnotherIsThere) {
   const int first = bind_one();
   const SocketFile own(path());
   fs::rename(path(), path() + ".away");
@@ -131,7 +131,7 @@ TEST_F(SocketFileTest, RootTrustsNoOtherUserAtTheOtherEnd) {
   close(listener);
 }
 
-TEST_F(SocketFileTest, WhoIsNamedIsTrustedAndNobodyElse) {
+TEST_F(SocketFileTest, OnlyTheNamedUserIsTrusted) {
   if (geteuid() != 0) GTEST_SKIP() << "only root becomes another user";
   constexpr uid_t kOther = 65533;
   constexpr gid_t kViewers = 65532;
@@ -149,7 +149,7 @@ TEST_F(SocketFileTest, WhoIsNamedIsTrustedAndNobodyElse) {
   close(listener);
 }
 
-TEST_F(SocketFileTest, IsBoundForItsUserAloneWhateverTheUmask) {
+TEST_F(SocketFileTest, IsBoundForItsUserAloneUnderAnyUmask) {
   const mode_t before = umask(0);
   const auto fd = bind_socket(path(), SOCK_SEQPACKET | SOCK_CLOEXEC);
   umask(before);

@@ -5,11 +5,11 @@
 //
 // Force is the slope of energy; a closed stroke never returns energy, at any speed; rest stays at
 // rest; the force grows with depth; the profile starts at the depth, decays and ends at zero; NaN
-// gives zero force; nothing touches the heap. Dimensions: check_dimensions rescales metre, kilogram
+// gives zero force; nothing uses the heap. Dimensions: check_dimensions rescales metre, kilogram
 // and second.
 //
 // A law that cannot pull (range().pull_m = 0) has to prove these for presses only, and that it
-// feels nothing outside the surface.
+// has no force outside the surface.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -123,7 +123,7 @@ inline void check_bad_depths(const model::law::Law& law) {
   EXPECT_TRUE(std::isfinite(beyond.force_N));
 }
 
-/// LW-3, whatever the speed: in every step of a stroke the damping takes energy, so that the stroke
+/// LW-3, for any speed: in every step of a stroke the damping takes energy, so that the stroke
 /// gives back no more than it took; what is not held never pulls.
 inline void check_damping_takes_energy(const model::law::Law& law) {
   const model::law::LawRange range = law.range();

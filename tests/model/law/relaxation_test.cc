@@ -59,7 +59,7 @@ class MixedLaw final : public Law {
   PowerLaw spring_{1.0}, cubic_{3.0};
 };
 
-/// A law as the hand feels it, with memory of some terms.
+/// A law as rendered, with memory of some terms.
 struct Rendered {
   explicit Rendered(const Law& law, bool is_held = false,
                     const Relaxation& relaxation = two_terms())
@@ -95,7 +95,7 @@ void expect_fade(const Law& law, double fast_s, double slow_s, double tolerance)
   }
 }
 
-TEST(Relaxation, FadesAtHeldDepthExactlyAsItsTermsSayWhateverTheLaw) {
+TEST(Relaxation, FadesAtHeldDepthExactlyByItsTermsForAnyLaw) {
   for (const double power : {1.0, 1.5, 3.0}) expect_fade(PowerLaw(power), 0.5, 8.0, 6e-4);
   expect_fade(MixedLaw{}, 0.5, 8.0, 6e-4);
   expect_fade(*tabulate(PowerLaw(1.5), kMaxKnots), 0.5, 8.0, 6e-4);
@@ -128,7 +128,7 @@ TEST(Relaxation, ARampAsLongAsItsTimeIsNearTheConvolutionOfLeeAndRadok) {
   EXPECT_NEAR(force_N / right_N, 1.0, 0.05);  // 4.1 % below
 }
 
-TEST(Relaxation, FlowsAtABoundedRateWhateverTheLawAnswers) {
+TEST(Relaxation, FlowsAtABoundedRateForAnyOutputOfTheLaw) {
   const double inf = std::numeric_limits<double>::infinity(), nan = std::nan("");
   for (const double e : {0.0, 5e-324, 1e-3, -1e-3, 1e300})
     for (const double force_N : {0.0, 5e-324, 1.0, -1.0, inf, nan})
@@ -141,7 +141,7 @@ TEST(Relaxation, FlowsAtABoundedRateWhateverTheLawAnswers) {
 }
 
 TEST(Relaxation, IsExactInTheTickForADepthThatMovesEvenly) {
-  // e' = v - e / tau from rest: e = v tau (1 - exp(-t / tau)), whatever the tick.
+  // e' = v - e / tau from rest: e = v tau (1 - exp(-t / tau)), for any tick.
   const std::vector<PronyTerm> terms{{.share = 1.0, .time_s = 0.1}};
   for (const double tick_s : {1e-3, 1e-2, 0.5}) {
     const Relaxation relaxation = *make_relaxation(terms, tick_s);
@@ -178,7 +178,7 @@ void expect_passive(const Law& law, bool held, unsigned seed) {
   EXPECT_GT(work_J, 0.0) << "relaxation costs energy";
 }
 
-TEST(Relaxation, NeverReturnsMoreThanItGotWhateverTheLawAndThePath) {
+TEST(Relaxation, NeverReturnsMoreThanItGotForAnyLawAndPath) {
   for (unsigned seed = 1; seed <= 5; ++seed)
     for (const bool held : {false, true}) {
       for (const double power : {1.0, 1.5, 3.0}) expect_passive(PowerLaw(power), held, seed);

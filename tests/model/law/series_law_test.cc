@@ -19,13 +19,13 @@ constexpr std::array kRings{0.01, 0.005};
 
 indent::ComplianceCurve place(double compliance_m_per_N, double m = 1.0, double kg = 1.0,
                               double s = 1.0) {
-  const double give = s * s / kg;
-  const std::array rings{kRings[0] * give, kRings[1] * give};
+  const double per_N = s * s / kg;
+  const std::array rings{kRings[0] * per_N, kRings[1] * per_N};
   auto curve =
       indent::make_compliance_curve({.tip = {.youngs_modulus_Pa = 5000.0 * kg / (m * s * s),
                                              .poisson_ratio = 0.45,
                                              .radius_m = 4_mm * m},
-                                     .regular_m_per_N = compliance_m_per_N * give,
+                                     .regular_m_per_N = compliance_m_per_N * per_N,
                                      .working_depth_m = 12_mm * m,
                                      .ring_pitch_m = 2_mm * m,
                                      .ring_m_per_N = rings,
@@ -34,7 +34,7 @@ indent::ComplianceCurve place(double compliance_m_per_N, double m = 1.0, double 
   return *curve;
 }
 
-/// The tip's own indentation, pressed and pulled, in series with a give.
+/// The tip's own indentation, pressed and pulled, in series with a compliance.
 struct Pair {
   Pair(double compliance_m_per_N, double m = 1.0, double kg = 1.0, double s = 1.0)
       : tip(place(0.0, m, kg, s)),

@@ -226,9 +226,9 @@ TEST_F(Obj, RefusesWhatIsNoFile) {
   EXPECT_NE(message(std::string(300, 'x')).find("File name too long"), std::string::npos);
   const std::string locked = temp_.write("locked.obj", kCubeVertices);
   std::filesystem::permissions(locked, std::filesystem::perms::none);
-  constexpr uid_t kNobody = 65534;
-  const bool root = geteuid() == 0;  // may read everything, so it becomes somebody else
-  if (root) ASSERT_EQ(seteuid(kNobody), 0);
+  constexpr uid_t kOther = 65534;
+  const bool root = geteuid() == 0;  // may read everything, so it becomes another user
+  if (root) ASSERT_EQ(seteuid(kOther), 0);
   EXPECT_TRUE(message(locked).find("cannot be opened") != std::string::npos ||
               message(locked).find("Permission denied") != std::string::npos)
       << message(locked);

@@ -23,7 +23,7 @@ TEST(SceneWords, ReadTheUnitFromTheEndOfAKey) {
   EXPECT_EQ(io::unit_of("displacement_um"), "um");
 }
 
-TEST(SceneWords, TellAWrongUnitFromAWrongKey) {
+TEST(SceneWords, DistinguishAWrongUnitFromAWrongKey) {
   EXPECT_TRUE(differs_only_in_unit("depth_mm", "depth_m"));
   EXPECT_TRUE(differs_only_in_unit("depth", "depth_m"));
   EXPECT_TRUE(differs_only_in_unit("force_mN", "force_N"));

@@ -104,7 +104,7 @@ TEST_F(AccuracyFile, AnotherLawOrganOrToolHasNoFigure) {
 }
 
 TEST_F(AccuracyFile, WhatIsMissingOrDamagedIsSaid) {
-  expect_unknown("nobody has measured it; tact-lab reference");
+  expect_unknown("it was never measured; tact-lab reference");
   write("[rhombus]\n");
   expect_unknown("is of another version of tact-lab chart; tact-lab reference");
   write("schema = \"tact-accuracy/2\"\n[hex_sheet]\n");

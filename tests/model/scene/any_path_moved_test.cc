@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random paths through the shipped liver as it is felt: one jaw and both on the organ that they
+// Random paths through the shipped liver as rendered: one jaw and both on the organ that they
 // move, with friction and without, held against distance and winding number by brute force.
 #include <gtest/gtest.h>
 
@@ -85,7 +85,7 @@ class SphereRules {
 
 struct Counts {
   std::size_t ticks = 0, unsolved = 0, unsettled = 0, strokes = 0;
-  double most_given_J = 0.0;
+  double max_given_energy_J = 0.0;
   std::map<char, int> broken;
   std::string first;
 };
@@ -98,7 +98,7 @@ void run(const Scene& scene, const Tissue& tissue, const tests::BruteForce& body
   for (const contact::ProbeSphere& s : scene.tool.spheres)
     rules.emplace_back(body, s.radius_m, scene.tool.spheres.size() == 1);
   Vec3 force_N, at_m = path.start_m;
-  double given_J = 0.0, stored_J = 0.0, most_N = 0.0, most_m = 0.0;
+  double given_energy_J = 0.0, stored_J = 0.0, most_N = 0.0, most_m = 0.0;
   std::uint32_t periods = 0;
   std::size_t index = 0;
   const auto broke = [&](char rule, const std::string& what) {
@@ -128,17 +128,17 @@ void run(const Scene& scene, const Tissue& tissue, const tests::BruteForce& body
       is_free = is_free && rules[k].is_free();
     }
     const Vec3 way_m = tool.position_m - at_m;
-    given_J += 0.5 * dot(rendered.wrench.force_N + force_N, way_m);
+    given_energy_J += 0.5 * dot(rendered.wrench.force_N + force_N, way_m);
     most_N = std::max(most_N, norm(rendered.wrench.force_N));
     most_m = std::max(most_m, norm(way_m));
     stored_J = std::max(stored_J, now_J);
     if (rendered.is_lost || is_free) {
-      counts.most_given_J = std::max(counts.most_given_J, given_J);
-      if (!rendered.is_lost && given_J > most_N * most_m + kFree_J + kMade * stored_J)
-        broke('h', "given " + std::to_string(1e6 * given_J) + " uJ of " +
+      counts.max_given_energy_J = std::max(counts.max_given_energy_J, given_energy_J);
+      if (!rendered.is_lost && given_energy_J > most_N * most_m + kFree_J + kMade * stored_J)
+        broke('h', "given " + std::to_string(1e6 * given_energy_J) + " uJ of " +
                        std::to_string(1e6 * stored_J));
       if (stored_J > 0.0) ++counts.strokes;
-      given_J = stored_J = most_N = most_m = 0.0;
+      given_energy_J = stored_J = most_N = most_m = 0.0;
     }
     if (!contact.moved().status().is_solved) ++counts.unsolved;
     if (rendered.is_unsettled) ++counts.unsettled;
@@ -180,7 +180,7 @@ TEST(AnyPathMoved, TheShippedLiverKeepsTheRulesOfContact) {
                                std::to_string(counts.strokes) + " strokes, broken: " + reported);
   EXPECT_TRUE(counts.broken.empty()) << reported << "\n" << counts.first;
   EXPECT_LT(static_cast<double>(counts.unsolved), 0.01 * static_cast<double>(counts.ticks));
-  // Those whose force would have jumped and was slowed down, and told so.
+  // Those whose force would have jumped and was slowed down, and reported so.
   EXPECT_LT(static_cast<double>(counts.unsettled), 0.03 * static_cast<double>(counts.ticks));
   EXPECT_GT(counts.strokes, tests::share_of(20, 20));
 }

@@ -77,7 +77,7 @@ TEST_F(ComplianceFile, GivesBackWhatWasWritten) {
   EXPECT_EQ(back->sideways_times_E_per_m[1].axis, (std::array{0.0F, 0.6F, 0.8F}));
 }
 
-TEST_F(ComplianceFile, TellsEveryDamage) {
+TEST_F(ComplianceFile, ReportsEveryDamage) {
   EXPECT_TRUE(says("", "no compliance map"));
   EXPECT_TRUE(says("an OBJ file", "no compliance map"));
   EXPECT_TRUE(says(content_.substr(0, 50), "ends within its header"));
@@ -96,7 +96,7 @@ TEST_F(ComplianceFile, TellsEveryDamage) {
   for (std::size_t at = 8; at < content_.size(); ++at) {
     std::string bytes = content_;
     bytes[at] = static_cast<char>(bytes[at] ^ 0x10);
-    EXPECT_NE(verdict(bytes), "") << "byte " << at << " changed, and nobody noticed";
+    EXPECT_NE(verdict(bytes), "") << "byte " << at << " changed, unnoticed";
   }
 }
 
@@ -130,14 +130,14 @@ TEST_F(ComplianceFile, EndsWithItsChecksum) {
   EXPECT_EQ(compliance_checksum(path_), "");
 }
 
-TEST_F(ComplianceFile, TellsThatThereIsNone) {
+TEST_F(ComplianceFile, ReportsThatThereIsNone) {
   const auto map = read_compliance_map(path_ + ".missing");
   ASSERT_FALSE(map);
   EXPECT_NE(map.error().message.find("no such file; make it again with tact-lab condense"),
             std::string::npos);
 }
 
-TEST_F(ComplianceFile, EveryDamageIsTold) {
+TEST_F(ComplianceFile, EveryDamageIsReported) {
   tests::expect_all_damage_is_reported(
       path_, [](const std::string& path) { return !read_compliance_map(path); });
 }

@@ -77,9 +77,9 @@ struct Push {
 /// What a push in and out again came to.
 struct Rendered {
   double most_depth_m = 0.0;
-  double most_N = 0.0;       // of the force
-  double given_J = 0.0;      // to the hand, over the whole way
-  int falls = 0;             // ticks in which the force fell while its sphere went deeper
+  double most_N = 0.0;          // of the force
+  double given_energy_J = 0.0;  // to the hand, over the whole way
+  int falls = 0;                // ticks in which the force fell while its sphere went deeper
   bool is_drawn_in = false;  // the force pointed along the push while the sphere was in the organ
 };
 
@@ -95,7 +95,7 @@ Rendered render_force(const contact::ContactScene& scene, const Push& push,
   contact::Contact contact(scene);
   const auto ticks = static_cast<int>((kDeep_m + kBefore_m) / (push.speed_mps * kTick_s));
   Rendered rendered;
-  bool has_come_out = false;  // on another side: what it feels from there on is another contact
+  bool has_come_out = false;  // on another side: its force from there on is another contact
   double depth_before_m = 0.0, depth_offset_before_m = 0.0, sphere_before_N = 0.0;
   Vec3 before_m, force_before_N;
   for (int i = 0; i <= 2 * ticks; ++i) {
@@ -105,7 +105,8 @@ Rendered render_force(const contact::ContactScene& scene, const Push& push,
         push.from_m - tip_m + (push.speed_mps * t_s - kBefore_m) * push.along + t_s * push.drag_mps;
     contact.detect_contact(tool);
     const Vec3 force_N = contact.render_force(tool, true).wrench.force_N;
-    if (i > 0) rendered.given_J += 0.5 * dot(force_N + force_before_N, tool.position_m - before_m);
+    if (i > 0)
+      rendered.given_energy_J += 0.5 * dot(force_N + force_before_N, tool.position_m - before_m);
     rendered.most_N = std::max(rendered.most_N, norm(force_N));
     before_m = tool.position_m, force_before_N = force_N;
 
@@ -118,7 +119,7 @@ Rendered render_force(const contact::ContactScene& scene, const Push& push,
                  sphere_N = norm(sphere_contact.force_N);
     constexpr double kRounding_N = 1e-9;
     const bool is_another = sphere_contact.depth_offset_m >
-                            depth_offset_before_m;  // contact, or what it touches jumped
+                            depth_offset_before_m;  // contact, or its contact point jumped
     if (!has_come_out && !is_another && depth_m > depth_before_m &&
         sphere_N < sphere_before_N - kRounding_N)
       ++rendered.falls;
@@ -172,8 +173,8 @@ TEST_P(DeepPress, HoldsAgainstThePushAndGivesNothing) {
     for (const Push& push : pushes_at(point, surface, random)) {
       const Rendered rendered = render_force(organ.contact_scene(), push);
       SCOPED_TRACE(testing::Message() << "point " << point << ", " << push.speed_mps << " m/s");
-      // An edge crossed within a tick is felt a tick late: at most that tick's work.
-      EXPECT_LE(rendered.given_J, limit_N * push.speed_mps * kTick_s);
+      // An edge crossed within a tick acts a tick late: at most that tick's work.
+      EXPECT_LE(rendered.given_energy_J, limit_N * push.speed_mps * kTick_s);
       EXPECT_EQ(rendered.falls, 0);
       if (rendered.most_depth_m < kRange_m) continue;
       ++(push.is_straight ? straight : other);
@@ -198,12 +199,12 @@ TEST_P(DeepPress, RubbingTissueThatRelaxesGivesNothing) {
     for (const Push& push : pushes_at(point, surface, random)) {
       const Rendered rendered = render_force(organ.contact_scene(), push);
       SCOPED_TRACE(testing::Message() << "point " << point << ", " << push.speed_mps << " m/s");
-      EXPECT_LE(rendered.given_J, limit_N * push.speed_mps * kTick_s);
+      EXPECT_LE(rendered.given_energy_J, limit_N * push.speed_mps * kTick_s);
     }
 }
 
 // A scene as shipped: its law, whole tool, friction, memory and blade. A force that a tick holds
-// errs by that tick's work at most, whatever the speed; a gain that does not shrink with the tick
+// errs by that tick's work at most, for any speed; a gain that does not shrink with the tick
 // would be the contact's.
 TEST_P(DeepPress, AShippedToolGivesNothing) {
   Organ organ(GetParam());
@@ -215,7 +216,7 @@ TEST_P(DeepPress, AShippedToolGivesNothing) {
     for (const Push& push : pushes_at(point, scene.surface, random)) {
       const Rendered rendered = render_force(scene, push, scene.spheres[0].offset_m);
       SCOPED_TRACE(testing::Message() << "point " << point << ", " << push.speed_mps << " m/s");
-      EXPECT_LE(rendered.given_J, rendered.most_N * push.speed_mps * kTick_s);
+      EXPECT_LE(rendered.given_energy_J, rendered.most_N * push.speed_mps * kTick_s);
     }
 }
 

@@ -105,7 +105,7 @@ class DrawnIndentation : public ::testing::Test {
     double vertices = 0.0, rings = 0.0;
   };
 
-  /// RMS of skin within 30 mm over the depth, of each vertex and of means around the tool.
+  /// RMS of the surface within 30 mm over the depth, of each vertex and of means around the tool.
   Errors errors(const json& place, const json& pressed) const {
     const Vec3 direction = vector_of(place["direction"]);
     const json& q = place["orientation_wxyz"];

@@ -31,7 +31,7 @@ LawInUse law_in_use(std::string_view name, const Overrides& overrides) {
   return {std::move(*scene)};
 }
 
-TEST(LawNumbers, AreThoseOfTheLawThatIsFelt) {
+TEST(LawNumbers, AreThoseOfTheLawInUse) {
   for (const auto& [law, count] : {std::pair{"rhombus", 7u}, {"disc_stack", 10u}}) {
     const LawInUse used = law_in_use("liver", {fmt::format("law={}", law)});
     EXPECT_EQ(used.scene.law, law);
@@ -50,7 +50,7 @@ TEST(LawNumbers, HaveTheValueOfTheRunWithItsRange) {
   EXPECT_FALSE(found->meaning.empty());
 }
 
-TEST(LawNumbers, NothingBeyondTheToldRangeIsTaken) {
+TEST(LawNumbers, NothingBeyondTheStatedRangeIsTaken) {
   for (const char* name : {"liver", "heart", "skin", "gum"}) {
     const LawInUse used = law_in_use(name, {});
     for (const Parameter& number : used.numbers) {

@@ -17,7 +17,7 @@ using shipped_law::Overrides;
 using shipped_law::refusal;
 using shipped_law::shipped;
 
-TEST(MeasuredTable, AMeasuredTableStandsInSeriesWithTheOrganAsAnyTip) {
+TEST(MeasuredTable, AMeasuredTableIsInSeriesWithTheOrganAsAnyTip) {
   const Overrides table{"law=table", "table.data=\"press.csv\""};
   const auto law = made(shipped("liver", table));
   EXPECT_EQ(law->title(), "measured table, 49 rows, on an organ that bends");

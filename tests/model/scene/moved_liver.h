@@ -49,7 +49,7 @@ inline const Liver& rough_liver() {
   return instance;
 }
 
-/// A straight press: where the tool first touches, and the way from there.
+/// A straight press: the point of first contact, and the way from there.
 struct Press {
   Vec3 touch_m, inward;  // unit
   Quat orientation;

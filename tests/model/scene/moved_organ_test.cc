@@ -190,7 +190,7 @@ Stroke forth_and_back(std::size_t vertex, double friction_ratio) {
 
 TEST(MovedOrgan, ForthAndBackGivesNoEnergyWithOrWithoutFriction) {
   constexpr double kTolerated_J = 2.5e-7;  // of one contact, which ML-9 leaves alone
-  double most_given_J = 0.0;
+  double max_given_energy_J = 0.0;
   for (const double friction_ratio : {0.4, 0.0}) {
     int count = 0, unsolved = 0;
     for (std::size_t v = 7; v < liver().scene.organ_mesh.vertex_m.size(); v += 4 * kStride) {
@@ -198,13 +198,13 @@ TEST(MovedOrgan, ForthAndBackGivesNoEnergyWithOrWithoutFriction) {
       unsolved += stroke.unsolved;
       EXPECT_GT(stroke.work_J, -stroke.max_tick_J) << v;
       EXPECT_GT(stroke.work_J, friction_ratio > 0.0 ? 0.0 : -kTolerated_J) << v;
-      most_given_J = std::max(most_given_J, -stroke.work_J);
+      max_given_energy_J = std::max(max_given_energy_J, -stroke.work_J);
       ++count;
     }
     EXPECT_GE(count, 25);
     EXPECT_LE(unsolved, 1) << "vertex 3107, with friction: it keeps its force for that tick";
   }
-  RecordProperty("most_given_uJ", std::to_string(most_given_J * 1e6));
+  RecordProperty("most_given_uJ", std::to_string(max_given_energy_J * 1e6));
 }
 
 }  // namespace tact::model::scene::moved_organ_test

@@ -32,7 +32,7 @@
 
 namespace tact::model::scene::press_shipped_test {
 
-constexpr double kLimit_N_per_m = 354.9;  // simulated delta at 1000 Hz, as tactd --check tells it
+constexpr double kLimit_N_per_m = 354.9;  // simulated delta at 1000 Hz, as in tactd --check
 constexpr double kSharp_cos = 0.866;      // of 30 degrees
 
 /// The largest share of presses that may fail a check.

@@ -148,7 +148,7 @@ TEST_F(PressOnce, NamesAnEnergyThatIsNotTheWork) {
   EXPECT_EQ(flaws(), "");
 }
 
-TEST_F(PressOnce, TellsAToolThatCannotStart) {
+TEST_F(PressOnce, ReportsAToolThatCannotStart) {
   // In a bowl 12 mm wide one of two spheres 20 mm apart is always in the tissue.
   const mesh::SurfaceMesh bowl = tests::make_bowl(12_mm, 3);
   const contact::TriangleTree tree = contact::make_triangle_tree(bowl.view());
@@ -159,7 +159,7 @@ TEST_F(PressOnce, TellsAToolThatCannotStart) {
             PressState::kBlocked);
 }
 
-TEST_F(PressOnce, TellsAToolThatPassesTheOrgan) {
+TEST_F(PressOnce, ReportsAToolThatPassesTheOrgan) {
   spheres_ = {{{0, 0.3, 0}, 4_mm}};  // beside the plate
   const PressResult r = press();
   EXPECT_EQ(r.state, PressState::kMissed);

@@ -124,11 +124,8 @@ TEST(SceneReference, IsAPageWithEveryRow) {
   }
   EXPECT_NE(page.find("[contact]"), page.npos);
   EXPECT_NE(page.find("[[hand.stroke]]"), page.npos);
-  std::size_t start = 0;
-  for (std::size_t end = page.find('\n'); end != page.npos; end = page.find('\n', start)) {
-    EXPECT_LE(end - start, 140u) << page.substr(start, end - start);
-    start = end + 1;
-  }
+  std::istringstream lines(page);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 140u) << line;
 }
 
 TEST(Scene, CutAtAnyByteNeverCrashesAndSaysOneLine) {
@@ -279,7 +276,7 @@ TEST_F(Liver, TearsWhenItSaysTearAndHoldsWhenItSaysPull) {
   EXPECT_LT(press.wanted_N(0.010, hand_N_per_m, 0.0), 0.5 * 0.25 * scene_->limits.force_N);
 }
 
-TEST_F(Liver, OneJawAloneFeelsWhatTheSceneSays) {
+TEST_F(Liver, OneJawAloneHasTheForceOfTheScene) {
   Scene one = *scene_;
   one.tool.spheres = {one.tool.spheres[0]};
   one.tool.spheres[0].offset_m.y = 0.0;

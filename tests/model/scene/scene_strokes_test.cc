@@ -72,8 +72,8 @@ TEST(Strokes, StartAtHomeWithAnOpenGrip) {
   EXPECT_FALSE(w.problem);
 }
 
-TEST(Strokes, PressOfNoDepthJustTouches) {
-  // Origin 5 mm above the site: the tool stands out 5 mm.
+TEST(Strokes, PressOfNoDepthEndsAtTheSurface) {
+  // Origin 5 mm above the site: the tool extends 5 mm.
   const Written w = write({press(0.0, 1.5)});
   ASSERT_EQ(w.path.size(), 2u);
   expect_at(w.path[1], 1.5, kSite_m + Vec3{0, 0, 0.005}, 0.0);
@@ -158,7 +158,7 @@ TEST(Strokes, TurnsAreCountedFromRestAndAReleaseTurnsBack) {
 }
 
 TEST(Strokes, PullAfterATurnGoesUpWhereTheTipIsWithItsReach) {
-  // The handle goes aside, and the jaw's centre no longer stands upright above the tool's origin.
+  // The handle goes aside, and the jaw's centre is no longer straight above the tool's origin.
   const Written w =
       write({press(0.0, 1.0), kGrip, turn({0, 1, 0}, 0.3), pull(0.008)}, false, kJaw, kHandle_m);
   const Vec3 centre_m = point_W_m(w.path[3], kTip_m);
@@ -234,7 +234,7 @@ TEST(Strokes, SayThatAPlaceIsOfTheHandleWhereThatIsNotTheOrigin) {
   EXPECT_NE(stroke.find(" ends with the handle at ("), std::string::npos) << stroke;
 }
 
-TEST(Strokes, ReachIsThatOfTheSphereThatStandsOutMost) {
+TEST(Strokes, ReachIsThatOfTheOutermostSphere) {
   const contact::ProbeSphere spheres[] = {{{0, 0.004, 0.004}, 0.004}, {{0, 0, -0.001}, 0.002}};
   EXPECT_NEAR(reach_m(spheres, {0, 0, -1}), 0.003, 1e-15);  // 0.001 + 0.002
   EXPECT_NEAR(reach_m(spheres, {0, 0, 1}), 0.008, 1e-15);   // 0.004 + 0.004

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A scene file is read to the letter: what it says is what the loop gets, and what it may not say
-// is told with its line.
+// is reported with its line.
 #include "model/scene/scene.h"
 
 #include <gtest/gtest.h>
@@ -215,17 +215,17 @@ TEST(Scene, HashChangesWithTheTextAndWithEachOverride) {
   EXPECT_NE(plain, hash(kLiver, {}));
 }
 
-TEST(Scene, HashChangesWithTheComplianceMapThatIsFelt) {
+TEST(Scene, HashChangesWithTheComplianceMapInUse) {
   const std::string path = std::string(TACT_BINARY_DIR) + "/scene_hash.compliance";
   const auto own = hal::registry::load_scene(kLiver, {});
   ASSERT_TRUE(own) << own.error().message;
-  const auto hash = [&](float give, const std::string& law) {
+  const auto hash = [&](float compliance, const std::string& law) {
     const tissue::ComplianceMap map{.poisson_ratio = 0.45,
                                     .patch_radius_m = 0.008,
                                     .ring_pitch_m = 0.002,
                                     .rings = 1,
                                     .mesh_hash = surface_hash(own->organ_mesh.view()),
-                                    .regular_times_E_per_m = {give},
+                                    .regular_times_E_per_m = {compliance},
                                     .sideways_times_E_per_m = {{1.0F, 2.0F, 3.0F, 4.0F}},
                                     .ring_times_E_per_m = {1.0F}};
     EXPECT_GT(tests::write_compliance_map(map, path), 0u);

@@ -63,7 +63,7 @@ std::uint32_t vertex_near(const mesh::SurfaceMesh& mesh, const Vec3& p_m) {
 }
 
 // No shipped scene sets it by hand: a disc of the tip's radius on a half-space of [elastic],
-// 8 G R / (2 - nu), in series with the give of the place along the surface.
+// 8 G R / (2 - nu), in series with the compliance of the place along the surface.
 TEST(Sideways, AtRestEveryShippedSceneTakesItsStiffnessFromItsTissue) {
   struct Want {
     const char* scene;

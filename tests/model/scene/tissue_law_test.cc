@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene's law made ready to touch: what it says of itself must hold for all that can be felt.
+// A scene's law made ready for contact: what it says of itself must hold for all that can be felt.
 #include "model/scene/tissue_law.h"
 
 #include <fmt/format.h>
@@ -48,7 +48,7 @@ TEST(TissueLaw, StiffnessIsTheLargestSlopeShortOfTheTear) {
 }
 
 // Hertz: u(r) = d / pi ((2 - s^2) asin(1 / s) + sqrt(s^2 - 1)), s = r / a, a^2 = R d
-TEST(TissueLaw, SpringsInARowAreDrawnAsTheDentOfAHalfSpace) {
+TEST(TissueLaw, SpringsInARowAreDrawnAsAnIndentedHalfSpace) {
   constexpr double kDepth_m = 0.003, kRadius_m = 0.0065;  // of the fingertip
   const auto law = made(shipped("heart", {"varies_by_place=false"}));
   std::array<double, 32> ring_m{};
@@ -83,8 +83,8 @@ TEST(TissueLaw, TitlesNameTheirSizes) {
       "strain under the tip, 17 curves");
 }
 
-// The net moves, is cut and is drawn; the tool feels the organ.
-TEST(TissueLaw, ASpringPatchOnAnOrganIsFeltAsTheOrgan) {
+// The net moves, is cut and is drawn; the tool gets the force of the organ.
+TEST(TissueLaw, ASpringPatchOnAnOrganHasTheForceOfTheOrgan) {
   const Scene gum = shipped("gum");
   const auto patch = made(gum), organ = made(gum, "compliance");
   const contact::SurfaceView mesh = gum.organ_mesh.view();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A tissue with other numbers takes the place of one that nothing touches.
+// A tissue with other numbers replaces one that is out of contact.
 #include "model/scene/variant.h"
 
 #include <gtest/gtest.h>

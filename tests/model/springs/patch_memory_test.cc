@@ -69,7 +69,7 @@ TEST(PatchMemory, MatchesPenAndPaper) {
   const double relaxed_rest_m = 0.001 * (0.5 + 0.5 * std::exp(-1.0));
   EXPECT_NEAR(memory.relaxed_rest_m(4)[1].z, relaxed_rest_m, 1e-15);
   EXPECT_NEAR(memory.flowed_m(1, net.position_m[1]).z, 0.001 - relaxed_rest_m, 1e-15);
-  EXPECT_EQ(memory.relaxed_rest_m(4)[2], net.rest_m[2]) << "rest is felt as rest, to the last bit";
+  EXPECT_EQ(memory.relaxed_rest_m(4)[2], net.rest_m[2]) << "rest stays rest, to the last bit";
   // only anchors, 5 N/m: W = 0.5 * 5/2 * 1 mm^2 + 0.5 * 5/2 * (1 mm / e)^2
   net.spring.clear();
   SpringNetwork network = net.view();

@@ -98,7 +98,7 @@ TEST(PatchRegion, GatheringMakesNoEnergyBeyondItsDebt) {
   }
 }
 
-TEST(PatchRegion, AStayingVertexKeepsItsDent) {
+TEST(PatchRegion, AStayingVertexKeepsItsDisplacement) {
   SpringPatchParameters p = soft_patch();
   p.nodes = 60;
   PressedPatch pressed(p);
@@ -156,7 +156,7 @@ TEST(PatchRegion, HandingOverNeverGivesTheToolEnergy) {
         const double energy_deficit_J = pressed.patch().region().energy_deficit_J();
         EXPECT_GT(pressed.work_J(), -1e-9) << nodes << " nodes, " << stretch << ", " << speed_m;
         EXPECT_GT(least_J, -1e-9);
-        // 40 nodes are three rings: the rim stands in the indentation
+        // 40 nodes are three rings: the rim is in the indentation
         EXPECT_LT(energy_deficit_J, (nodes == 40 ? 0.1 : 0.01) * most_J)
             << nodes << " nodes, " << stretch << ", " << speed_m;
       }

@@ -63,7 +63,7 @@ TEST(SpringPatchBroke, GivesNoForceUntilEverySphereHasLeft) {
   }
 }
 
-TEST(SpringPatchBroke, ASoundPatchNeverTellsThatItBroke) {
+TEST(SpringPatchBroke, ASoundPatchNeverReportsThatItBroke) {
   PressedPatch pressed(soft_patch());
   for (int i = 0; i < 500; ++i) {
     pressed.move_to(0.0, 0.0, 0.01 * std::sin(0.2 * i), true);

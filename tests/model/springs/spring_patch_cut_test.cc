@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cutting a spring patch: what is removed, what opens, what is told, and where the energy goes.
+// Cutting a spring patch: what is removed, what opens, what is reported, and where the energy goes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -125,7 +125,7 @@ TEST(SpringPatchCut, StaysOpenWhenTheToolGoesElsewhere) {
     ++left;
     const Vec3 now_m = pressed.patch().region().moved_m(cut_edges[i]);
     if (norm(open_m[i]) < 1e-4) continue;
-    EXPECT_GT(dot(now_m, open_m[i]), 0.5 * dot(open_m[i], open_m[i])) << "lip " << i;
+    EXPECT_GT(dot(now_m, open_m[i]), 0.5 * dot(open_m[i], open_m[i])) << "edge " << i;
   }
   EXPECT_GT(left, 4u);
   contact::PatchShape shape;
@@ -134,11 +134,11 @@ TEST(SpringPatchCut, StaysOpenWhenTheToolGoesElsewhere) {
   for (std::size_t i = 0; i < cut_edges.size(); ++i) {
     if (norm(open_m[i]) < 1e-4) continue;
     EXPECT_NE(std::find(shape.vertex.begin(), last, cut_edges[i]), last)
-        << "the viewer knows each lip";
+        << "the viewer knows each cut edge";
   }
 }
 
-TEST(SpringPatchCut, TellsEveryCutInAMovingWindow) {
+TEST(SpringPatchCut, ReportsEveryCutInAMovingWindow) {
   SpringPatchParameters p = stretched();
   p.nodes = 1000;
   p.node_mass_kg = 0.02;

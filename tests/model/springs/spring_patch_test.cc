@@ -41,14 +41,14 @@ TEST(SpringPatch, MatchesPenAndPaper) {
   // A net whose springs carry nothing across, pressed in a vertex: body and coupling in series.
   SpringPatchParameters p = soft_patch();
   p.tissue.surface_stiffness_N_per_m = 1e-6;
-  PressedPatch loose(p);
+  PressedPatch unlinked(p);
   double force_N = 0.0;
   for (int i = 0; i < 1500; ++i) {
-    force_N = loose.move_to(0.0, 0.0, 0.001).law.force_N;
-    loose.advance();
+    force_N = unlinked.move_to(0.0, 0.0, 0.001).law.force_N;
+    unlinked.advance();
   }
-  const PatchSurface& surface = loose.patch().region().surface();
-  const double anchor = surface.anchor_N_per_m[loose.patch().region().vertices()[0]];
+  const PatchSurface& surface = unlinked.patch().region().surface();
+  const double anchor = surface.anchor_N_per_m[unlinked.patch().region().vertices()[0]];
   EXPECT_NEAR(force_N, 0.001 * anchor * 300.0 / (anchor + 300.0), 1e-6);
 }
 
@@ -195,7 +195,7 @@ TEST(SpringPatch, FourSpheresPressAtOnce) {
   const double alone_N = settled_N(*std::make_unique<PressedPatch>(p), 0.002);
   for (const double f : force_N) {
     EXPECT_GT(f, 0.0);
-    EXPECT_LT(f, alone_N) << "a neighbour's dent leaves less to press";
+    EXPECT_LT(f, alone_N) << "a neighbour's indentation leaves less to press";
   }
 }
 
@@ -211,7 +211,7 @@ TEST(SpringPatch, EveryIntegratorGivesTheSameSettledForce) {
   }
 }
 
-TEST(SpringPatch, TouchesAsManyNodesOnALargeMeshAsOnASmallOne) {
+TEST(SpringPatch, UsesAsManyNodesOnALargeMeshAsOnASmallOne) {
   std::set<std::size_t> nodes, springs;
   for (const std::uint32_t cells : {20u, 40u, 120u}) {
     SpringPatchParameters p = soft_patch();

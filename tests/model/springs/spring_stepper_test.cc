@@ -47,7 +47,7 @@ TEST(SpringStepper, ImplicitEulerNeverMakesEnergyHoweverFewItsIterations) {
 }
 
 // A crumpled net: many springs are pressed together and would have negative stiffness across.
-TEST(SpringStepper, ImplicitEulerSettlesWhateverItsStartAndStep) {
+TEST(SpringStepper, ImplicitEulerSettlesForAnyStartAndStep) {
   for (const double step_s : {0.001, 0.01, 0.1}) {
     SpringNet net = make_net(6, {.shake_m = 0.02});
     const double before_J = net.energy_J();

@@ -44,7 +44,7 @@ double blended_N(const ComplianceFamily& family, double kappa, double depth_m) {
          f * family.curve[low + 1].respond(depth_m).force_N;
 }
 
-TEST(ComplianceFamily, StandsFromSoftToStiff) {
+TEST(ComplianceFamily, IsSortedFromSoftToStiff) {
   const ComplianceFamily family = make(lobe());
   ASSERT_EQ(family.curve.size(), 17u);
   for (std::size_t k = 1; k < 17; ++k)

@@ -11,11 +11,11 @@
 namespace tact::model::tissue::indentation_tilt_test {
 
 /// r E = 40 + 300 x - 100 y, x and y in m; what looks down is as stiff as it can be.
-ComplianceMap sloping_map(const mesh::SurfaceMesh& skin) {
+ComplianceMap sloping_map(const mesh::SurfaceMesh& surface) {
   ComplianceMap map;
-  for (std::size_t v = 0; v < skin.vertex_m.size(); ++v) {
-    const Vec3& at_m = skin.vertex_m[v];
-    const bool looks_up = skin.vertex_normal[v].z > 0.0;
+  for (std::size_t v = 0; v < surface.vertex_m.size(); ++v) {
+    const Vec3& at_m = surface.vertex_m[v];
+    const bool looks_up = surface.vertex_normal[v].z > 0.0;
     map.regular_times_E_per_m.push_back(
         looks_up ? static_cast<float>(40.0 + 300.0 * at_m.x - 100.0 * at_m.y) : -1000.0F);
   }
@@ -31,7 +31,7 @@ TEST(IndentationTilt, IsHalfTheSlopeOfTheGive) {
   }
 }
 
-TEST(IndentationTilt, IsOfAllSkinWithinItsReachAndOfNoOther) {
+TEST(IndentationTilt, IsOfAllSurfaceWithinItsReachAndOfNoOther) {
   const mesh::SurfaceMesh plate = tests::make_plate(100_mm, 20);
   const auto nearest = [&](const Vec3& to_m) {
     const auto away_m = [&](const Vec3& at_m) { return norm(at_m - to_m); };
@@ -64,7 +64,7 @@ TEST(IndentationTilt, DoesNotLookThroughALobe) {
   for (std::size_t v = 0; v < upper; ++v) EXPECT_NEAR(tilt[v].x, 150.0, 1e-3);
 }
 
-TEST(IndentationTilt, OfSkinThatIsALineIsNone) {
+TEST(IndentationTilt, OfASurfaceThatIsALineIsNone) {
   mesh::SurfaceMesh line;
   for (int i = 0; i < 5; ++i) {
     line.vertex_m.push_back({i * 1_mm, 0, 0});

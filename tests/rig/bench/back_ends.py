@@ -85,7 +85,7 @@ def drives(protocol, options=""):
 DEVICES = pathlib.Path(__file__).resolve().parents[3] / "tools/deploy/devices.toml"
 DELTA = "[device.delta]\n" + "".join(
     f"{key} = {json.dumps(value)}\n" for key, value in tomllib.loads(DEVICES.read_text())["device"]["delta"].items())
-# Absolute encoders that tell zero where the arms do.
+# Absolute encoders that report zero where the arms do.
 DRIVES = '[device.can]\nhoming = "absolute"\nzero_turns = [0.0, 0.0, 0.0]\ndirection = [1.0, 1.0, 1.0]\n'
 
 
@@ -131,5 +131,5 @@ PHANTOM = BackEnd(
     settings=('device.kind="phantom"', SLIDE, 'device.phantom.library="/tact/bin/libtact-stub-hd.so"'),
     options=("--trust-library",),
     programs=("libtact-stub-hd.so",),
-    # The library's own thread, once a cycle. Nobody shares its lock.
+    # The library's own thread, once a cycle. Its lock is not shared.
     system_calls=SLEEP | {("tact-phantom", "sys_clock_nanosleep"): 1})

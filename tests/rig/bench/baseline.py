@@ -9,10 +9,10 @@ every seed. So a number has grown when the shortest of the timed runs has, and `
 it says so; the baseline is the middle of six seeds. What a wake-up takes at most is the kernel's path
 more than ours: it may grow by a quarter (and is held against cyclictest besides); its median like all
 others. With another kernel of the baseline's series (6.1), so may all phases that call it. With one of
-another series, of a release with its own compiler and libraries, numbers are told and not judged.
+another series, of a release with its own compiler and libraries, numbers are reported and not evaluated.
 
 The longest of a bus is its first tick, which empties the queue of the set-up and is some ten times as
-long as any other, so between it and the median a third number stands: what 99.9 % of the ticks of a
+long as any other, so between it and the median is a third number: what 99.9 % of the ticks of a
 phase do not exceed.
 
 The longest of a phase that calls nothing is the one tick that meets the hand where the law has most to
@@ -70,13 +70,13 @@ def most_allowed(phase, name, old, same_kernel):
 
 def with_longest_of_scene(known, scene_of):
     """`known`, with the longest own phases of each back end as long as any with its scene had them."""
-    told = {}
+    recorded = {}
     for back_end, phases in known.items():
         alike = [of for name, of in known.items() if scene_of.get(name) == scene_of.get(back_end)]
         longest = {phase: max(of[phase][LONGEST] for of in alike) for phase in OWN}
         longest["total"] = phases["total"][LONGEST] + sum(longest[phase] - phases[phase][LONGEST] for phase in OWN)
-        told[back_end] = phases | {phase: phases[phase] | {LONGEST: longest[phase]} for phase in longest}
-    return told
+        recorded[back_end] = phases | {phase: phases[phase] | {LONGEST: longest[phase]} for phase in longest}
+    return recorded
 
 
 def incomplete(path):
@@ -130,7 +130,7 @@ def write(runs, gate, cycles, path, kernel):
     """Replaces the back ends, the gate's paths and the cycles of buses that were measured, keeps the others."""
     known, old_kernel = read(path)
     fresh = measure(runs, statistics.median_high)
-    told = {"kernel": kernel if fresh else old_kernel, "gate": gate or read_gate(path),
-            "bus_cycles": dict(sorted((read_cycles(path) | cycles).items())),
-            "back_ends": dict(sorted((known | fresh).items()))}
-    path.write_text(json.dumps(told, indent=2) + "\n")
+    recorded = {"kernel": kernel if fresh else old_kernel, "gate": gate or read_gate(path),
+                "bus_cycles": dict(sorted((read_cycles(path) | cycles).items())),
+                "back_ends": dict(sorted((known | fresh).items()))}
+    path.write_text(json.dumps(recorded, indent=2) + "\n")

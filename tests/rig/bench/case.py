@@ -12,7 +12,7 @@ ROOT = HERE.parents[1]
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class BackEnd:
-    """A device that tactd can drive in the guest, and what stands on its other side."""
+    """A device that tactd can drive in the guest, and its other side."""
     name: str
     settings: tuple = ()        # KEY=VALUE of the scene
     sections: str = ""          # that its file needs besides
@@ -37,7 +37,7 @@ class BackEnd:
 class Case:
     """One sentence that must stay true, a bash script for the guest, and what proves it."""
     name: str
-    sentence: str
+    message: str
     back_end: BackEnd
     script: str                 # bash; see guest/bench.sh for what it may call
     checks: tuple = ()          # functions of a Run; each returns a list of complaints

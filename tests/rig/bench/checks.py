@@ -44,7 +44,7 @@ def whole_run(run):
 def touched(run):
     """A run without force proves nothing."""
     force_N = run.report.get("force_max_N", 0.0)
-    return [] if force_N > 0.1 else [f"largest force {force_N:.3f} N: the tissue was not felt"]
+    return [] if force_N > 0.1 else [f"largest force {force_N:.3f} N: the tissue gave no force"]
 
 
 def torque_at_its_limit(run):
@@ -102,8 +102,8 @@ def threads_as_listed(run):
 def peer_undisturbed(limit_ns):
     """The other FIFO loop of this guest never woke later than limit_ns."""
     def check(run):
-        told = [line for line in run.text("peer.txt").splitlines() if line.startswith("# Max")]
-        worst = int(told[0].split()[-1]) if told else None
+        totals = [line for line in run.text("peer.txt").splitlines() if line.startswith("# Max")]
+        worst = int(totals[0].split()[-1]) if totals else None
         return [] if worst is not None and worst <= limit_ns else [
             f"a FIFO loop beside tactd woke {worst} ns late, {limit_ns} allowed"]
     return check
@@ -134,7 +134,7 @@ def no_more_edges(run):
         f"the heartbeat went on after the end of tactd: {''.join(beats)}"]
 
 
-def told(*words):
+def reported(*words):
     """The report says behind the fault what a person needs to know."""
     def check(run):
         trouble = run.report.get("fault", {}).get("trouble", "")
@@ -205,15 +205,15 @@ def device_gone(run):
 
 
 def pressed_by_hand(run):
-    """The other side of the bus agrees: the hand went into the tissue and felt what was commanded."""
-    told, felt_N = run.emulator, run.report.get("force_max_N", 0.0)
+    """The other side of the bus agrees: the hand went into the tissue and got what was commanded."""
+    drives, commanded_N = run.emulator, run.report.get("force_max_N", 0.0)
     wrong = []
-    if told.get("lowest_z_m", 1.0) > -0.005:
-        wrong.append(f"the hand came down to z = {told.get('lowest_z_m')} m only")
-    if told.get("largest_hand_force_N", 0.0) < 0.95 * felt_N:
-        wrong.append(f"tactd wrote up to {felt_N:.3f} N, the motors made {told.get('largest_hand_force_N')} N")
-    if told.get("watchdog_trips") != 0:
-        wrong.append(f"{told.get('watchdog_trips')} watchdogs tripped in a run without faults")
+    if drives.get("lowest_z_m", 1.0) > -0.005:
+        wrong.append(f"the hand came down to z = {drives.get('lowest_z_m')} m only")
+    if drives.get("largest_hand_force_N", 0.0) < 0.95 * commanded_N:
+        wrong.append(f"tactd wrote up to {commanded_N:.3f} N, the motors made {drives.get('largest_hand_force_N')} N")
+    if drives.get("watchdog_trips") != 0:
+        wrong.append(f"{drives.get('watchdog_trips')} watchdogs tripped in a run without faults")
     return wrong
 
 
@@ -236,7 +236,7 @@ def frames_of(run):
 
 def per_second(frames, identifier):
     """By the median of the gaps: what comes once at the end does not count."""
-    times = [time for time, told, _ in frames if told == identifier]
+    times = [time for time, sent, _ in frames if sent == identifier]
     gaps = sorted(after - before for before, after in zip(times, times[1:]))
     return 1.0 / gaps[len(gaps) // 2] if len(gaps) > 500 else 0.0
 
@@ -268,7 +268,7 @@ def bus_of_odrives(run):
 
 def closed_loop_onwards(frames, command, data):
     """The frames after the last axis was asked for closed loop, but for the last 50 ms of the run."""
-    asked = [time for time, identifier, told in frames if identifier & 0x1F == command and told == data]
+    asked = [time for time, identifier, sent in frames if identifier & 0x1F == command and sent == data]
     last = max(time for time, identifier, _ in frames if identifier & 0x1F == 0x0E) if asked else 0.0
     return [frame for frame in frames if asked and asked[-1] + 0.2 < frame[0] < last - 0.05]
 

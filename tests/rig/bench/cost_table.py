@@ -3,7 +3,7 @@
 from bench.baseline import read, read_cycles
 
 # back end: its name for a reader, and the system calls of the loop's thread and of its own
-TOLD = {
+CAUSES = {
     "sim-delta": ("`sim-delta`", "0"),
     "sim-delta with lines": ("`sim-delta` with safety lines", "2 ioctl (4 with a scope line)"),
     "odrive06": ("`can-odrive`, 0.6", "recvmmsg, sendmmsg"),
@@ -21,7 +21,7 @@ def table(baseline):
     known, cycles = read(baseline)[0], read_cycles(baseline)
     lines = ["| back end | system calls a tick | tick, median / 99.9 % / longest | read | write | "
              "bus cycle, median / 99 %; the emulator's part |", "|---|---|---|---|---|---|"]
-    for name, (words, calls) in TOLD.items():
+    for name, (words, calls) in CAUSES.items():
         if name in known:
             of = known[name]
             tick = " / ".join(us(of["total"].get(key)) for key in ("median_ns", "p99.9_ns", "longest_ns"))

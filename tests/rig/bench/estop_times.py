@@ -8,7 +8,7 @@ import dataclasses
 import statistics
 
 from bench import path_table
-from bench.cost_table import TOLD
+from bench.cost_table import CAUSES
 
 BEGIN = "<!-- e-stop, made by tests/rig/run --write-baseline; with --long also the back ends of --long -->\n"
 PERIOD_us = 1000.0
@@ -105,7 +105,7 @@ def readme_table(runs, old):
     """As hal/gpio/README.md has it: a row for each back end, that of `old` where none was measured."""
     rows = {line.split(" | ")[0].removeprefix("| "): line for line in old.splitlines()[2:]}
     for name, edges in measured(runs).items():
-        label = TOLD[name.split()[0]][0]
+        label = CAUSES[name.split()[0]][0]
         motors = [edge[2] for edge in edges if edge[2] is not None]
         rows[label] = f"| {label} | {pair([edge[1] for edge in edges])} | {pair(motors) if motors else '-'} |"
     return "\n".join(["| back end, with safety lines | zero written, median / longest | "

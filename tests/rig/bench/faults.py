@@ -19,7 +19,7 @@ class Latches:
     motors_later_ms: float = None   # instead: from the tick that knows to no torque in them
     or_first: str = ""          # another fault of the same harm, which may be seen first
 
-    def judge(self, run):
+    def check(self, run):
         ticks, wrong = run.ticks, []
         detected, zero = ticks.get("detected"), ticks.get("zero")
         if not ticks.get("pushed_before") or ticks.get("force_before_N", 0.0) == 0.0:
@@ -72,12 +72,12 @@ def attempt(required):
 def motors_let_go(run, within_ms, since_ns=None):
     """What the motors on the other side of the bus did: no torque in time, and none after it. Of a fault
     that the emulator committed itself it knows the first zero; of all others the zero that lasted."""
-    told = (run.emulator.get("faults") or [{}])[0]
-    since_ns = since_ns or told.get("injected_ns") or run.ticks.get("injected_ns") or 0
-    zero_ns = told.get("torque_zero_ns") if told else run.emulator.get("torque_zero_since_ns")
+    injected = (run.emulator.get("faults") or [{}])[0]
+    since_ns = since_ns or injected.get("injected_ns") or run.ticks.get("injected_ns") or 0
+    zero_ns = injected.get("torque_zero_ns") if injected else run.emulator.get("torque_zero_since_ns")
     if not since_ns or not zero_ns:
-        return [f"the motors kept their force: {told}"]
-    took_ms, again_N = (zero_ns - since_ns) / 1e6, told.get("largest_after_zero_N", 0.0)
+        return [f"the motors kept their force: {injected}"]
+    took_ms, again_N = (zero_ns - since_ns) / 1e6, injected.get("largest_after_zero_N", 0.0)
     wrong = []
     if took_ms > within_ms:
         wrong.append(f"the motors let go after {took_ms:.2f} ms, bound {within_ms} ms")
@@ -88,9 +88,9 @@ def motors_let_go(run, within_ms, since_ns=None):
 
 def motors_ms(run):
     """From the injection to motors without torque, ms; None without emulated motors."""
-    told = (run.emulator.get("faults") or [{}])[0]
-    zero_ns = told.get("torque_zero_ns") or run.emulator.get("torque_zero_since_ns")
-    since_ns = told.get("injected_ns") or run.ticks.get("injected_ns")
+    injected = (run.emulator.get("faults") or [{}])[0]
+    zero_ns = injected.get("torque_zero_ns") or run.emulator.get("torque_zero_since_ns")
+    since_ns = injected.get("injected_ns") or run.ticks.get("injected_ns")
     return (zero_ns - since_ns) / 1e6 if zero_ns and since_ns else None
 
 
@@ -100,7 +100,7 @@ class RidesThrough:
     most_skipped: int = 0
     fades: bool = False         # samples must have been missed
 
-    def judge(self, run):
+    def check(self, run):
         ticks, wrong = run.ticks, []
         if ticks.get("injected_ns", 0) == 0 or not ticks.get("first_tick_after"):
             wrong.append("nothing was injected while tactd ran: it proves nothing")
@@ -129,7 +129,7 @@ class StoppedByDrives:
     within_ms: float
     trips: int
 
-    def judge(self, run):
+    def check(self, run):
         wrong = []
         if run.emulator.get("watchdog_trips") != self.trips:
             wrong.append(f"{run.emulator.get('watchdog_trips')} watchdogs tripped, not {self.trips}")
@@ -153,14 +153,14 @@ class StoppedByGuardian:
     """tactd is gone without a word: its guardian takes the force, before any watchdog could."""
     within_ms: float = 5.0
 
-    def judge(self, run):
+    def check(self, run):
         wrong = []
         if run.text("tactd.status").strip() != "137":
             wrong.append(f"exit status {run.text('tactd.status').strip()}: it was not killed")
         if run.ticks.get("force_before_N", 0.0) == 0.0:
             wrong.append("no force when it was killed: it proves nothing")
         if "tact-guardian: tactd" not in run.text("tactd.log"):
-            wrong.append("the guardian has told nobody that it acted")
+            wrong.append("the guardian did not report that it acted")
         return wrong + motors_let_go(run, self.within_ms)
 
     def row(self, run):

@@ -31,10 +31,10 @@ def compare(measured, known):
 
 def table(known):
     """Markdown: a row for each stage, and one for the gate when none acts."""
-    told = functools.partial("{:,}".format)
+    grouped = functools.partial("{:,}".format)
     lines = ["| stage of the gate that acts | by its own inputs | among others, the longest |", "|---|---|---|"]
     for stage in STAGES if known else ():
         ways = (known[stage][way] for way in WAYS)
-        lines.append(f"| {stage} | " + " | ".join("-" if value is None else told(value).replace(",", " ")
+        lines.append(f"| {stage} | " + " | ".join("-" if value is None else grouped(value).replace(",", " ")
                                                   for value in ways) + " |")
     return "\n".join(lines) + "\n"

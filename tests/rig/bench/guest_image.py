@@ -186,10 +186,10 @@ def build(cache, say):
     if not guest.exists():
         say("building: initramfs")
         build_in(guest, lambda folder: pack(folder, kernel, root))
-    patience = pathlib.Path(__file__).with_name("patient_poll.cc")
-    shim = build_in(cache / f"qemu-{digest(patience)}", lambda folder: command(
+    poll = pathlib.Path(__file__).with_name("patient_poll.cc")
+    shim = build_in(cache / f"qemu-{digest(poll)}", lambda folder: command(
         ["g++", "-std=c++20", "-O2", "-shared", "-fPIC", "-o", str(folder / "patient_poll.so"),
-         str(patience)], "patient_poll does not compile"))
+         str(poll)], "patient_poll does not compile"))
     return kernel / "vmlinuz", guest / "initramfs", shim / "patient_poll.so"
 
 

@@ -21,7 +21,7 @@ def table(known):
 
 
 def split(readme, mark=BEGIN):
-    """What stands before the table, the table, and what stands after it."""
+    """The text before the table, the table, and the text after it."""
     head, begin, rest = readme.partition(mark)
     old, end, tail = rest.partition(END)
     if not begin or not end:

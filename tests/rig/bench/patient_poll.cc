@@ -9,9 +9,9 @@
 //   - a time-out becomes one second: the CPU thread wakes the main loop each time it goes idle;
 //   - a poll returns once the CPU thread waits on its condition, or after a second;
 //   - or once, when the CPU thread has written to the same eventfd twice at the same guest time:
-//     it tells that a timer is due, could not run it itself, and tells again. No instruction runs
-//     before the main loop has looked. Without this each such timer cost a second of this host's
-//     time, half of the bench's.
+//     it reports that a timer is due, could not run it itself, and reports again. No instruction
+//     runs before the main loop has looked. Without this each such timer cost a second of this
+//     host's time, half of the bench's.
 // The CPU thread holds QEMU's big lock when it says that it is idle and gives it up in the wait
 // itself, so the main loop, which takes that lock next, finds all instructions accounted.
 //
@@ -98,7 +98,7 @@ extern "C" int ppoll(pollfd* files, nfds_t count, const timespec* limit, const s
   using Function = int (*)(pollfd*, nfds_t, const timespec*, const sigset_t*);
   static const auto real = reinterpret_cast<Function>(dlsym(RTLD_NEXT, "ppoll"));
   const bool is_main = gettid() == getpid();
-  std::uint32_t state = kStuck;  // of before; one that still is tells it again
+  std::uint32_t state = kStuck;  // of before; one that still is reports it again
   if (is_main) cpu.compare_exchange_strong(state, kComputes);
   const bool shorter = limit != nullptr && limit->tv_sec == 0 && limit->tv_nsec > 0;
   const int ready = real(files, count, shorter ? &kSecond : limit, mask);

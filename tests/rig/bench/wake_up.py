@@ -20,7 +20,7 @@ def like_peer(runs):
 
 
 def like_peer_too(run):
-    """The same of one run, whatever else ran beside both."""
+    """The same of one run, with the same load."""
     return like_peer([run])
 
 
@@ -40,8 +40,8 @@ def peer_percentile_ns(text, share):
     without a histogram or when values overflowed it."""
     rows = [line.split() for line in text.splitlines() if line[:1].isdigit()]
     total = sum(int(count) for _, count in rows)
-    told = [line for line in text.splitlines() if line.startswith("# Total")]
-    if total == 0 or int(told[0].split()[-1]) != total:
+    totals = [line for line in text.splitlines() if line.startswith("# Total")]
+    if total == 0 or int(totals[0].split()[-1]) != total:
         return None
     seen = 0
     for latency_ns, count in rows:

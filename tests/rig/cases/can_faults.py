@@ -13,7 +13,7 @@ REAL_TIME = (checks.hard_real_time,)
 # Motors behind a bus that still carries frames: zero torque and the stop leave in the tick that knows, and
 # the emulated drives run when it is over. Without frames they stop by themselves: an ODrive's and a moteus'
 # watchdog of 10 ms, a CiA 402 drive's consumer of heartbeats, and a tick and its look at the time.
-TOLD_ms = 1.0
+REPORT_ms = 1.0
 ALONE_ms = {"odrive06": 12.0, "cia402": 25.0, "moteus": 12.0}
 # The same happens on ODrives in every run.
 LONG = {("cia402", name) for name in ("link-down", "error-passive", "duplicated", "reordered", "wrong-node")}
@@ -42,24 +42,24 @@ FILTERED = (*REAL_TIME, counted("strays", 0))       # the kernel kept them out, 
 NONE_LOST = (*REAL_TIME, counted("old", 0), every_tick_sampled)
 
 
-def committed(back_end, kind, sentence, required, options="", proofs=REAL_TIME):
+def committed(back_end, kind, message, required, options="", proofs=REAL_TIME):
     """A fault that the emulated drives commit by themselves."""
-    return Case(f"{back_end.name}-{kind_of(kind)}", sentence, back_end,
+    return Case(f"{back_end.name}-{kind_of(kind)}", message, back_end,
                 f"control $SECONDS_OF_RUN\nsleep 1.5\n{attempt(required)}\nfinish",
                 proofs, fault=required, seconds=1.9, long_only=(back_end.name, kind_of(kind)) in LONG,
                 variables={"EMULATOR": f"{TEMPO} --fault {kind} {options}"})
 
 
-def done_to(back_end, name, sentence, harm, required, seconds=1.9, proofs=REAL_TIME):
+def done_to(back_end, name, message, harm, required, seconds=1.9, proofs=REAL_TIME):
     """A fault of the bus itself: the script waits until tactd presses, then does the harm."""
-    return Case(f"{back_end.name}-{name}", sentence, back_end,
+    return Case(f"{back_end.name}-{name}", message, back_end,
                 f"control $SECONDS_OF_RUN\nsleep {AT}\n{harm}\nsleep .4\n{attempt(required)}\nfinish",
                 proofs, fault=required, seconds=seconds, long_only=(back_end.name, name) in LONG,
                 variables={"EMULATOR": TEMPO})
 
 
 def error_frame(back_end, name, frame):
-    required = Latches("bus off", detect_ms=12, motors_later_ms=TOLD_ms)
+    required = Latches("bus off", detect_ms=12, motors_later_ms=REPORT_ms)
     return done_to(back_end, name, "an error frame of the controller stops the force for good",
                    f"inject cansend can1 {frame}", required)
 
@@ -80,17 +80,17 @@ CASES = [
     *(error_frame(back_end, "bus-off", "20000040#0000000000000000") for back_end in (ODRIVE06, CIA402)),
     *(error_frame(back_end, "error-passive", "20000004#0030000000000000") for back_end in (ODRIVE06, CIA402)),
     *(done_to(back_end, "foreign", "a command of another sender stops the force for good", f"inject cansend can1 {frame}",
-              Latches("foreign command", detect_ms=12, motors_later_ms=TOLD_ms))
+              Latches("foreign command", detect_ms=12, motors_later_ms=REPORT_ms))
       for back_end, frame in ((ODRIVE06, "04E#CDCC4C3E00000000"), (CIA402, "202#0F003200"), (MOTEUS, "002##1015000"))),
     *(done_to(back_end, "no-buffers", "a bus that takes no frames is a missed cycle; the drives stop",
               # The time counts from the command; its files and the module are read before.
               "modprobe sch_netem; tc qdisc show dev can0 >/dev/null\n"
               "inject tc qdisc replace dev can0 root netem limit 1 delay 1s", required)
       for back_end, required in (
-          # Their watchdogs stop the motors before the bus has missed twenty batches. A heartbeat in between tells it.
+          # Their watchdogs stop the motors before the bus has missed twenty batches. A heartbeat in between reports it.
           (ODRIVE06, Latches("bus down", detect_ms=80, motors_later_ms=0, or_first="drive fault")),
           # They miss a heartbeat before the bus has missed twenty batches, each in its own millisecond, and say so.
-          (CIA402, Latches("drive fault", detect_ms=80, motors_later_ms=2 * TOLD_ms, or_first="bus down")))),
+          (CIA402, Latches("drive fault", detect_ms=80, motors_later_ms=2 * REPORT_ms, or_first="bus down")))),
     # What happens to frames.
     committed(ODRIVE06, f"lost@{AT}+40", "frames that stay out: fade, then a latched fault",
               lost()),

@@ -11,12 +11,12 @@ PRESSING = "control $SECONDS_OF_RUN\nsleep 3.2\n"  # 10 mm deep, enabled since 0
 A, B, DEAD_MAN, ENABLE, HEARTBEAT = range(5)
 
 
-def fault(name, sentence, harm, required, also=(), shown=True):
-    return Case(f"lines-{name}", sentence, SIM_DELTA_LINES, f"{PRESSING}{harm}\n{attempt(required)}\nfinish",
+def fault(name, message, harm, required, also=(), shown=True):
+    return Case(f"lines-{name}", message, SIM_DELTA_LINES, f"{PRESSING}{harm}\n{attempt(required)}\nfinish",
                 (*REAL_TIME, *((checks.permission_gone,) if shown else ()), *also), fault=required, seconds=3.8)
 
 
-def at_once(name):
+def immediate(name):
     """An input is read in every tick; the shell that pulls it needs some 0.2 ms."""
     return Latches(name, detect_ms=1.5)
 
@@ -52,22 +52,22 @@ CASES = [
          SIM_DELTA_LINES, "control $SECONDS_OF_RUN\ntrace_threads $tactd 1 >$RESULTS/threads.txt\nfinish",
          (checks.hard_real_time, checks.no_fault, checks.threads_as_listed), seconds=2.6),
     fault("estop-a", "channel A alone stops the force in the tick that reads it",
-          f"inject pull {A} down; sleep .03; {OUTPUTS}pull {A} up; sleep .01", at_once("emergency stop")),
+          f"inject pull {A} down; sleep .03; {OUTPUTS}pull {A} up; sleep .01", immediate("emergency stop")),
     fault("estop-b", "channel B alone stops the force in the tick that reads it",
-          f"inject pull {B} down; sleep .03; {OUTPUTS}pull {B} up; sleep .01", at_once("emergency stop")),
+          f"inject pull {B} down; sleep .03; {OUTPUTS}pull {B} up; sleep .01", immediate("emergency stop")),
     fault("estop", "both channels stop the force, and a released button alone moves nothing",
           f"inject pull {A} down; pull {B} down; sleep .05; {OUTPUTS}"
-          f"pull {A} up; pull {B} up; sleep .01", at_once("emergency stop")),
+          f"pull {A} up; pull {B} up; sleep .01", immediate("emergency stop")),
     fault("discrepancy", "channels that disagree for 50 ms are a fault that no reset clears",
           f"inject pull {B} down; sleep .1; {OUTPUTS}pull {B} up; sleep .05\n"
-          "ask reset; sleep .1", at_once("emergency stop"),
-          (checks.told("channel A of the e-stop did not open with channel B"),)),
-    fault("stuck", "a channel that sticks is told by name, and no reset clears it",
+          "ask reset; sleep .1", immediate("emergency stop"),
+          (checks.reported("channel A of the e-stop did not open with channel B"),)),
+    fault("stuck", "a channel that sticks is reported by name, and no reset clears it",
           f"inject pull {A} down; sleep .1; {OUTPUTS}pull {A} up; sleep .05\n"
-          "ask reset; sleep .1", at_once("emergency stop"),
-          (checks.told("channel B of the e-stop did not open with channel A"),)),
+          "ask reset; sleep .1", immediate("emergency stop"),
+          (checks.reported("channel B of the e-stop did not open with channel A"),)),
     fault("dead-man", "a released dead-man stops the force",
-          f"inject pull {DEAD_MAN} down; sleep .03; {OUTPUTS}pull {DEAD_MAN} up; sleep .01", at_once("dead man released")),
+          f"inject pull {DEAD_MAN} down; sleep .03; {OUTPUTS}pull {DEAD_MAN} up; sleep .01", immediate("dead man released")),
     fault("chip-removed", "a chip that is gone stops the force",
           "inject gpio_sim remove; sleep .05", Latches("lines lost", detect_ms=30), shown=False),
     Case("lines-killed", "a killed controller makes no more edges: the relay beside it drops",

@@ -16,7 +16,7 @@ def pin_agrees(run):
     delay_ns = emulator.get("latency_max_ns", 0)
     phases_ns = sum(series[phase]["p50_ns"] for phase in IN_THE_PULSE)
     if not 5_000 < delay_ns < 100_000:
-        wrong.append(f"the wire's delay of up to {delay_ns} ns is none to judge a pulse by")
+        wrong.append(f"the wire's delay of up to {delay_ns} ns is none to evaluate a pulse by")
     if abs(pin["p50_ns"] - phases_ns) > delay_ns:
         wrong.append(f"a pulse lasts {pin['p50_ns']} ns, its phases {phases_ns} ns: more apart than the wire's "
                      f"{delay_ns} ns")

@@ -26,7 +26,7 @@ PRESSURE = ("inject true; stress-ng -q --seed 1 --vm 1 --vm-bytes 90% --vm-keep 
             "sleep 1.7; prove 'memory was short' awk '/MemTotal/ {all = $2} /MemAvailable/ {left = $2} "
             "END {exit 8 * left > all}' /proc/meminfo\n"
             "wait $load; prove 'the load ran' [ $? = 0 ]")
-STANDS = "stand 3; sleep .2; stand 19"
+PAUSES = "stand 3; sleep .2; stand 19"
 # Grip and pull, so quickly that the hand holds the pull while it would hold the press.
 PULLING = dataclasses.replace(SIM_DELTA, settings=(*SIM_DELTA.settings, *(
     f"hand.stroke.{i}.duration_s={s}" for i, s in enumerate((.5, .2, .05, .2, .4, .5, .3, .8, 1.1)))))
@@ -39,7 +39,7 @@ def frames_dropped(run):
 
 
 @dataclasses.dataclass(frozen=True)
-class FeltOn:
+class ForceAfterPauses:
     """tactd stood for these numbers of periods and no others, lost no contact, and wrote the force before each in
     the late tick and the eleven after it. `pulls`: the tissue is pulled, not pressed."""
     skipped: tuple
@@ -62,18 +62,18 @@ class FeltOn:
         return wrong
 
 
-def on_hardware(back_end, name, sentence, harm, proofs):
+def on_hardware(back_end, name, message, harm, proofs):
     """The same while a device on a real bus is pressed."""
     quick = "--homing-ms 100 --hand-tempo 2.5" if back_end is FALCON else "--hand-tempo 2.5"
-    return Case(f"{back_end.name}-{name}", sentence, back_end,
+    return Case(f"{back_end.name}-{name}", message, back_end,
                 f"control $SECONDS_OF_RUN\nsleep .9\n{harm}\nfinish",
                 (checks.hard_real_time, checks.no_late_tick, *proofs),
                 fault=RidesThrough(), seconds=3.5, long_only=True, variables={"EMULATOR": quick})
 
 
-def fault(name, sentence, harm, required, also=(), back_end=SIM_DELTA):
+def fault(name, message, harm, required, also=(), back_end=SIM_DELTA):
     """A case of 6 s: run deep into the tissue, do the harm, wait for the end."""
-    return Case(name, sentence, back_end, f"{DEEP}{harm}\n{attempt(required)}\nfinish", also, fault=required, seconds=6)
+    return Case(name, message, back_end, f"{DEEP}{harm}\n{attempt(required)}\nfinish", also, fault=required, seconds=6)
 
 
 CASES = [
@@ -92,10 +92,10 @@ CASES = [
           "inject timeout 1 chrt -f 84 strace -qq -o /dev/null -p ${held##*/} "
           "-e inject=clock_nanosleep:delay_exit=60000:when=1",
           Latches("loop stalled", detect_ms=150), (checks.hard_real_time,)),
-    fault("stands-pressing", "what is pressed is felt after a pause as before it", STANDS,
-          RidesThrough(most_skipped=19), (checks.hard_real_time, FeltOn((3, 19)))),
-    fault("stands-pulling", "what is held is held after a pause, and pulls as before it", STANDS,
-          RidesThrough(most_skipped=19), (checks.hard_real_time, FeltOn((3, 19), pulls=True)), PULLING),
+    fault("stands-pressing", "what is pressed has the same force after a pause", PAUSES,
+          RidesThrough(most_skipped=19), (checks.hard_real_time, ForceAfterPauses((3, 19)))),
+    fault("stands-pulling", "what is held is held after a pause, and pulls as before it", PAUSES,
+          RidesThrough(most_skipped=19), (checks.hard_real_time, ForceAfterPauses((3, 19), pulls=True)), PULLING),
     fault("hog-cpu", "ordinary load takes nothing from the loop", HOG,
           RidesThrough(), (*UNMOVED, checks.proved("the load ran"))),
     fault("memory-pressure", "memory that is short elsewhere is never short in the loop", PRESSURE,
@@ -109,12 +109,12 @@ CASES = [
           "inject date -s '2031-05-05 05:05:05'; prove 'it was 2031' [ $(date +%Y) = 2031 ]; sleep .5\n"
           "date -s '2001-01-01'; prove 'it was 2001' [ $(date +%Y) = 2001 ]",
           RidesThrough(), (*UNMOVED, checks.proved("it was 2031", "it was 2001"))),
-    *(on_hardware(back_end, name, sentence, harm, proofs)
+    *(on_hardware(back_end, name, message, harm, proofs)
       for back_end in (ODRIVE06, FALCON)
-      for name, sentence, harm, proofs in (
+      for name, message, harm, proofs in (
           ("hog-cpu", "ordinary load takes nothing from the loop", HOG, (checks.proved("the load ran"),)),
           ("memory-pressure", "memory that is short elsewhere is never short in the loop", PRESSURE, SHORT))),
-    Case("exit-beside-fifo", "tactd's end is not felt by another real-time loop, FIFO 50",
+    Case("exit-beside-fifo", "tactd's end does not delay another real-time loop, FIFO 50",
          SIM_DELTA, "control $SECONDS_OF_RUN\nmeasure_peer 3 50 &\nfinish",
          (checks.hard_real_time, checks.no_fault, checks.peer_undisturbed(200_000)), seconds=2),
     Case("killed-beside-fifo", "nor is its sudden death",

@@ -38,6 +38,6 @@ CASES = [
     Case("falcon-no-firmware", "a Falcon without firmware and without a file is refused",
          FALCON_COLD, "DEVICE+=(--set 'device.falcon.firmware=\"\"')\nrefused",
          (checks.refused("firmware"),)),
-    Case("falcon-absent", "no Falcon is told with the remedy", FORCE_DIMENSION,
+    Case("falcon-absent", "no Falcon is reported with the remedy", FORCE_DIMENSION,
          "usb up\nDEVICE=(--set 'device.kind=\"falcon\"')\nrefused", (checks.refused("0403:cb48"),)),
 ]

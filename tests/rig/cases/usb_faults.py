@@ -12,9 +12,9 @@ WATCH_IT_GO = ("for i in {1..200}; do [ -e /sys/bus/usb/devices/1-1 ] || break; 
                "[ -e /sys/bus/usb/devices/1-1 ] || echo $((${EPOCHREALTIME/./} * 1000 + clock_offset_ns))")
 
 
-def fault(back_end, kind, sentence, required, also=(), meanwhile=""):
+def fault(back_end, kind, message, required, also=(), meanwhile=""):
     name = kind.partition("@")[0].replace(":", "-")
-    return Case(f"{back_end.name}-{name}", sentence, back_end,
+    return Case(f"{back_end.name}-{name}", message, back_end,
                 f"control $SECONDS_OF_RUN\n{meanwhile}\nsleep 1.5\n{attempt(required)}\nfinish", (*REAL_TIME, *also),
                 fault=required, seconds=2.1,
                 variables={"EMULATOR": f"{QUICK} --fault {kind}"})
@@ -32,10 +32,10 @@ def lost(detect_ms=24.0):
 
 
 def held_loop(back_end):
-    """The loop alone stands, in its sleep, above everything but the watch and the bus's thread, which goes on;
-    without an enable line nobody but that thread can end the force. strace needs some 20 ms to begin."""
+    """The loop alone is stopped, in its sleep, above everything but the watch and the bus's thread, which goes on;
+    without an enable line only that thread can end the force. strace needs some 20 ms to begin."""
     required = Latches("loop stalled", detect_ms=400)
-    return Case(f"{back_end.name}-loop-held", "a loop that stands for 300 ms does not leave its force on", back_end,
+    return Case(f"{back_end.name}-loop-held", "a loop that is stopped for 300 ms does not leave its force on", back_end,
                 "control $SECONDS_OF_RUN\nsleep 1.2\n"
                 "held=$(grep -ls tact-loop /proc/$tactd/task/*/comm); held=${held%/comm}\n"
                 "inject timeout 1 chrt -f 81 strace -qq -o /dev/null -p ${held##*/} "
@@ -46,7 +46,7 @@ def held_loop(back_end):
 
 
 def stopped(back_end):
-    """The whole process stands, the bus's thread, too: the old force stays until it goes on."""
+    """The whole process is stopped, the bus's thread, too: the old force stays until it goes on."""
     required = Latches("loop late", detect_ms=2, or_first="loop stalled")
     return Case(f"{back_end.name}-stopped", "a process that was stopped does not push again on its own", back_end,
                 "control $SECONDS_OF_RUN\nsleep 1.2\n"
@@ -55,7 +55,7 @@ def stopped(back_end):
 
 
 def killed(back_end):
-    """A Falcon may hold its last motor words for ever: nobody but the guardian is there to send zeros."""
+    """A Falcon may hold its last motor words for ever: only the guardian is there to send zeros."""
     return Case(f"{back_end.name}-killed", "a controller that is killed: its guardian takes the force", back_end,
                 "control $SECONDS_OF_RUN\nsleep 1.2\ninject kill -KILL $tactd; sleep .1\nfinish",
                 (), fault=StoppedByGuardian(), seconds=2.1, variables={"EMULATOR": QUICK})

@@ -39,7 +39,7 @@ struct Options : EmulatorOptions {
 
   bool is_cia402() const { return protocol == "cia402"; }
   bool is_moteus() const { return protocol == "moteus"; }
-  /// Estimates leave every millisecond, whatever the host does.
+  /// Estimates leave every millisecond, for any host.
   bool has_own_clock() const { return !is_cia402() && !is_moteus(); }
 };
 

@@ -2,7 +2,7 @@
 // tact-rig-falcon - an emulated Falcon on a port of the kernel's virtual USB host controller.
 //
 // USB adapter, boot ROM, upload, homing and one report per command, with the exact manipulator and
-// a hand behind it. It commits faults to order and tells what the controller did.
+// a hand behind it. It commits faults to order and reports what the controller did.
 #include <cmath>
 #include <cstdio>
 
@@ -54,7 +54,7 @@ void add_own(CLI::App& app, Options& options) {
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   app.add_flag("--no-null-bytes", options.no_nulls,
-               "Changing the speed leaves no stray null byte, as it does about every second time");
+               "Changing the speed leaves no extra null byte, as it does about every second time");
 }
 
 class Falcon {

@@ -51,7 +51,7 @@ bool set(int fd, std::string_view level) {
 /// The edge lies between the two times: the earlier one makes no delay look shorter than it is.
 int press(int pull, std::int64_t phase_ns) {
   sleep_until((monotonic_ns() / kMs + 2) * kMs + phase_ns);
-  if (stop_asked()) return refuse("told to stop before the contact opened; it is as it was");
+  if (stop_asked()) return refuse("stopped before the contact opened; it is as it was");
   const std::int64_t before_ns = monotonic_ns();
   if (!set(pull, kDown)) return refuse("the line cannot be pulled down");
   const std::int64_t after_ns = monotonic_ns();
@@ -98,7 +98,7 @@ int main(int argc, char** argv) {
   app.add_option("--priority", options.priority, "SCHED_FIFO priority; 0: as it is")
       ->check(CLI::Range(0, 98))
       ->capture_default_str();
-  CLI::App* presses = app.add_subcommand("press", "open a contact once, and tell when");
+  CLI::App* presses = app.add_subcommand("press", "open a contact once, and report when");
   presses->add_option("PULL", options.pull, "file `pull` of the input line")->required();
   presses->add_option("--grid-ns", options.grid_ns, "a deadline of the loop, CLOCK_MONOTONIC")
       ->check(CLI::NonNegativeNumber);

@@ -99,7 +99,7 @@ TEST(RigDrives, AnOdriveThatHearsNothingStopsByItsOwnWatchdog) {
     bench.report(0x18, {0});
     bench.enable();
     EXPECT_TRUE(bench.drive.is_enabled());
-    EXPECT_DOUBLE_EQ(bench.drive.torque_Nm(), 0.5);  // as it was last told
+    EXPECT_DOUBLE_EQ(bench.drive.torque_Nm(), 0.5);  // as last commanded
   }
 }
 

@@ -114,7 +114,7 @@ TEST(RigEmulators, TheFalconReachesTheWholePathOfItsHand) {
   }
 }
 
-TEST(RigEmulators, AFaultTellsWhatTheOtherSideDid) {
+TEST(RigEmulators, AFaultReportsWhatTheOtherSideDid) {
   FaultPlan plan = ordered("silent@0");
   plan.tick(kStart);
   plan.watch(1.0, false, kStart + kMs);

@@ -5,8 +5,8 @@
 //     longest   ticks of chance in which anything may act: the longest in which this stage did
 //
 // For the virtual bench, where one instruction is one nanosecond of CLOCK_MONOTONIC. Each sequence
-// of ticks is judged several times from its start: the shortest time of a tick has no interrupt in
-// it. What reading the clock takes is measured and taken off.
+// of ticks is evaluated several times from its start: the shortest time of a tick has no interrupt
+// in it. What reading the clock takes is measured and taken off.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -44,7 +44,7 @@ constexpr model::Limits kLimits = [] {
   return limits;
 }();
 
-/// A tool that rests in the middle and feels 2 N and 0.05 N m: once ramped up, nothing acts.
+/// A tool that rests in the middle and gets 2 N and 0.05 N m: once ramped up, nothing acts.
 GateInput quiet() {
   GateInput in{
       .wanted = {{2.0, 0.0, 0.0}, {0.0, 0.05, 0.0}}, .tool = {}, .fresh = true, .armed = true};

@@ -54,7 +54,7 @@ has_loop() {
   return 1
 }
 
-# Nobody writes there, so a read waits, without a fork.
+# No process writes there, so a read waits, without a fork.
 wait_10_ms() { read -rt .01 -u $silence || return 0; }
 
 inject() {
@@ -95,15 +95,15 @@ finish() {
   echo $? >$RESULTS/tactd.status
   [ ${#background[@]} -eq 0 ] || kill "${background[@]}" 2>/dev/null
   wait
-  [ $injected != 0 ] || told_by_emulator
+  [ $injected != 0 ] || injection_of_emulator
   tact-rig-ticks /tmp/ticks --at $injected >$RESULTS/ticks.json
   sha256sum /tmp/ticks >$RESULTS/ticks.sha256
 }
 
 # The time of a fault that the emulator committed by itself.
-told_by_emulator() {
-  local told=$(<$RESULTS/emulator.json)
-  [[ $told =~ \"injected_ns\":([0-9]+) ]] && injected=${BASH_REMATCH[1]}
+injection_of_emulator() {
+  local report=$(<$RESULTS/emulator.json)
+  [[ $report =~ \"injected_ns\":([0-9]+) ]] && injected=${BASH_REMATCH[1]}
   return 0
 }
 

@@ -97,13 +97,14 @@ class FaultStory {
   }
 
  private:
-  // The limit of a tick is told of the last stage alone: a sample that is missing may be behind it.
+  // The limit of a tick is that of the last stage alone: a sample that is missing may be behind it.
   static bool misses(const LoggedTick& tick) {
     return !tick.input.sample.fresh || tick.output.limit == model::Fault::kSampleHeld ||
            tick.output.limit == model::Fault::kSampleStale;
   }
 
-  // The late tick tells the next one what was skipped: the force before it, its own, later ones.
+  // The late tick passes the skipped periods to the next one: the force before it, its own, later
+  // ones.
   void add_pause(const LoggedTick& tick) {
     if (tick.input.skipped_periods > 0 && last_ && pauses_.size() < kPausesReported)
       pauses_.push_back({{"skipped", tick.input.skipped_periods},

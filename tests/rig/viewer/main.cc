@@ -19,7 +19,8 @@ int main(int argc, char** argv) {
   path.copy(address.sun_path, sizeof address.sun_path - 1);
   const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
   if (fd < 0 || connect(fd, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0) {
-    fmt::print(stderr, "tact-rig-viewer: {}: nobody listens here; usage: tact-rig-viewer SOCKET\n",
+    fmt::print(stderr,
+               "tact-rig-viewer: {}: no process listens here; usage: tact-rig-viewer SOCKET\n",
                path);
     return 2;
   }

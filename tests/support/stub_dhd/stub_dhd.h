@@ -30,13 +30,13 @@ void stub_dhd_set_delay_us(int us);
 void stub_dhd_ignore_watchdog(int ignore);
 /// Calls of the named function since the reset.
 long stub_dhd_calls(const char* function);
-/// fx fy fz tx ty tz of the last force call; its last argument tells whether it can be felt.
+/// fx fy fz tx ty tz of the last force call; its last argument says whether the motors are on.
 int stub_dhd_last_force(double force[6]);
 /// The same of the gripper.
 double stub_dhd_last_grip_N();
 /// Last value given to dhdSetWatchdog, dhdSetTimeGuard, dhdSetGravityCompensation.
 void stub_dhd_settings(int* watchdog, int* time_guard, int* gravity);
-/// Largest force that was felt in newtons since the reset.
+/// Largest force that reached the motors in newtons since the reset.
 double stub_dhd_strongest_N();
 /// How often the forces were switched while the last one was not zero.
 long stub_dhd_switched_with_force();

@@ -4,7 +4,7 @@
 //
 // Behind it a Touch, led by a hand (led_handle.h). As in the vendor's, the device is driven by a
 // thread of the library, 1000 times a second, with one frame in each of its cycles; a force counts
-// when its frame ends. With TACT_STUB_HD_HANGS_AT=N that thread stands for ever in its N-th cycle.
+// when its frame ends. With TACT_STUB_HD_HANGS_AT=N that thread stops for ever in its N-th cycle.
 #include <unistd.h>
 
 #include <algorithm>
@@ -65,7 +65,7 @@ double number_of(unsigned what) {
   return set == state.numbers.end() ? number_of_touch(what) : set->second;
 }
 
-/// Of the force output: what is then in the motors is felt, or is held until the next "on".
+/// Of the force output: what is then in the motors acts, or is held until the next "on".
 void count_switch(unsigned what) {
   if (what == kForceOutput && state.force_N != std::array<double, 3>{}) ++state.unsafe_calls;
 }

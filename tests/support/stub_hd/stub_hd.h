@@ -10,8 +10,8 @@ extern "C" {
 void stub_hd_reset();
 /// What hdCheckCalibration answers; an update makes 0x5001 ("needs one") 0x5000 ("is").
 void stub_hd_set_calibration(unsigned status);
-/// What a number of the device is, as hdGetDoublev or hdGetIntegerv tells it; of several, the n-th
-/// from 1 is what + n * 0x10000.
+/// What a number of the device is, as hdGetDoublev or hdGetIntegerv returns it; of several, the
+/// n-th from 1 is what + n * 0x10000.
 void stub_hd_set_number(unsigned what, double value);
 /// The named function leaves this error on the stack until the next reset; 0: works again.
 void stub_hd_fail(const char* function, unsigned error);
@@ -34,9 +34,9 @@ void stub_hd_set_serial(const char* number);
 void stub_hd_silence(int silent);
 /// Calls of the named function since the reset.
 long stub_hd_calls(const char* function);
-/// The force that was sent last, in the device's frame; tells whether it can be felt.
+/// The force that was sent last, in the device's frame; says whether the motors are on.
 int stub_hd_last_force(double force_N[3]);
-/// Largest force that was felt since the reset.
+/// Largest force that reached the motors since the reset.
 double stub_hd_strongest_N();
 /// How often the force output was switched, on or off, while the last frame had carried a force, or
 /// a frame carried one although its beginning, its state or its calibration were bad.

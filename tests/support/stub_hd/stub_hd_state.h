@@ -44,7 +44,7 @@ struct State {
   std::map<std::string, long> calls;
 };
 
-/// What a Touch tells of itself.
+/// What a Touch reports of itself.
 inline double number_of_touch(unsigned what) {
   switch (what) {
     case 0x2553:  // input degrees of freedom

@@ -21,7 +21,7 @@ Outcome on_terminal(const std::string& arguments, const std::string& answer) {
   return run_command("printf '" + answer + "\\n' | script -qec '" + program + "' /dev/null");
 }
 
-TEST(CalibrateProgram, TellsItsOptions) {
+TEST(CalibrateProgram, ReportsItsOptions) {
   const Outcome outcome = calibrate("--help");
   EXPECT_EQ(outcome.status, 0);
   for (const char* word : {"DEVICE", "--masses-kg", "--poses", "at most 6 N", "--set"})
@@ -52,7 +52,7 @@ TEST(CalibrateProgram, MovesNothingBeforeThePersonAgrees) {
   for (const char* answer : {"no", "", "y", "Yes", "yes please"})
     expect_refusal(on_terminal("falcon " + kLiver, answer), "not agreed to: nothing moved");
   expect_refusal(on_terminal("falcon /no/such/scene.toml", "yes"), "/no/such/scene.toml");
-  // No Falcon is there, whatever is plugged in.
+  // No Falcon is there, with any device plugged in.
   const Outcome agreed =
       on_terminal("falcon " + kLiver + " --set device.falcon.bus_path=\\\"99-9\\\"", "yes");
   EXPECT_EQ(agreed.output.find("not agreed to"), std::string::npos) << agreed.output;

@@ -13,7 +13,7 @@ namespace tact::tools::calibrate::gated_run_test {
 using firmware::loop::SimulatedClock;
 using model::Fault;
 
-/// A grip on a support; it tells where it is, and keeps what it was told.
+/// A grip on a support; it reports where it is, and keeps its last command.
 class Grip final : public hal::Device {
  public:
   hal::DeviceInfo info() const override {
@@ -71,7 +71,7 @@ TEST(GatedRun, GivesWhatABalanceNeeds) {
   EXPECT_EQ(b.grip.up_N.back(), 0.0);
 }
 
-TEST(GatedRun, NeverPassesSixNewtonNorJumpsWhateverIsWanted) {
+TEST(GatedRun, NeverPassesSixNewtonNorJumpsForAnyRequest) {
   Bench b;
   b.want(50.0, 1000, [](int) {});
   EXPECT_LE(b.most_N(), 6.0);

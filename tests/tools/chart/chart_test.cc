@@ -115,14 +115,14 @@ TEST(Errors, MatchPenAndPaper) {
   EXPECT_NEAR(e.force_worst_ratio, 0.2, 1e-12);
   EXPECT_NEAR(e.shape_rms_ratio, std::sqrt(0.5) * 0.5,
               1e-12);                  // one of two rings off by half the depth
-  EXPECT_EQ(e.within_jnd_ratio, 0.0);  // 10, 10 and 40 %: all can be felt
+  EXPECT_EQ(e.within_jnd_ratio, 0.0);  // 10, 10 and 40 %: all can be noticed
   EXPECT_NEAR(e.own_worst_ratio[0], 0.1, 1e-12) << "at 1 mm, with its sign";
   EXPECT_NEAR(e.own_worst_ratio[1], -0.1, 1e-12) << "at 2 mm; the pull does not count";
   EXPECT_TRUE(std::isnan(e.own_worst_ratio[2])) << "no press by 5 mm";
   EXPECT_NEAR(e.own_largest_ratio, 0.1, 1e-12);
 }
 
-TEST(Errors, CountWhatAHandCannotTell) {
+TEST(Errors, CountWhatAHandCannotNotice) {
   const std::vector<Sample> samples{{.depth_m = 0.001,
                                      .force_N = 1.069,
                                      .reference_N = 1.0,

@@ -7,7 +7,7 @@
 
 namespace tact::tools::chart::instructions_test {
 
-/// n turns of two instructions each, whatever the compiler does.
+/// n turns of two instructions each, for any compiler.
 void turn(std::size_t turns) { asm volatile("1: dec %0\n jnz 1b" : "+r"(turns) : : "cc"); }
 
 TEST(Instructions, OfALoopAreTwoATurn) {

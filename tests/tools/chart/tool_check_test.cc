@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The whole tool judged: errors as worked by hand, and every sphere felt. Times are never asserted.
+// The whole tool evaluated: errors as worked by hand, and every sphere felt. Times are never
+// asserted.
 #include "tools/chart/compare/tool_check.h"
 
 #include <gtest/gtest.h>
@@ -66,7 +67,7 @@ TEST(ToolErrors, MatchPenAndPaper) {
   EXPECT_TRUE(std::isnan(summarize_tool({samples[0]}, {false}).unseen_rms_ratio));
 }
 
-TEST(ToolErrors, CountWhatAHandCannotTell) {
+TEST(ToolErrors, CountWhatAHandCannotNotice) {
   const std::vector<ToolSample> samples{{.force_N = 0.931, .reference_N = 1.0},
                                         {.force_N = 1.069, .reference_N = 1.0},
                                         {.force_N = 1.071, .reference_N = 1.0},
@@ -88,7 +89,7 @@ TEST(CheckTool, FindsTheErrorOfOneSphereAsWorkedByHand) {
   EXPECT_GT(row->timing.median_us, 0.0);
 }
 
-TEST(CheckTool, FeelsEverySphereOfTheTool) {
+TEST(CheckTool, RendersEverySphereOfTheTool) {
   model::scene::Scene scene = make_scene();
   const auto stack =
       model::indent::make_disc_stack(scene.laws.of<model::indent::DiscStackParameters>());
@@ -114,7 +115,7 @@ TEST(CheckTool, IsWithoutFrictionAsTheReferenceIs) {
   EXPECT_EQ(rough->samples.back().force_N, smooth->samples.back().force_N);
 }
 
-TEST(TimeTool, TimesAToolThatTouchesOrRefuses) {
+TEST(TimeTool, TimesAToolInContactOrRefuses) {
   model::scene::Scene scene = make_scene();
   scene.law = "disc_stack";
   EXPECT_TRUE(time_tool(scene, kShort).has_value());
@@ -157,7 +158,7 @@ TEST(Chart, JudgesEverySizeByTheWholeToolWhereItIsKnown) {
     ASSERT_EQ(row.failure, "");
     ASSERT_TRUE(row.tool);
     EXPECT_NEAR(row.tool->own_largest_ratio, 1.0, 1e-6) << "twice the force of the whole tool";
-    EXPECT_NEAR(row.errors.force_worst_ratio, 0.2, 1e-9) << "one sphere is judged by its own";
+    EXPECT_NEAR(row.errors.force_worst_ratio, 0.2, 1e-9) << "one sphere is evaluated by its own";
     EXPECT_GT(row.timing.median_us, 0.0);
   }
   EXPECT_GT(linear, 0U);

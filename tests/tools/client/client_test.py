@@ -67,7 +67,7 @@ class Client(unittest.TestCase):
                 self.assertEqual(tick["wanted_force_N"][i], float(row[f"wanted_force_{axis}_N"]))
             self.assertEqual(log.fields["state"]["values"][tick["state"]], row["state_name"])
 
-    def test_damage_is_told_and_costs_its_tick_alone(self):
+    def test_damage_is_reported_and_costs_its_tick_alone(self):
         data, (first, size) = bytearray(self.log.read_bytes()), byte_of_tick(self.log, 0)
         data[first + 100 * size + 27] ^= 1
         broken = self.folder / "broken.tactlog"
@@ -86,14 +86,14 @@ class Client(unittest.TestCase):
         broken.write_bytes(b"tactlog6" + data[8:])
         with self.assertRaisesRegex(tact.Error, "before files of tact had version 1; record it again"):
             tact.read_ticks(broken)
-        for path, sentence in (("nowhere", "nowhere: No such file"), ("/dev/zero", "is no regular file"),
-                               (ROOT, "is no regular file"), (LIVER, "is no file of tact")):
-            with self.assertRaisesRegex(tact.Error, sentence):
+        for path, message in (("nowhere", "nowhere: No such file"), ("/dev/zero", "is no regular file"),
+                              (ROOT, "is no regular file"), (LIVER, "is no file of tact")):
+            with self.assertRaisesRegex(tact.Error, message):
                 tact.read_ticks(path)
 
     def test_live_frames_and_the_recording_of_the_viewer_agree(self):
         path, recording = self.folder / "socket", self.folder / "run.tactview"
-        page = self.folder / "page"  # nobody looks at it here
+        page = self.folder / "page"  # it is not read here
         page.mkdir()
         (page / "index.html").write_text("<!doctype html>")
         viewer = subprocess.Popen([str(BUILD / "tact-view"), "--socket", str(path), "--port", "0", "--record", str(recording),
@@ -162,11 +162,11 @@ class Client(unittest.TestCase):
             with self.assertRaisesRegex(tact.Error, "here: its meshes are not as long"):
                 meshes(bytes(wrong))
 
-    def test_nobody_at_the_socket_is_told(self):
+    def test_a_socket_without_tactd_is_reported(self):
         with self.assertRaisesRegex(tact.Error, "does tactd run, and may this user look"):
-            tact.live(self.folder / "nobody")
+            tact.live(self.folder / "none")
 
-    def test_the_thirty_third_viewer_is_told(self):
+    def test_the_thirty_third_viewer_is_refused(self):
         path = self.folder / "full"
         run = tactd("--seconds", 60, "--no-black-box", "--socket", path)
         viewers = [look(path) for _ in range(32)]
@@ -178,7 +178,7 @@ class Client(unittest.TestCase):
         run.send_signal(signal.SIGINT)
         run.wait(30)
 
-    def test_a_tactd_that_stands_still_is_told_and_one_that_is_gone_ends_it(self):
+    def test_a_stopped_tactd_is_reported_and_one_that_is_gone_ends_it(self):
         path = self.folder / "still"
         run = tactd("--seconds", 20, "--no-black-box", "--socket", path)
         frames = look(path, timeout_s=0.5, newest=True)

@@ -25,7 +25,7 @@ def steps(length_m, cells):
 
 
 def block(x_m, y_m, z_m, held_below_m, poisson_ratio=0.45, E_Pa=1.0):
-    """Organ and Body of a box in cells of six tetrahedra; vertices are its corners of the skin, first in the body."""
+    """Organ and Body of a box in cells of six tetrahedra; vertices are its corners of the boundary, first in the body."""
     size = np.array([len(x_m), len(y_m), len(z_m)])
     grid_m = np.stack(np.meshgrid(x_m, y_m, z_m, indexing="ij"), axis=-1).reshape(-1, 3)
     at = np.arange(len(grid_m)).reshape(size)
@@ -37,17 +37,17 @@ def block(x_m, y_m, z_m, held_below_m, poisson_ratio=0.45, E_Pa=1.0):
     element[inside_out] = element[inside_out][:, [0, 2, 1, 3]]
     faces = element[:, [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]].reshape(-1, 3)
     _, first, times = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
-    skin = faces[first[times == 1]]
-    order = np.concatenate([np.unique(skin), np.setdiff1d(np.arange(len(grid_m)), skin)])
+    boundary = faces[first[times == 1]]
+    order = np.concatenate([np.unique(boundary), np.setdiff1d(np.arange(len(grid_m)), boundary)])
     place = np.argsort(order)
-    node_m, element, face = body.with_middles(grid_m[order], place[element], place[skin])
+    node_m, element, face = body.with_middles(grid_m[order], place[element], place[boundary])
     a, b, c = node_m[face[:, :3]].transpose(1, 0, 2)
     normal = surface.unit(np.cross(b - a, c - a))
-    vertices = len(np.unique(skin))
+    vertices = len(np.unique(boundary))
     vertex_normal = np.zeros((len(node_m), 3))
     for column in face[:, :3].T:
         np.add.at(vertex_normal, column, normal)
-    organ = body.Organ(node_m[:vertices], place[skin], surface.unit(vertex_normal[:vertices]), np.full(3, -1.0),
+    organ = body.Organ(node_m[:vertices], place[boundary], surface.unit(vertex_normal[:vertices]), np.full(3, -1.0),
                        np.array([1.0, 1.0, held_below_m]), E_Pa, poisson_ratio)
     held = np.unique(face[organ.held(node_m[face[:, :3]]).all(axis=1)])
     return organ, body.Body(node_m, element, face, normal, held)
@@ -80,17 +80,17 @@ def solved_directly(organ, made, loads):
 class Patch(Solves):
     def test_shares_out_the_whole_force_around_its_middle(self):
         made = half_space()[1]
-        skin = compliance.Skin(made)
-        node, weight = skin.patch(np.searchsorted(skin.node, nearest(made.node_m, [0.0, 0.0, 0.0])), 0.005)
+        boundary = compliance.Boundary(made)
+        node, weight = boundary.patch(np.searchsorted(boundary.node, nearest(made.node_m, [0.0, 0.0, 0.0])), 0.005)
         self.assertAlmostEqual(weight.sum(), 1.0, delta=1e-12)
-        self.assertLess(np.linalg.norm(weight @ skin.at_m[node]), 0.0005)
+        self.assertLess(np.linalg.norm(weight @ boundary.at_m[node]), 0.0005)
 
     def test_stays_on_its_side_of_a_thin_lobe(self):
         made = block(steps(0.04, 20), steps(0.04, 20), np.array([0.0, 0.002]), -1.0)[1]
-        skin = compliance.Skin(made)
-        node, _ = skin.patch(nearest(skin.at_m, [0.02, 0.02, 0.002]), 0.005)
+        boundary = compliance.Boundary(made)
+        node, _ = boundary.patch(nearest(boundary.at_m, [0.02, 0.02, 0.002]), 0.005)
         self.assertGreater(len(node), 20)
-        self.assertGreater(skin.at_m[node, 2].min(), 0.001)
+        self.assertGreater(boundary.at_m[node, 2].min(), 0.001)
 
     def test_of_a_half_space_is_continuous_and_far_away_only_a_force(self):
         organ = cushion()[0]
@@ -173,13 +173,13 @@ class Condensation(Solves):
     def test_is_the_solution_of_its_own_loads(self):
         vertex = nearest(self.organ.vertex_m, [0.045, 0.015, 0.03])
         r, n1, n2, s1, s2, ax, ay, az, *rings = self.condensed.of_vertices(np.array([vertex]))[0]
-        skin = self.condensed.skin
-        place, weight = skin.patch(np.searchsorted(skin.node, vertex), 0.02)
+        boundary = self.condensed.boundary
+        place, weight = boundary.patch(np.searchsorted(boundary.node, vertex), 0.02)
         axis = np.array([self.organ.vertex_normal[vertex], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
         loads = np.zeros((len(self.made.node_m), 3, 3))
-        loads[skin.node[place]] = weight[:, None, None] * axis.T
+        loads[boundary.node[place]] = weight[:, None, None] * axis.T
         moved = solved_directly(self.organ, self.made, loads)
-        c = np.einsum("pi,a,aiq->pq", axis, weight, moved[skin.node[place]])
+        c = np.einsum("pi,a,aiq->pq", axis, weight, moved[boundary.node[place]])
         c[0, 0] -= compliance.half_space_normal_m_per_N(self.organ, 0.02)
         c[1:, 1:] -= compliance.half_space_tangential_m_per_N(self.organ, 0.02) * np.eye(2)
         turn = np.array([[ax, ay], [-ay, ax]])
@@ -194,7 +194,7 @@ class Condensation(Solves):
         n = axis[0]
         for j, ring in enumerate(rings, 1):
             shares, sum_g = 0.0, 0.0
-            for node, normal in zip(skin.node, skin.normal):
+            for node, normal in zip(boundary.node, boundary.normal):
                 rho_m = np.linalg.norm(self.made.node_m[node] - self.made.node_m[vertex])
                 share = max(0.0, 1.0 - abs(rho_m / 0.008 - j))
                 if normal @ n >= 0.2:

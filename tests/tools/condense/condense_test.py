@@ -146,7 +146,7 @@ class Lumps(Solves):
         return body.Organ(point, triangle, surface.unit(point), np.full(3, -1.0), np.array([1.0, 1.0, -0.015]), 1.0, 0.45,
                           lumps=lumps)
 
-    def test_one_is_felt_over_it_and_not_beside_it(self):
+    def test_one_counts_over_it_and_not_beside_it(self):
         at_m, size_m = np.array([0.0, 0.0, 0.02]), 0.005
         made = body.make_body(self.organ(), surface.EdgeLengths(np.zeros((1, 3)), 0.0, 1e3, 0.0, size_m))
 

@@ -119,7 +119,7 @@ TEST_F(Deploy, TheViewerIsNotTheUserOfTheController) {
   EXPECT_EQ(value_in("tact-view.service", "PrivateDevices"), "yes") << "haptics may use devices";
 }
 
-// What the loop needs in a sandbox; where it is missing, tactd tells "no hard real time" alone.
+// What the loop needs in a sandbox; where it is missing, tactd reports "no hard real time" alone.
 TEST_F(Deploy, TheUnitLetsTheLoopBeHardRealTime) {
   const std::string unit = content(kDeploy + "tactd@.service");
   for (const char* line :
@@ -150,7 +150,7 @@ TEST_F(Deploy, TheKernelKeepsTheLastCoreOfEachPc) {
             "quiet isolcpus=domain,managed_irq,1 nohz_full=1 rcu_nocbs=1 irqaffinity=0\n");
   EXPECT_EQ(kernel_line("0-3", "quiet", "2"),
             "quiet isolcpus=domain,managed_irq,2 nohz_full=2 rcu_nocbs=2 irqaffinity=0-1,3-3\n");
-  EXPECT_EQ(kernel_line("0"), "quiet\n") << "one core is nobody's alone";
+  EXPECT_EQ(kernel_line("0"), "quiet\n") << "one core is not shared out";
   EXPECT_EQ(kernel_line("0-3", "isolcpus=1"), "isolcpus=1\n") << "another file has decided";
 }
 

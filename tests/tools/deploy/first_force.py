@@ -4,7 +4,7 @@
 
     first_force.py PAGE.md BASE      needs root; BASE is a base system, with the packages in its /root
 
-Of a block, a line that begins with "$ " is a command, and the lines below it are what must appear, in that order; "..." stands
+Of a block, a line that begins with "$ " is a command, and the lines below it are what must appear, in that order; "..." is
 for anything. The commands run in a chroot, for tests/debian_packages.sh: no kernel boots there and no systemd runs, so
 reboot, uname, editor and systemctl are stand-ins, long measurements are cut, and a fault of the PC is none of the page.
 """

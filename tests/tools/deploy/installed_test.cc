@@ -59,7 +59,7 @@ TEST_F(Installed, TheGuardianLiesBesideTactd) {
   EXPECT_NE(outcome.output.find("tactd starts this program"), std::string::npos) << outcome.output;
 }
 
-TEST_F(Installed, WhoNamesNoSceneIsToldWhereTheyLie) {
+TEST_F(Installed, NamesTheScenesWhereNoneIsGiven) {
   install("tact");
   const Outcome outcome = run("tactd /none.toml");
   EXPECT_EQ(outcome.status, 2);
@@ -108,7 +108,7 @@ TEST_F(Installed, WithoutThePackageTheGroupIsMadeByAScriptOfThePrefix) {
   for (const char* file : {"/lib/sysusers.d/tact.conf", "/lib/udev/rules.d/60-tact.rules",
                            "/share/tact/pc/haptics.conf"})
     EXPECT_EQ(run_command("grep -q '\"$prefix" + std::string(file) + "\"' " + script).status, 0);
-  // A PC whose files tell nothing: what its rights lack is red or unknown, with the remedy.
+  // A PC whose files are empty: what its rights lack is red or unknown, with the remedy.
   fs::create_directories(prefix_ + "/pc/proc/self");
   std::ofstream(prefix_ + "/pc/proc/self/limits") << "Max realtime priority 0 0\n";
   const Outcome reported = run("tact-doctor --root " + prefix_ + "/pc");

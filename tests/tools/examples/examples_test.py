@@ -81,8 +81,8 @@ class Examples(unittest.TestCase):
         self.assertGreater(forces_N[-1], 0.3)
 
     def test_a_loop_of_ones_own_has_the_force_of_the_scene(self):
-        told = run(self.found / "own_loop", LIVER)
-        largest_N, limit_N = map(float, re.match(r"largest force (\S+) N, limit (\S+) N, none$", told.strip()).groups())
+        output = run(self.found / "own_loop", LIVER)
+        largest_N, limit_N = map(float, re.match(r"largest force (\S+) N, limit (\S+) N, none$", output.strip()).groups())
         self.assertGreater(largest_N, 0.05)
         self.assertLess(largest_N, limit_N)
         self.assertEqual(limit_N, 2.0)  # a quarter of the scene's: no hard real time
@@ -95,15 +95,15 @@ class Examples(unittest.TestCase):
             for line in tactd.stderr:
                 if "limits" in line:  # the last before the loop
                     break
-            told = run(sys.executable, ROOT / "tools/client/example.py", "--seconds", "2", "--out", self.folder, **settings)
+            output = run(sys.executable, ROOT / "tools/client/example.py", "--seconds", "2", "--out", self.folder, **settings)
         finally:
             tactd.terminate()
             tactd.stderr.close()
             tactd.wait(30)
-        self.assertRegex(told, r"^1\d\d frames, \d\.\d s, force at most \d\.\d+ N\n$")
+        self.assertRegex(output, r"^1\d\d frames, \d\.\d s, force at most \d\.\d+ N\n$")
         self.assertGreater((self.folder / "force.png").stat().st_size, 5000)
 
-    def test_each_public_header_stands_alone(self):
+    def test_each_public_header_compiles_alone(self):
         for name in public_headers():
             (self.folder / "alone.cc").write_text(f'#include "{name}"\n')
             run(cached("CMAKE_CXX_COMPILER"), "-std=c++20", "-fsyntax-only", f"-I{self.prefix}/include/tact",
@@ -117,9 +117,9 @@ class Examples(unittest.TestCase):
         (self.folder / "old").mkdir()
         (self.folder / "old/CMakeLists.txt").write_text(
             "cmake_minimum_required(VERSION 3.25)\nproject(old LANGUAGES NONE)\nfind_package(tact 0.0.9)\n"
-            "file(WRITE ${PROJECT_BINARY_DIR}/told \"${tact_FOUND} ${tact_CONSIDERED_VERSIONS}\")\n")
+            "file(WRITE ${PROJECT_BINARY_DIR}/output \"${tact_FOUND} ${tact_CONSIDERED_VERSIONS}\")\n")
         run("cmake", "-S", self.folder / "old", "-B", self.folder / "old", f"-DCMAKE_PREFIX_PATH={self.prefix}")
-        self.assertRegex((self.folder / "old/told").read_text(), r"^0 \d+\.\d+\.\d+$")
+        self.assertRegex((self.folder / "old/output").read_text(), r"^0 \d+\.\d+\.\d+$")
 
     def test_the_sources_are_a_part_that_changes_nothing_else(self):
         build = self.configure("part", f"-DTACT_SOURCE={ROOT}", "-DBUILD_TESTING=ON", "-DTACT_WERROR=ON",

@@ -68,7 +68,7 @@ TEST_F(FitOfAnOrgan, FindsTheModulus) {
   EXPECT_GT(chain.checked.held_out.rms_ratio(), 2.0 * fitted.checked.held_out.rms_ratio());
 }
 
-TEST_F(FitOfAnOrgan, AReferenceIsFittedAtItsOwnStrainWhateverTheSceneSays) {
+TEST_F(FitOfAnOrgan, AReferenceIsFittedAtItsOwnStrainForAnyScene) {
   answer(truth_, "compliance", data_, true);
   data_.large_strain = false;
   Scene start = truth_;

@@ -57,7 +57,7 @@ TEST(FitLaw, EveryStartHasOneRatioForEachParameter) {
   }
 }
 
-TEST(FitLaw, EveryParameterStandsWhereItsKeySays) {
+TEST(FitLaw, EveryParameterIsWhereItsKeySays) {
   // Written through the parameter or read from the file, the scene holds the same number.
   Scene scene = liver();
   for (const FitLaw& law : fit_laws_of(scene, press_and_pull())) {

@@ -11,13 +11,13 @@ namespace tact::tools::fit::fit_prony_test {
 using model::law::PronyTerm;
 
 /// 30 s, dense at first, as a bench samples it.
-std::vector<HeldForce> made(const std::vector<PronyTerm>& terms, double at_once_N) {
+std::vector<HeldForce> made(const std::vector<PronyTerm>& terms, double initial_N) {
   std::vector<HeldForce> held;
   for (int i = 0; i <= 120; ++i) {
     const double t = i == 0 ? 0.0 : 0.01 * std::pow(3000.0, (i - 1) / 119.0);
-    double force_N = at_once_N;
+    double force_N = initial_N;
     for (const PronyTerm& term : terms)
-      force_N -= at_once_N * term.share * (1.0 - std::exp(-t / term.time_s));
+      force_N -= initial_N * term.share * (1.0 - std::exp(-t / term.time_s));
     held.push_back({t, force_N});
   }
   return held;
@@ -27,7 +27,7 @@ void expect_found(const std::vector<PronyTerm>& terms, std::size_t asked) {
   const auto fit = fit_prony(made(terms, 0.8), {.terms = asked, .good_residual = 1e-3});
   ASSERT_TRUE(fit) << fit.error().message;
   ASSERT_EQ(fit->terms.size(), terms.size());
-  EXPECT_NEAR(fit->at_once_N, 0.8, 0.002);
+  EXPECT_NEAR(fit->initial_N, 0.8, 0.002);
   EXPECT_LT(fit->residual_ratio, 1e-3);
   for (std::size_t i = 0; i < terms.size(); ++i) {
     EXPECT_NEAR(fit->terms[i].share, terms[i].share, 0.02 * terms[i].share + 0.002);

@@ -28,7 +28,7 @@ void spoil(FitData& data) {
 TEST(FitRun, FindsTheRhombusChainThatMadeTheData) {
   Scene truth = make_scene();
   truth.laws.of<model::indent::RhombusParameters>().chain.units =
-      4;  // 10 mm go nearly to the end: deep enough to tell the springs apart
+      4;  // 10 mm go nearly to the end: deep enough to distinguish the springs
   truth.pull = {.stiffness_N_per_m = 45.0, .limit_m = 8_mm};
   FitData data{.sites = {make_contact_point(truth, 100, 8_mm)}};
   answer(truth, "rhombus", data, true);

@@ -84,7 +84,7 @@ TEST_F(FitTool, FitsRelaxation) {
       << run.output;
 }
 
-TEST_F(FitTool, RefusesBadInputWithOneSentence) {
+TEST_F(FitTool, RefusesBadInputWithOneMessage) {
   std::ofstream(file("bad.csv")) << "depth_m,force_N\n0.001,0.1\n0.002,x\n";
   const auto refused = [](const std::string& arguments, const std::string& words) {
     const auto run = run_program("tact-lab fit", arguments);

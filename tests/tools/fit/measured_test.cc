@@ -21,7 +21,7 @@ using model::law::PronyTerm;
 
 const std::string kRoot = TACT_SOURCE_DIR;
 
-/// Silicone cylinders between plates: EF10_100T is fitted, the others judge with a factor each.
+/// Silicone cylinders between plates: EF10_100T is fitted, the others evaluate with a factor each.
 Evaluation check_silicone(const std::string& law, double deepest_m) {
   const auto scene =
       model::scene::load_scene(kRoot + "/model/scenes/liver.toml", {"varies_by_place=false"});

@@ -22,10 +22,13 @@ JitterResult stalled_once() {
     firmware::loop::TickRecord record;
     record.tick = i;
     record.due_ns = 1'000'000'000 + static_cast<std::int64_t>(i) * 1'000'000;
-    record.phase_ns = {i == 999 ? 2'000'000u : 5'000u, 100, 200, 300, 400, 500, 600, 2'100};
+    record.phase_ns = {i == 999 ? 2'000'000 : 5'000, 100, 200, 300, 400, 500, 600, 2'100};
     result.sink->add(record);
   }
-  result.pc = {{.name = "kernel", .verdict = firmware::pc::Verdict::kRed}};
+  firmware::pc::PcRow kernel;
+  kernel.name = "kernel";
+  kernel.verdict = firmware::pc::Verdict::kRed;
+  result.pc.push_back(kernel);
   return result;
 }
 

@@ -33,7 +33,7 @@ class Compare(unittest.TestCase):
         self.assertTrue(is_worse(20_000, 22_100))
         self.assertFalse(is_worse(22_100, 20_000), "better is good")
         self.assertFalse(is_worse(20_000, 90_000, None), "no gate")
-        self.assertFalse(is_worse(2_000, 2_900), "below a microsecond nothing is told apart")
+        self.assertFalse(is_worse(2_000, 2_900), "below a microsecond nothing is distinguished")
 
     def test_judges_neither_the_largest_nor_a_percentile_of_too_few_samples(self):
         for value in subject.compare(result_with(20_000), result_with(90_000), 0.1)["values"]:
@@ -46,7 +46,7 @@ class Compare(unittest.TestCase):
         self.assertFalse(subject.is_result({**old, "format": "tact-limits"}))
         self.assertFalse(subject.is_result({}), "no result at all")
 
-    def test_tells_which_conditions_differ(self):
+    def test_reports_which_conditions_differ(self):
         other = {**result_with(20_000), "rate_Hz": 2000, "environment": {"kernel_release": "6.1.0-rt"}}
         comparison = subject.compare(result_with(20_000), other, 0.1)
         self.assertEqual(comparison["unlike"], ["rate_Hz 1000 and 2000", 'kernel_release null and "6.1.0-rt"'])

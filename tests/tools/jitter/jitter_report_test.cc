@@ -58,7 +58,7 @@ JitterResult small_result(std::uint64_t ticks) {
   return result;
 }
 
-TEST(Report, APercentileWithNoSampleBeyondItIsNotTold) {
+TEST(Report, APercentileWithNoSampleBeyondItIsNotReported) {
   const JitterResult result = small_result(1000);
   const auto& wake = result.sink->phase(firmware::loop::Phase::kWake).histogram;
   EXPECT_EQ(percentile_ns(wake, 0.999), wake.percentile_ns(0.999));
@@ -203,12 +203,12 @@ TEST_F(JitterProgram, MeasuresUnderLoadInTurnsWithCyclictest) {
   const json result = json::parse(run.output);
   EXPECT_EQ(result["load"], "cpu");
   EXPECT_EQ(result["fault"], "") << "the pause between two slices is none";
-  // At most 400: what a busy PC skips after the last tick of a slice stands in no tick.
+  // At most 400: what a busy PC skips after the last tick of a slice is in no tick.
   EXPECT_NEAR(result["ticks"].get<int>() + result["skipped"].get<int>(), 300, 100);
   EXPECT_NEAR(result["series"]["peer_wake"]["samples"].get<int>(), 300, 100);
 }
 
-TEST_F(JitterProgram, ABareLoopFeelsNothing) {
+TEST_F(JitterProgram, ABareLoopHasNoForce) {
   const auto run = run_program("tact-jitter", "--bare --duration 0.2 --json -");
   ASSERT_EQ(run.status, 0) << run.output;
   const json result = json::parse(run.output);
@@ -240,7 +240,7 @@ TEST_F(JitterProgram, RefusesBadUsageWithARemedy) {
   }
 }
 
-TEST_F(Folder, DoctorTellsItsRowsAsTextAndJsonWithAnExitStatus) {
+TEST_F(Folder, DoctorReportsItsRowsAsTextAndJsonWithAnExitStatus) {
   const auto text = run_program("tact-doctor", "");
   const auto machine = run_program("tact-doctor", "--json");
   const json checks = json::parse(machine.output)["checks"];

@@ -81,7 +81,7 @@ TEST(TickSink, AForceCountsFromTheDeadlineThatAskedForIt) {
   EXPECT_EQ(sink.deadline_to_force().histogram.max_ns(), 50'055'000u);
 }
 
-TEST(TickSink, TellAndTotalBelongToTheTickBefore) {
+TEST(TickSink, PublishAndTotalBelongToTheTickBefore) {
   TickSink sink({});
   sink.add(tick_at(0, 0, 5'000));
   EXPECT_EQ(sink.phase(Phase::kTotal).histogram.count(), 0u);
@@ -92,13 +92,14 @@ TEST(TickSink, TellAndTotalBelongToTheTickBefore) {
   EXPECT_EQ(sink.phase(Phase::kTotal).histogram.max_tick(), 0u);
 }
 
-TEST(TickSink, TicksThatTheRingDroppedAreToldNotGuessed) {
+TEST(TickSink, TicksThatTheRingDroppedAreReportedNotGuessed) {
   TickSink sink({});
   sink.add(tick_at(0, 0, 5'000));
   sink.add(tick_at(7, 7 * kMs, 5'000));
   EXPECT_EQ(sink.unseen(), 6u);
   EXPECT_EQ(sink.ticks(), 2u);
-  EXPECT_EQ(sink.phase(Phase::kTotal).histogram.count(), 0u) << "nobody told how tick 0 ended";
+  EXPECT_EQ(sink.phase(Phase::kTotal).histogram.count(), 0u)
+      << "the end of tick 0 was not reported";
 }
 
 TEST(TickSink, SlicesGoOnCountingAndNothingCrossesTheGap) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// cyclictest beside the loop: its samples, its turns, and the ratio that is told and judged.
+// cyclictest beside the loop: its samples, its turns, and the ratio that is reported and evaluated.
 #include "tools/jitter/run/peer.h"
 
 #include <gtest/gtest.h>
@@ -119,7 +119,7 @@ TEST(PeerGate, TheReportBeginsWithWhatTheGateFound) {
   result.turn_ratios = {1.1, 1.1, 1.1};
   result.fault = "103 no samples";
   EXPECT_TRUE(begins_with("<p class=\"verdict fail\">FAIL: the run ended with a fault: 103"))
-      << "a fault is told before a gate that passes";
+      << "a fault is reported before a gate that passes";
 }
 
 TEST(PeerGate, AGateOnThePeerNeedsAPeerAndEnoughTurns) {

@@ -57,7 +57,7 @@ TEST(TickTrace, PhasesLieInTheirTickOneBehindTheOther) {
   }
 }
 
-TEST(TickTrace, NamesItsTracksAndTellsTheWakeUp) {
+TEST(TickTrace, NamesItsTracksAndReportsTheWakeUp) {
   const auto events = events_of(make_tick_trace({tick_at(7, 7'000'000)}, 1'000));
   std::vector<std::string> names;
   for (const json& name : events.at("M")) names.push_back(name["args"]["name"]);

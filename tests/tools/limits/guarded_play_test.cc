@@ -68,7 +68,7 @@ TEST_F(OnARealDevice, ACallThatHangsCostsTheEnableLineAndEndsThePlan) {
   play();
   usleep(300'000);
   device.asleep.store(true);
-  EXPECT_TRUE(dropped()) << "nobody watches this loop";
+  EXPECT_TRUE(dropped()) << "this loop is not watched";
   end();
   expect_stopped_by(Fault::kDeviceStalled);
 }

@@ -59,7 +59,7 @@ Limits larger_grip_force(const Limits& limits) {
   return wrong;
 }
 
-TEST(LimitRows, TheFingersFeelUpToTheirLimitAndNeverMore) {
+TEST(LimitRows, TheFingersGetUpToTheirLimitAndNeverMore) {
   const LimitsReport good = plan("fingers");
   EXPECT_EQ(good.result_text(), "PASS of 1 of 26 cases");
   const LimitRow row = limit_rows(good).at(static_cast<std::size_t>(Bound::kGrip));
@@ -114,14 +114,14 @@ TEST(LimitRows, WithoutAForceOnTheFingersTheirCaseIsNotRun) {
   EXPECT_EQ(report->not_run.front().why, kNoGripForce);
 }
 
-// A wall alone once made a green page that said pass of eight limits nobody had gone near.
+// A wall alone once made a green page that said pass of eight limits that were not approached.
 TEST(LimitRows, APartOfThePlanPassesNoLimitThatItDidNotReach) {
   const Outcome out = run("--plan stiff-wall --json");
   EXPECT_EQ(out.status, 0) << out.output;
   const auto report = nlohmann::json::parse(out.output);
   EXPECT_EQ(report.at("result"), "PASS of 1 of 26 cases");
   EXPECT_EQ(report.at("limits").size(), 9u);
-  const auto& wall = report.at("wall");  // README.md and tools/README.md tell these
+  const auto& wall = report.at("wall");  // README.md and tools/README.md state these
   EXPECT_NEAR(wall.at("bounded_ratio"), 11.6, 0.1);
   EXPECT_NEAR(wall.at("rest_without_N_per_m"), 2644.0, 1.0);
   EXPECT_EQ(wall.at("rest_ratio"), 1.0);
@@ -197,7 +197,7 @@ TEST(LimitRows, ARealDeviceSaysThatNoContactWasOpened) {
     return count;
   };
   EXPECT_EQ(times(page_html(report, {})), 0u) << "simulated lines do open";
-  EXPECT_EQ(page_html(report, {}).find("told in software"), std::string::npos);
+  EXPECT_EQ(page_html(report, {}).find("set in software"), std::string::npos);
   report.simulated = false;
   EXPECT_EQ(times(page_html(report, {})), 2u) << "in the row of each";
   EXPECT_NE(page_html(report, {}).find("Nor that a contact of the emergency stop"),

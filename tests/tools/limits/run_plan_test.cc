@@ -268,7 +268,7 @@ TEST(Limits, ARealDeviceIsTestedAfterTheWordsAndSaysWhatWasNotRun) {
   EXPECT_EQ(report.at("cases").size(), 2u);
   EXPECT_EQ(report.at("not_run").at(0).at("case"), "speed");
   EXPECT_EQ(report.at("not_run").at(0).at("why"), "needs the simulated hand");
-  // the scene wires no line: a fault told in its place would be a test that did not happen
+  // the scene wires no line: a fault set in its place would be a test that did not happen
   for (std::size_t i = 1; i < 4; ++i)
     EXPECT_EQ(report.at("not_run").at(i).at("why"),
               i < 3 ? "no emergency stop is wired" : "no dead-man switch is wired");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What tact-limits judges by, on rows written by hand.
+// What tact-limits evaluates by, on rows written by hand.
 #include "tools/limits/verdict/verdict.h"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ bool holds(const std::vector<TickRow>& rows, const std::string& words, Limits li
 
 TEST(Verdict, MatchesPenAndPaper) {
   const Extremes worst = extremes_of(three_ticks(), kLimits, 0.001);
-  EXPECT_DOUBLE_EQ(worst.given_J, 2.0 * 0.003 + 1.0 * 0.003);
+  EXPECT_DOUBLE_EQ(worst.given_energy_J, 2.0 * 0.003 + 1.0 * 0.003);
   EXPECT_DOUBLE_EQ(worst.force_N, 2.0);
   EXPECT_DOUBLE_EQ(worst.step_N, 2.0);
   EXPECT_EQ(worst.overdrawn_J, 0.0);
@@ -59,7 +59,7 @@ TEST(Verdict, MatchesPenAndPaper) {
 TEST(Verdict, AMissedSampleCountsTheMeanForceAlongTheWholeWay) {
   std::vector<TickRow> rows = three_ticks();
   rows[1].fresh = false;
-  EXPECT_DOUBLE_EQ(extremes_of(rows, kLimits, 0.001).given_J, 1.5 * 0.006);
+  EXPECT_DOUBLE_EQ(extremes_of(rows, kLimits, 0.001).given_energy_J, 1.5 * 0.006);
 }
 
 TEST(Verdict, SeesAForceThatTheGateDidNotLetThrough) {
@@ -87,7 +87,7 @@ TEST(Verdict, CountsFromTheCauseToZero) {
 }
 
 // The last tick of three has no force, so by hand: zero 2 ms after a cause at the first.
-TEST(Verdict, SeesAForceThatComesBackWhileItsCauseStands) {
+TEST(Verdict, SeesAForceThatComesBackWhileItsCauseLasts) {
   std::vector<TickRow> rows = three_ticks();
   rows.push_back(rows[2]);
   rows[3].t_s = 0.003;

@@ -33,7 +33,7 @@ for (let record; (record = stream.nextRecord());) {
 }
 say("stream", { done: stream.done(), counts });
 
-// By the index, as a player seeks; it judges the checksum of the summary.
+// By the index, as a player seeks; it checks the checksum of the summary.
 const file = {
   size: async () => BigInt(bytes.byteLength),
   read: async (offset, length) => new Uint8Array(bytes.subarray(Number(offset), Number(offset + length))),

@@ -124,9 +124,9 @@ class Mcap(unittest.TestCase):
                                                                      "worst_margin_us")))
 
     def test_every_tick_of_a_log_is_there_field_by_field(self):
-        status, told, words = tact_mcap(self.log, self.mcap)
+        status, counts, words = tact_mcap(self.log, self.mcap)
         self.assertEqual((status, words), (0, ""))
-        self.assertEqual((told["ticks"], told["frames"], told["messages"], told["damage"]), (TICKS, 0, 4 * TICKS, ""))
+        self.assertEqual((counts["ticks"], counts["frames"], counts["messages"], counts["damage"]), (TICKS, 0, 4 * TICKS, ""))
         log, (facts, messages) = tact.read_ticks(self.log), read(self.mcap)
         seen = rows(messages, "/tact/tick")
         self.same_ticks(seen, log.ticks)
@@ -171,10 +171,10 @@ class Mcap(unittest.TestCase):
             viewer.send_signal(signal.SIGINT)
             viewer.wait(30)
         target = self.folder / "recording.mcap"
-        status, told, words = tact_mcap(recording, target)
+        status, counts, words = tact_mcap(recording, target)
         kept, (_, messages) = tact.read_recording(recording), read(target)
-        self.assertEqual((status, words, told["ticks"], told["frames"]), (0, "", 0, len(kept.frames)))
-        self.assertGreater(told["frames"], 50)
+        self.assertEqual((status, words, counts["ticks"], counts["frames"]), (0, "", 0, len(kept.frames)))
+        self.assertGreater(counts["frames"], 50)
         seen = rows(messages, "/tact/frame")
         self.same_frames(seen, kept.frames)
         times = np.array([time_ns for time_ns, _ in seen])
@@ -208,8 +208,8 @@ class Mcap(unittest.TestCase):
         data, pictures = source.read_bytes(), byte_of_tick(source, len(box.ticks))[0]
         cut = self.folder / "cut.tactlog"
         cut.write_bytes(data[:pictures + 1000])
-        status, told, words = tact_mcap(cut, target)
-        self.assertEqual((status, told["ticks"], told["frames"]), (1, len(box.ticks), 0))
+        status, counts, words = tact_mcap(cut, target)
+        self.assertEqual((status, counts["ticks"], counts["frames"]), (1, len(box.ticks), 0))
         self.assertIn("cut off at byte", words)
 
     def test_of_a_damaged_log_the_good_ticks_are_there(self):
@@ -217,14 +217,14 @@ class Mcap(unittest.TestCase):
         first, size = byte_of_tick(self.log, 0)
         data[first + 100 * size + 27] ^= 1
         broken.write_bytes(data)
-        status, told, words = tact_mcap(broken, self.mcap)
-        self.assertEqual((status, told["ticks"]), (1, TICKS - 1))
+        status, counts, words = tact_mcap(broken, self.mcap)
+        self.assertEqual((status, counts["ticks"]), (1, TICKS - 1))
         self.assertIn(f"1 of {TICKS} ticks are damaged, the first at byte {first + 100 * size}", words)
         self.same_ticks(rows(read(self.mcap)[1], "/tact/tick"), tact.read_ticks(broken).ticks)
         whole = 250
         broken.write_bytes(data[:first + whole * size + 9])
-        status, told, words = tact_mcap(broken, self.mcap)
-        self.assertEqual((status, told["ticks"]), (1, whole - 1))
+        status, counts, words = tact_mcap(broken, self.mcap)
+        self.assertEqual((status, counts["ticks"]), (1, whole - 1))
         self.assertIn(f"cut off at byte {first + whole * size + 9}", words)
         self.assertEqual(len(rows(read(self.mcap)[1], "/tact/tick")), whole - 1)
 
@@ -235,8 +235,8 @@ class Mcap(unittest.TestCase):
         for source, target, words in ((self.folder, out, "is no regular file"), (pipe, out, "is no regular file"),
                                       (self.folder / "none", out, "No such file"), (empty, out, "is no file of tact"),
                                       (self.log, self.folder / "none" / "no.mcap", "No such file")):
-            status, told, said = tact_mcap(source, target)
-            self.assertEqual((status, told), (2, None), said)
+            status, counts, said = tact_mcap(source, target)
+            self.assertEqual((status, counts), (2, None), said)
             self.assertIn(words, said)
             self.assertFalse(target.exists())
         self.assertEqual(list(self.folder.glob("*.part")), [])

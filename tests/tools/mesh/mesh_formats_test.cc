@@ -25,7 +25,7 @@ class MeshFormats : public testing::Test {
   }
 
   Ran run(const std::string& arguments) const { return run_apart(temp_, "tact-mesh", arguments); }
-  /// A cube of 10 units, as whatever it was written; 10 units of an organ are centimetres.
+  /// A cube of 10 units, in each format; 10 units of an organ are centimetres.
   void expect_cube(const std::string& name, const std::string& text, double unit_m = 0.01) {
     SCOPED_TRACE(name);
     const Ran ran = run("--json " + temp_.write(name, text));
@@ -187,7 +187,7 @@ TEST_F(MeshFormats, TheUnitIsNamedOrANumber) {
     EXPECT_EQ(run(path + " " + wrong).status, 2) << wrong;
 }
 
-TEST_F(MeshFormats, ABrokenFileGetsOneSentenceWithItsLineWhereThatIsKnown) {
+TEST_F(MeshFormats, ABrokenFileGetsOneMessageWithItsLineWhereThatIsKnown) {
   const auto cut = [](const std::string& text) { return text.substr(0, text.size() * 6 / 10); };
   expect_refused("a.stl", cut(ascii_stl()), "a.stl:52: ");
   expect_refused("b.stl", cut(as_stl(soup_)), "cut short, after 6 of 12 triangles");

@@ -198,7 +198,7 @@ TEST_F(MeshRepair, WhatIsLeftWithoutAreaOrVolumeIsAnErrorWithItsRemedy) {
   refused(line + " --drop-degenerate", "no face is left after drop-degenerate");
   const std::string flat =
       temp_.write("flat.obj", "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 9 9 0\nf 1 2 3\nf 2 4 3\n");
-  EXPECT_EQ(reported(flat + " --weld")["closed"], false) << "one sheet is a skin";
+  EXPECT_EQ(reported(flat + " --weld")["closed"], false) << "one sheet is a surface";
   refused(flat + " --close-holes", "closed, of 4 faces, and without a volume");
 }
 
@@ -253,7 +253,7 @@ TEST_F(MeshRepair, SmoothAndDecimateKeepTheSizeAndAnOpening) {
     const json fewer = reported(fmt::format("{} --decimate {}", path, faces));
     EXPECT_LE(fewer["triangles"].get<int>(), faces);
     EXPECT_GT(fewer["triangles"].get<int>(), 0.95 * faces);
-    EXPECT_EQ(fewer["closed"], false) << "an opening that nobody asked to close";
+    EXPECT_EQ(fewer["closed"], false) << "an opening that was not to be closed";
     EXPECT_NEAR(fewer["area_m2"].get<double>() / before["area_m2"].get<double>(), 1.0, 0.1);
   }
 }

@@ -52,7 +52,7 @@ class SurfacePoint : public testing::Test {
   tests::Ran run(const std::string& arguments) const {
     return tests::run_apart(temp_, "tact-mesh", arguments);
   }
-  /// The highest vertex of the organ, W, is where the hand touches.
+  /// The highest vertex of the organ, W, is where the hand presses.
   void expect_top_at_site(const std::string& scene_path) {
     const auto scene = model::scene::load_scene(scene_path, {});
     ASSERT_TRUE(scene) << scene.error().message;
@@ -149,7 +149,7 @@ TEST_F(SurfacePoint, APointFarFromTheOrganIsRefusedWithItsDistance) {
   EXPECT_EQ(tests::read_text(scene_), before_);
 }
 
-TEST_F(SurfacePoint, TellsWhatOfTheSceneWasMadeForAnotherOrgan) {
+TEST_F(SurfacePoint, ReportsWhatOfTheSceneWasMadeForAnotherOrgan) {
   const auto misfits = [&](const std::string& organ, const std::string& scene) {
     const tests::Ran ran = run(organ + " --json --align " + scene);
     EXPECT_EQ(ran.status, 0) << ran.err;
@@ -172,7 +172,7 @@ TEST_F(SurfacePoint, TellsWhatOfTheSceneWasMadeForAnotherOrgan) {
       map.npos)
       << map;
 
-  // What is told as a text is what must be written.
+  // What is reported as a text is what must be written.
   const tests::Ran written = run(organ_ + " --write --align " + scene_);
   EXPECT_NE(written.out.find("\nnote       elastic.fixed_min_m, elastic.fixed_max_m: " + held),
             written.out.npos)
@@ -231,7 +231,7 @@ TEST(HeldBox, IsTheTenthFarthestFromTheTool) {
   }
 }
 
-TEST_F(SurfacePoint, TellsMachinesToo) {
+TEST_F(SurfacePoint, ReportsAsJsonToo) {
   const tests::Ran ran = run(organ_ + " --json --unit cm --align " + scene_);
   ASSERT_EQ(ran.status, 0) << ran.err;
   EXPECT_EQ(json::parse(ran.out)["unit_from"], "named");
@@ -240,7 +240,7 @@ TEST_F(SurfacePoint, TellsMachinesToo) {
   EXPECT_EQ(reported["orientation_deg"], json::array({0.0, 0.0, 0.0}));
   const json guessed = json::parse(run(organ_ + " --json --align " + scene_).out);
   EXPECT_EQ(guessed["unit_from"], "size");
-  EXPECT_EQ(guessed["unit_m"], guessed["placement"]["mesh_unit_m"]) << "one unit, told once";
+  EXPECT_EQ(guessed["unit_m"], guessed["placement"]["mesh_unit_m"]) << "one unit, stated once";
 }
 
 TEST(LikelyUnit, IsTheOneThatMakesAnOrgan) {

@@ -156,7 +156,7 @@ inline void spoil(Soup& soup, std::size_t each) {
                       c = soup.vertex[corner[2]];
     const model::Vec3 normal = normalized(cross(b - a, c - a)),
                       aside = normalized(cross(normal, b - a));
-    // A splinter that stands on an edge, which has four triangles then.
+    // A splinter on an edge, which has four triangles then.
     const auto p = static_cast<std::uint32_t>(soup.vertex.size()), q = p + 1;
     soup.vertex.push_back(0.5 * (a + b) + normal + 0.4 * aside);
     soup.vertex.push_back(0.5 * (a + b) + normal - 0.4 * aside);

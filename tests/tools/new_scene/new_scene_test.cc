@@ -17,7 +17,7 @@ namespace tact::tools::new_scene::new_scene_test {
 
 using nlohmann::json;
 
-TEST_F(NewScene, AScanBecomesASceneThatIsFelt) {
+TEST_F(NewScene, AScanBecomesASceneWithForces) {
   const std::string organ = temp_.write("organ.stl", as_stl(ellipsoid_mm(3)));
   const Ran ran = run(organ + " --out " + out_ + " --youngs-modulus-Pa 8000");
   ASSERT_EQ(ran.status, 0) << ran.err << ran.out;
@@ -187,7 +187,7 @@ TEST_F(NewScene, PlansTheLawForThisPcWithReferencesThatAnotherCanUse) {
   EXPECT_EQ(ran.status, 0) << ran.output;
 }
 
-TEST_F(NewScene, WithoutCalculiXThePlanIsNoneAndTheSceneIsFeltAllTheSame) {
+TEST_F(NewScene, WithoutCalculiXThereIsNoPlanAndTheSceneRuns) {
   const std::string organ = temp_.write("organ.obj", as_obj(ellipsoid_mm(2)));
   const std::string programs = path("programs");
   fs::create_directory(programs);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The planner: the least law that is enough, why, and the file that tells tactd.
+// The planner: the least law that is enough, why, and the file for tactd.
 #include "tools/plan/plan.h"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ TEST(Choose, TakesTheFastestThatIsEnoughAndNamesTheRunnerUp) {
   EXPECT_TRUE(has(choice.reason, "Runner-up: compliance")) << choice.reason;
 }
 
-TEST(Choose, LetsMemoryDecideWhereTimesCannotBeToldApart) {
+TEST(Choose, LetsMemoryDecideWhereTimesDoNotDiffer) {
   const std::vector<Candidate> laws{candidate("compliance", 0.01, 0.05, 0.100, 4e5),
                                     candidate("compliance", 0.02, 0.06, 0.108, 1e5),
                                     candidate("compliance", 0.03, 0.06, 0.120, 1e3)};
@@ -57,7 +57,7 @@ TEST(Choose, LetsMemoryDecideWhereTimesCannotBeToldApart) {
   EXPECT_EQ(*choice.runner_up, 0U);
 }
 
-TEST(Choose, TellsTheNearestAndWhatToChangeWhenNoneIsEnough) {
+TEST(Choose, ReportsTheNearestAndWhatToChangeWhenNoneIsEnough) {
   const std::vector<Candidate> laws{candidate("rhombus", 0.21, 0.10, 0.05, 1e4),
                                     candidate("hex_sheet", 0.08, 0.20, 0.05, 1e4),
                                     candidate("spring_patch", 0.01, 0.20, 50.0, 1e4)};
@@ -271,7 +271,7 @@ TEST_F(PlanFile, RefusesWhatIsMissingDamagedOrStale) {
   expect_remedy(model::scene::read_plan(write(plan_text(other)), scene_, kSet), "no law hex_sheet");
 }
 
-TEST_F(PlanFile, EveryDamageIsTold) {
+TEST_F(PlanFile, EveryDamageIsReported) {
   tests::expect_all_damage_is_reported(write(plan_text(plan_)), [&](const std::string& path) {
     const auto read = model::scene::read_plan(path, scene_, kSet);
     return !read && has(read.error().message, "damaged, its sha256");

@@ -114,7 +114,7 @@ class Plot(unittest.TestCase):
         for arguments, words in (((self.log, "--out", self.folder / "no.xyz"), "its ending is none of"),
                                  ((self.log,), "--out is required"),
                                  ((self.log, "--y", "nothing", "--out", out), "has no nothing; tact-plot"),
-                                 ((self.log, "--x", "depth", "--to", "0.01", "--out", out), "nothing touches there"),
+                                 ((self.log, "--x", "depth", "--to", "0.01", "--out", out), "no contact there"),
                                  ((self.log, "--from", "100", "--out", out), "has no tick between"),
                                  ((self.log, "--x", "depth", "--sphere", "9", "--out", out), "so no sphere 9"),
                                  ((self.folder / "none", "--out", out), "No such file"),
@@ -130,10 +130,10 @@ class Plot(unittest.TestCase):
         first, size = byte_of_tick(self.log, 0)
         data[first + 100 * size + 27] ^= 1
         broken.write_bytes(data)
-        status, told, said = tact_plot(broken, "--x", "depth", "--out", out)
+        status, output, said = tact_plot(broken, "--x", "depth", "--out", out)
         self.assertEqual(status, 1)
         self.assertIn("1 of 3000 ticks are damaged", said)
-        self.assertIn("2999 of broken.tactlog", told)
+        self.assertIn("2999 of broken.tactlog", output)
         self.assertTrue(out.exists())
 
     def test_its_help_has_an_example_that_works(self):

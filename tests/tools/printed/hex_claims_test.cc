@@ -29,7 +29,7 @@ double printed_N(std::size_t rings, double depth_m, HexWeight weight) {
 /// c of HX-10.
 double share_of(const PaperShape& at) { return at.first_strain / (1.0 + at.first_strain); }
 
-/// HX-1: what the contact node feels by itself, K_N0 d + 6 K_T c l_1.
+/// HX-1: the force of the contact node alone, K_N0 d + 6 K_T c l_1.
 double at_the_node_N(const PaperShape& at, double surface_N_per_m) {
   return kBody_N_per_m * at.ring_m[0] + 6.0 * surface_N_per_m * share_of(at) * at.drop_m[0];
 }
@@ -94,7 +94,7 @@ TEST(HexClaims, X15MoreRingsDoNotComeCloserToAnyForce) {
   EXPECT_NEAR(energy_sheet(25).respond(5_mm).force_N, few_N, 1e-6 * few_N);
 }
 
-TEST(HexClaims, X15ThePrintedDentHasNoEnd) {
+TEST(HexClaims, X15ThePrintedIndentationHasNoEnd) {
   // l_i falls like 1/sqrt(i) only: half way out the indentation is still a fifth deep, at any m.
   for (const std::size_t rings : {10u, 24u, 64u}) {
     const PaperShape at = paper_shape_at_depth(kPitch_m, rings, 1_mm);
@@ -161,7 +161,7 @@ TEST(HexClaims, ARingHasTheNodesAndSpringsThatAreCounted) {
   }
 }
 
-TEST(HexClaims, TheFirstStrainTellsTheDepthAndNotTheTissue) {
+TEST(HexClaims, TheFirstStrainShowsTheDepthAndNotTheTissue) {
   // "The larger eps_1, the softer the tissue". But HX-11 gives it from depth, pitch and rings: no
   // stiffness is in it, and one tissue has every value.
   const auto first_strain = [](double depth_m) {

@@ -110,7 +110,7 @@ TEST(RhombusClaims, X5TheUndeformedAngleGivesAnotherForceThanTheEnergy) {
 }
 
 // X6  kN, kT in N/m, as printed, move a 20 N device by 15 mN at most: N/mm must be meant.
-TEST(RhombusClaims, X6ThePrintedUnitsCannotBeFelt) {
+TEST(RhombusClaims, X6ThePrintedUnitsGiveNoNoticeableForce) {
   const auto chain = make_rhombus_chain({.rod_length_m = 10_mm,
                                          .initial_angle_rad = 30_deg,
                                          .normal_stiffness_N_per_m = 1.5,

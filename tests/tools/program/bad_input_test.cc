@@ -65,7 +65,7 @@ std::vector<std::string> number_options(const std::string& program) {
   return out;
 }
 
-TEST_F(BadInput, EveryProgramTellsItsVersionAndWhatBuiltIt) {
+TEST_F(BadInput, EveryProgramReportsItsVersionAndWhatBuiltIt) {
   for (const std::string& line : kPrograms) {
     const std::string program = line.substr(0, line.find(' '));
     const Outcome outcome = run_program(program, "--version");
@@ -77,7 +77,7 @@ TEST_F(BadInput, EveryProgramTellsItsVersionAndWhatBuiltIt) {
 }
 
 // Its name is read after main(), where no object of main() is left.
-TEST_F(BadInput, EveryProgramTellsThatItsOutputIsNotTaken) {
+TEST_F(BadInput, EveryProgramReportsThatItsOutputIsNotTaken) {
   for (const std::string& line : kPrograms) {
     const std::string program = line.substr(0, line.find(' '));
     const Outcome outcome = run_command("(" + program_path(program) + " --help >/dev/full)");
@@ -105,7 +105,7 @@ TEST_F(BadInput, NoProgramTakesANumberThatIsNone) {
   EXPECT_GE(options, 20u) << "the options are no longer found in --help";
 }
 
-TEST_F(BadInput, AFolderOrPipeWhereAFileBelongsGetsASentence) {
+TEST_F(BadInput, AFolderOrPipeWhereAFileBelongsGetsAMessage) {
   const std::string pipe = folder_ + "/pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
   for (const auto& [path, words] :

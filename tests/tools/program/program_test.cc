@@ -38,7 +38,7 @@ TEST(Program, RemembersItsCommandAndGoesOn) {
   EXPECT_EQ(scene.overrides, (std::vector<std::string>{"x=1", "y=2"}));
 }
 
-TEST(Program, TellsCtrlCFromAFault) {
+TEST(Program, DistinguishesCtrlCFromAFault) {
   const Program program("tact-test", "A test.", "No units.");
   testing::internal::CaptureStderr();
   EXPECT_EQ(program.fail({"a.toml: is missing; correct the name"}), 2);
@@ -55,13 +55,13 @@ struct Word {
 /// What `tact-lab WORDS` says on standard error; its exit status comes first.
 std::string said_by_lab(std::vector<std::string> words) {
   Program lab("tact-lab", "A test.", "No units.");
-  for (const char* name : {"tell", "other"})
+  for (const char* name : {"report", "other"})
     lab.add<Word>(
-        name, "tells a word", "No units.",
+        name, "reports a word", "No units.",
         [](CLI::App& app, Word& w) { app.add_option("--word", w.word, "")->required(); },
         [](const Program& program, Word& w) -> model::Result<int> {
           if (w.word == "bad") return model::Error{"bad: give another"};
-          return program.command() == "tact-lab tell --word good" ? 1 : 0;
+          return program.command() == "tact-lab report --word good" ? 1 : 0;
         });
   std::vector<char*> argv;
   for (std::string& w : words) argv.push_back(w.data());
@@ -71,13 +71,13 @@ std::string said_by_lab(std::vector<std::string> words) {
 }
 
 TEST(Program, RunsTheSubcommandThatIsNamed) {
-  EXPECT_EQ(said_by_lab({"tact-lab", "tell", "--word", "good"}), "1 ");
-  EXPECT_EQ(said_by_lab({"tact-lab", "other", "--word", "tell"}), "0 ") << "a word as a value";
-  EXPECT_EQ(said_by_lab({"tact-lab", "tell", "--word", "bad"}),
-            "2 tact-lab tell: bad: give another\n");
-  EXPECT_EQ(said_by_lab({"tact-lab", "tell"}),
-            "2 tact-lab tell: --word is required; see tact-lab tell --help\n");
-  EXPECT_EQ(said_by_lab({"tact-lab", "tell", "--wird", "x"}).find("2 tact-lab tell: "), 0U);
+  EXPECT_EQ(said_by_lab({"tact-lab", "report", "--word", "good"}), "1 ");
+  EXPECT_EQ(said_by_lab({"tact-lab", "other", "--word", "report"}), "0 ") << "a word as a value";
+  EXPECT_EQ(said_by_lab({"tact-lab", "report", "--word", "bad"}),
+            "2 tact-lab report: bad: give another\n");
+  EXPECT_EQ(said_by_lab({"tact-lab", "report"}),
+            "2 tact-lab report: --word is required; see tact-lab report --help\n");
+  EXPECT_EQ(said_by_lab({"tact-lab", "report", "--wird", "x"}).find("2 tact-lab report: "), 0U);
   for (const char* none : {"--word", "tall"}) {
     const std::string said = said_by_lab({"tact-lab", none});
     EXPECT_EQ(said.find("2 tact-lab: "), 0U) << said;

@@ -35,7 +35,7 @@ Result<std::string> run(const ScratchFolder& where, const std::string& program,
                       .environment = {{"TACT_TEST", "a value"}}});
 }
 
-/// Gone, or a zombie that nobody has asked for yet. A killed process needs a moment to die.
+/// Gone, or a zombie that was not reaped yet. A killed process needs a moment to die.
 bool goes_away(pid_t process) {
   using namespace std::chrono_literals;
   const std::string state = "/proc/" + std::to_string(process) + "/stat";
@@ -90,7 +90,7 @@ TEST(RunProgram, SaysWhatToInstall) {
             "no-such-program-of-tact is not installed; apt install the-package");
 }
 
-TEST(RunProgram, TellsTheLastLinesOfAFailure) {
+TEST(RunProgram, ReportsTheLastLinesOfAFailure) {
   const auto where = folder();
   const auto said = run(where, "sh", {"-c", "seq 100; echo the cause; exit 3"});
   ASSERT_FALSE(said);
@@ -147,7 +147,7 @@ TEST(RunProgram, EndsAProgramAtAClosedTerminalAndAtTermination) {
     std::jthread sender([signal] {
       std::this_thread::sleep_for(std::chrono::milliseconds(100));
       std::raise(signal);
-      if (signal == SIGHUP) std::raise(signal);  // some terminals tell it twice
+      if (signal == SIGHUP) std::raise(signal);  // some terminals send it twice
     });
     const auto said = run(where, "sleep", {"60"});
     ASSERT_FALSE(said);
@@ -258,7 +258,7 @@ TEST(RunningProgram, IsKnownToHaveEnded) {
   EXPECT_FALSE(running->is_running());
 }
 
-TEST(RunProgram, AnEndThatNobodyCanKnowIsAnError) {
+TEST(RunProgram, AnUnknownEndIsAnError) {
   const auto where = folder();
   std::signal(SIGCHLD, SIG_IGN);  // a parent may hand this down
   const auto said = run(where, "false", {});

@@ -29,9 +29,9 @@ def cached(name):
 
 class WithoutTheModule(unittest.TestCase):
     def test_the_client_says_how_to_build_it(self):
-        told = subprocess.run([sys.executable, "-I", "-c", "import sys; sys.path.insert(0, sys.argv[1]); import tact; tact.Sim",
+        done = subprocess.run([sys.executable, "-I", "-c", "import sys; sys.path.insert(0, sys.argv[1]); import tact; tact.Sim",
                                str(ROOT / "tools/client")], capture_output=True, text=True, check=False)
-        self.assertIn(f"cmake -S {ROOT / 'tools/python'} -B tact_sim", told.stderr)
+        self.assertIn(f"cmake -S {ROOT / 'tools/python'} -B tact_sim", done.stderr)
 
 
 @unittest.skipUnless(os.environ.get("TACT_EXTENT") == "whole", "builds for minutes: TACT_EXTENT=whole")
@@ -96,9 +96,9 @@ class Sim(unittest.TestCase):
 
     def test_the_example_draws_its_picture(self):
         picture = f"{self.folder}/modulus.png"
-        told = subprocess.run([sys.executable, ROOT / "tools/python/sweep_modulus.py", "--out", picture], check=True,
-                              capture_output=True, text=True, env={**os.environ, "PYTHONPATH": self.folder}).stdout
-        forces_N = [float(n) for n in re.findall(r"Pa: ([0-9.]+) N", told)]
+        printed = subprocess.run([sys.executable, ROOT / "tools/python/sweep_modulus.py", "--out", picture], check=True,
+                                 capture_output=True, text=True, env={**os.environ, "PYTHONPATH": self.folder}).stdout
+        forces_N = [float(n) for n in re.findall(r"Pa: ([0-9.]+) N", printed)]
         self.assertEqual(forces_N, sorted(forces_N))
         self.assertEqual(len(forces_N), 5)
         self.assertGreater(pathlib.Path(picture).stat().st_size, 5000)

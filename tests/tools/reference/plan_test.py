@@ -113,12 +113,12 @@ class ToolPlans(unittest.TestCase):
         gripped = {**self.hand, "path": [{**point, "grip_ratio": 1.0} for point in self.hand["path"]]}
         self.assertEqual(tool_plan.slides_of(gripped, self.places), [], "a pull, no slide")
 
-    def test_the_skin_around_a_place_faces_the_tool(self):
+    def test_the_surface_around_a_place_faces_the_tool(self):
         known = json.loads((REFERENCES / "liver_tool_skin.json").read_text())["places"][1]
         place = self.places.touching(self.places.at(known["vertex"]))
-        self.assertEqual(list(tool_plan.skin_around(self.organ, place)), known["skin"])
+        self.assertEqual(list(tool_plan.surface_around(self.organ, place)), known["skin"])
 
-    def test_first_touches_at_depth_zero(self):
+    def test_first_contact_at_depth_zero(self):
         found = tool_plan.places_of(self.places, self.hand, self.fitted, [1985, 2478])
         presses = tool_plan.presses_of(self.places, found, [1e-3], 1)
         self.assertEqual([what.level for what in presses], [1, 1, 1, 0, 0, 0], "three places at two levels")
@@ -132,7 +132,7 @@ class ToolPlans(unittest.TestCase):
         def solved(force_N):
             return [tool_press.ToolCase(0.002, force_N, [0.0, force_N])]
 
-        found = [tool_plan.Place(None, np.zeros(3), np.zeros(3), self.places.inward), self.places.at(1985)]
+        found = [tool_plan.PressPlace(None, np.zeros(3), np.zeros(3), self.places.inward), self.places.at(1985)]
         done = tool_plan.assemble(found, [solved(1.0), solved(2.0), solved(1.03), solved(1.97)])
         np.testing.assert_allclose([place.cases[0].force_error_ratio for place in done], 7 / 3 * np.array([0.03, 0.015]))
         data = json.loads(texts.tool(self.places, "s", done)[0])

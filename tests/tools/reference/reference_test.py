@@ -32,7 +32,7 @@ class Program(Solves):
     def refuses(self, arguments, message, **settings):
         self.assertEqual(tact_lab(arguments, **settings), (2, f"tact-lab reference: {message}\n"))
 
-    def test_tells_its_options_with_units(self):
+    def test_reports_its_options_with_units(self):
         status, text = tact_lab(["--help"])
         self.assertEqual(status, 0)
         for word in ("--depths", "m, above 0", "--self-check", "apt install gmsh python3-scipy\ncalculix-ccx"):
@@ -74,7 +74,7 @@ class Program(Solves):
         self.assertEqual(len(list(self.folder.glob("tact-gmsh-*/gmsh.log"))), 1, "for a person to look into")
         self.assertIn(str(next(self.folder.glob("tact-gmsh-*/gmsh.log"))), text)
 
-    def test_tells_which_large_strain_has_no_solution_and_keeps_the_rest(self):
+    def test_reports_large_strain_without_a_solution_and_keeps_the_rest(self):
         # Solves every linear case by 1 mN a moved node, and no other.
         only_linear = r"""[ "$1" = -v ] && echo This is Version 2.20 && exit
 if grep -q NLGEOM case.inp; then
@@ -146,7 +146,7 @@ class Jobs(Solves):
         self.assertEqual((failed.exception.message, failed.exception.code), ("one", run.Code.NO_SOLUTION))
         self.assertFalse((self.folder / "2").exists())
 
-    def test_a_terminal_is_told_how_much_is_left(self):
+    def test_a_terminal_shows_how_much_is_left(self):
         terminal = io.StringIO()
         terminal.isatty = lambda: True
         with unittest.mock.patch("sys.stderr", terminal):

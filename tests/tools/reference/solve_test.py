@@ -80,7 +80,7 @@ class Elimination(Solves):
             self.assertAlmostEqual(case.sphere_N[0], case.force_N, delta=1e-12)
 
     def test_of_two_spheres_couples_them(self):
-        # Boundary elements by others: alone they would feel 35 and 17 % more.
+        # Boundary elements by others: alone they would give 35 and 17 % more.
         first_m, second_m, radius_m = 0.002872, 0.003423, 3.66e-3
         press = tool_press.ToolPress((0.0, 0.0, -1.0), ((0.006714, -0.005797, radius_m + second_m - first_m),
                                                         (-0.000104, -0.003136, radius_m)), (radius_m,) * 2, (second_m,), level=0)
@@ -153,7 +153,7 @@ class Deck(unittest.TestCase):
             np.testing.assert_allclose(ends[0], ends[1], err_msg="the middle of the edge from corner k to the next")
             self.assertTrue((ends[0] < ends[2]).all())
         self.assertTrue((np.einsum("wi,wi->w", np.cross(at[1] - at[0], at[2] - at[0]), at[3] - at[0]) > 0.0).all(), "its volume")
-        self.assertEqual(at[3:6, :, 0].max(), 1.0, "a node in the pole: what touches first")
+        self.assertEqual(at[3:6, :, 0].max(), 1.0, "a node in the pole: the first contact")
         self.assertLess(at[3:6, :, 0].min(), -0.5, "round the sides, where deep tissue closes in")
         self.assertEqual(len(np.unique(wedge)), len(node), "each node once")
 
@@ -199,7 +199,7 @@ class CalculiX(Solves):
         block = self_check.make_block(0.05)
         case = indentation.solve(block, replace(PRESS, depth_m=5e-3, level=1, contact_radius_m=0.0))[0]
         self.assertAlmostEqual(case.force_N / 40.46e-3, 1.0, delta=0.025)
-        self.assertGreater(case.force_N, 1.03 * contact.sphere_force_N(block, 5e-3, 5e-3), "the held bottom is felt")
+        self.assertGreater(case.force_N, 1.03 * contact.sphere_force_N(block, 5e-3, 5e-3), "the held bottom counts")
         self.assertAlmostEqual(case.profile_m[0], 5e-3, delta=1e-9)
         self.assertAlmostEqual(case.profile_m[3], 5e-3 - (5e-3 - 4e-3), delta=0.03e-3, msg="under the tip the sphere's shape")
 

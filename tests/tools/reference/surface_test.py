@@ -50,7 +50,7 @@ class Refine(unittest.TestCase):
 
     def test_leaves_no_edge_longer_than_asked_and_no_angle_below_half_of_the_least(self):
         ends = self.fine[0][surface.edges_of(self.fine[1])[0].reshape(-1, 2)]
-        # An edge that is not the longest of its triangle is judged by that one: nearly the same h.
+        # An edge that is not the longest of its triangle is evaluated by that one: nearly the same h.
         self.assertLess((np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1) / FINE.at(ends.mean(axis=1))).max(), 1.2)
         self.assertGreaterEqual(least_angle_rad(*self.fine), 0.5 * least_angle_rad(*self.coarse) - 1e-9)
 
@@ -118,7 +118,7 @@ class HalfSpace(unittest.TestCase):
         self.assertAlmostEqual(contact.sphere_force_N(self.organ, radius_m, d) / hertz_N, 1.0, delta=1e-3)
 
     def test_force_rises_by_the_punch_stiffness_of_its_contact(self):
-        for d in (0.5e-3, 2e-3, 5e-3, 12e-3):  # dF/dd = 2 E* a, whatever the shape of the tool
+        for d in (0.5e-3, 2e-3, 5e-3, 12e-3):  # dF/dd = 2 E* a, for any shape of the tool
             low_N, high_N = (contact.sphere_force_N(self.organ, 5e-3, d + h) for h in (-1e-7, 1e-7))
             slope = (high_N - low_N) / 2e-7
             punch = contact.flat_punch_force_N(self.organ, contact.sphere_contact_radius_m(5e-3, d), 1.0)

@@ -43,7 +43,7 @@ TEST_F(PictureFiles, DrawsSvgAndPngFromATable) {
   EXPECT_FALSE(fs::exists(folder_ + "/curve.gnuplot.txt"));
 }
 
-TEST_F(PictureFiles, AScriptReadsWhatStandsInFrontOfIt) {
+TEST_F(PictureFiles, AScriptReadsTheTextInFrontOfIt) {
   const auto files =
       draw({.name = "tact's",
             .script = "set xlabel caption\nplot for [i=1:words(list)] $block using 1:($2*factor) "

@@ -51,14 +51,14 @@ class Run(unittest.TestCase):
         return subprocess.Popen(self.command + list(arguments), cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                                 text=True, start_new_session=True, env=os.environ | {"TMPDIR": str(self.folder / "tmp")})
 
-    def test_a_mesh_is_felt_at_once_and_then_by_its_map(self):
+    def test_a_mesh_has_force_immediately_and_then_by_its_map(self):
         (self.folder / "organ.stl").write_text(ball_stl(12, 18))
         run = self.start("organ.stl", "--youngs-modulus-Pa", "4000", "--headless", "--seconds", "1",
                          "--", "--no-telemetry", "--no-black-box")
         text = run.communicate(timeout=500)[0]
         self.assertEqual(run.returncode, 0, text)
-        first, told, rest = text.partition("until the map of the organ is made")
-        self.assertTrue(told, text)
+        first, marker, rest = text.partition("until the map of the organ is made")
+        self.assertTrue(marker, text)
         self.assertNotIn("condense  ", first)
         order = [rest.find(word) for word in ("factoring: about", "vertices, 20 rings", "law rhombus", "elastic compliance")]
         self.assertEqual(order, sorted(order), text)

@@ -4,7 +4,7 @@
 
     python3 tests/tools/schema/schema_test.py BUILD_DIR
 
-Every program with an option --json is run here; of tact-lab reference, which takes minutes, the committed files are judged. A
+Every program with an option --json is run here; of tact-lab reference, which takes minutes, the committed files are evaluated. A
 schema allows no member that it does not name, so a new member is a change of the schema. Needs python3-jsonschema. Exit
 status 0 or 1.
 """
@@ -79,7 +79,7 @@ def programs_with_json():
                     yield f"tact-{text.stem}".replace("_", "-") if name == "tact-lab" else name
 
 
-def told_by(build, command, folder):
+def output_of(build, command, folder):
     """The document of one run: of its file, or of its standard output."""
     words = command.format(t=folder, mesh="model/scenes/meshes/press.obj", vectors="001_disc_stack.json").split()
     done = subprocess.run([str(build / words[0]), *words[1:]], capture_output=True, text=True, check=False, timeout=250)
@@ -140,7 +140,7 @@ def viewer_documents(build, folder):
     page.mkdir()
     scenes = folder / "scenes"
     scenes.mkdir()
-    (scenes / "liver.json").write_text(json.dumps(told_by(build, f"tactd {LIVER} --parameters --json -", folder)))
+    (scenes / "liver.json").write_text(json.dumps(output_of(build, f"tactd {LIVER} --parameters --json -", folder)))
     (page / "index.html").write_text("<!doctype html>")
     view = str(build / "tact-view")
     with subprocess.Popen([view, "--socket", str(path), "--port", "0", "--record", str(recording), "--figure",
@@ -188,7 +188,7 @@ def documents(build, folder):
     for name, commands in COMMANDS.items():
         for command in commands:
             try:
-                yield name, told_by(build, command, folder)
+                yield name, output_of(build, command, folder)
             except (OSError, ValueError, subprocess.TimeoutExpired) as error:
                 yield name, str(error)
     for name, files in FILES.items():

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every map on its coarse grid: each finding is a theorem of the method it measures.
+// Every map on its coarse extent: each finding is a theorem of the method it measures.
 #include "tools/stability/sweep/run_maps.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,8 @@ class RunMaps : public testing::Test {
   ~RunMaps() override { fs::remove_all(folder_); }
   StabilityOptions options(const std::string& only, const std::string& below = "whole") const {
     fs::create_directories(folder_ + "/" + below);
-    return {.out = folder_ + "/" + below, .only = only, .grid = Grid::kQuick, .draw_plots = false};
+    return {
+        .out = folder_ + "/" + below, .only = only, .extent = Extent::kQuick, .draw_plots = false};
   }
   void check_findings(const std::string& only) {
     const auto run = run_maps(options(only));

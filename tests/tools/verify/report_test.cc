@@ -137,7 +137,7 @@ TEST(Verify, EveryFieldOfEveryKinematicsFileIsLookedAt) {
   }
 }
 
-TEST(Verify, AFileItCannotJudgeIsAnErrorThatSaysSo) {
+TEST(Verify, AFileItCannotCheckIsAnErrorThatSaysSo) {
   EXPECT_EQ(run("/nonexistent/file.json").status, 2);
   const Outcome option = run("--no-such-option");
   EXPECT_EQ(option.status, 2);

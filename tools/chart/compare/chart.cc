@@ -25,8 +25,8 @@ std::string without_commas(std::string text) {
   return text;
 }
 
-/// Judged without relaxation and at small strain, as the reference is linear elastic; the memory is
-/// that with the scene's relaxation.
+/// Evaluated without relaxation and at small strain, as the reference is linear elastic; the memory
+/// is that with the scene's relaxation.
 ChartRow check_errors_of(const Scene& scene, const Scene& elastic, const Variant& variant,
                          const std::vector<ProbeCase>& cases, double pitch_m,
                          const ground_truth::ToolReference* tool_reference) {

@@ -2,13 +2,12 @@
 // chart.h - speed against accuracy: one row for every law and size of a scene. Rows of kind "peer",
 // other ways to do the same, come from a file alone (report.h).
 //
-// First all rows are made and judged on all cores, then timed one after the other, so that they do
-// not disturb each other. The errors are the same on every machine; times belong to the row's
+// First all rows are made and evaluated on all cores, then timed one after the other, so that they
+// do not disturb each other. The errors are the same on every machine; times belong to the row's
 // machine. The time of a law is the tick that a user gets: detect, render and limit of the scene's
 // whole tool (tool_check.h).
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,7 +33,7 @@ struct VariantRequest {
 
 /// In the order of the table. Laws that the scene does not describe are left out.
 std::vector<Variant> variants_of(const model::scene::Scene& scene, const VariantRequest& request);
-/// Those that the scene describes: others would be measured with numbers that nobody wrote.
+/// Those that the scene describes: others would be measured with numbers of no scene.
 std::vector<std::string> wanted_laws(const model::scene::Scene& scene,
                                      const VariantRequest& request);
 /// Every family there is, for --laws.
@@ -59,7 +58,7 @@ struct ChartOptions {
   std::string label = "tact-lab chart";  // before the progress
   VariantRequest request;
   TimingSettings timing;
-  const ground_truth::ToolReference* tool_reference = nullptr;  // laws are judged by it too
+  const ground_truth::ToolReference* tool_reference = nullptr;  // laws are evaluated by it too
 };
 
 /// One row a variant. An error names what does not fit together, or says that Ctrl-C

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "firmware/loop/controller.h"
 #include "model/scene/scene_strokes.h"

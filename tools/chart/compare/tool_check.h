@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// tool_check.h - a scene's laws with its whole tool, as the loop feels them, against the reference.
+// tool_check.h - a scene's laws with its whole tool, as rendered, against the reference.
 //
 // At each place the tool comes from above, as a press stroke brings it, 20 mm/s, through
 // model::contact::Contact (detect, then render), all spheres; at each depth it waits until the
-// force stands (measure.h). What is compared is the force against the way. The reference is linear
-// elastic and frictionless, so relaxation, friction and large strain are off for the errors; times
-// are those of the scene as it is: detect, render and limit of the loop's controller, one tick
-// after the other, the gate armed.
+// force is constant (measure.h). What is compared is the force against the way. The reference is
+// linear elastic and frictionless, so relaxation, friction and large strain are off for the errors;
+// times are those of the scene as it is: detect, render and limit of the loop's controller, one
+// tick after the other, the gate armed.
 //
 //     peak   e = F - F_ref, over the largest |F_ref| of all places;  RMS and worst
 //     own    e over |F_ref| of the same place and depth

@@ -6,8 +6,8 @@
 //     shape   e_j = u_j - u_ref,j;  RMS over the rings of a case, of its |depth|; then RMS and
 //             worst over the cases
 //
-// Press and pull count alike. A case is felt as right where |e| is at most 7 % of |F_ref|: the
-// least difference of force that a hand can tell (just_noticeable.h).
+// Press and pull count alike. A case counts as right where |e| is at most 7 % of |F_ref|: the
+// least difference of force that a hand can notice (just_noticeable.h).
 #pragma once
 
 #include <array>

@@ -44,7 +44,7 @@ double by_counter(int counter, const Call& call, std::size_t calls) {
   return good ? static_cast<double>(after - before) / static_cast<double>(calls) : kUnknown;
 }
 
-/// What the copy tells the process that steps it.
+/// What the copy reports to the process that steps it.
 struct Progress {
   std::atomic<std::uint64_t> calls{0};
 };

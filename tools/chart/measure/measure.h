@@ -24,7 +24,7 @@
 
 namespace tact::tools::chart {
 
-/// What the chart judges: a law of a scene that answers one sphere, one tick at a time.
+/// What the chart evaluates: a law of a scene that answers one sphere, one tick at a time.
 class Subject {
  public:
   Subject(std::unique_ptr<model::scene::Scene> scene, std::unique_ptr<model::scene::TissueLaw> law);

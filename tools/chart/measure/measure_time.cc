@@ -72,7 +72,7 @@ void time_ticks(const Tick& tick, std::size_t ticks, double cost_ns, std::vector
     const auto begin = Clock::now();
     tick();
     const auto end = Clock::now();
-    // Whoever came in between is the machine's load, not the law's cost (measure.h).
+    // Time of other processes is the machine's load, not the law's cost (measure.h).
     if (pauses_so_far() == pauses)
       tick_ns.push_back(std::max(0.0, ns_between(begin, end) - cost_ns));
   }

@@ -32,7 +32,7 @@ do for [panel=1:3] {
     set size 1,0.46
     set origin 0,0.5
     set ylabel 'force error, RMS, % of the peak'
-    set label 1 'a hand can tell a difference of 7 %' at graph 0.5, first 7 center offset 0,0.5 \
+    set label 1 'a hand notices a difference of 7 %' at graph 0.5, first 7 center offset 0,0.5 \
       font ',8' tc rgb '#555555'
     set arrow 1 from graph 0, first 7 to graph 1, first 7 nohead dt 2 lc rgb '#555555'
   }

@@ -169,7 +169,7 @@ std::string chart_text(const report::Table& table) {
          "site.\n"
          "tool: the whole tool, RMS of the peak. Time of a law: detect, render, limit of the whole "
          "tool;\nof a peer: its own answer to one sphere.\n"
-         "instr. n/a: too many to step through, and this processor lets nobody count them.\n";
+         "instr. n/a: too many to step through, and this processor lets no user count.\n";
 }
 
 }  // namespace tact::tools::chart

@@ -116,7 +116,7 @@ model::Result<std::vector<model::scene::Accuracy>> accuracy_of(
     const ground_truth::ToolReference& reference) {
   std::vector<model::scene::Accuracy> out;
   for (const ToolRow& row : rows) {
-    // A law that could not be made has no accuracy to tell.
+    // A law that could not be made has no accuracy to report.
     if (!row.failure.empty()) continue;
     const auto law = model::scene::make_tissue_law(scene, row.law);
     if (!law) return law.error();
@@ -124,8 +124,8 @@ model::Result<std::vector<model::scene::Accuracy>> accuracy_of(
     if (!hash) return hash.error();
     model::scene::Accuracy a{
         .law = row.law,
-        // By its forces, not by the file: tactd knows the law again whatever else of the scene
-        // changes.
+        // By its forces, not by the file: tactd knows the law again also if other parts of the
+        // scene change.
         .law_hash = *hash,
         .reference = fmt::format("linear finite elements at {} places", reference.places.size()),
         .date = fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr))),

@@ -20,7 +20,7 @@ std::string tool_json(const std::vector<ToolRow>& rows,
                       const ground_truth::ToolReference& reference, const std::string& command,
                       const Provenance& provenance);
 
-/// What tactd --check may tell of each law that was measured. An error names a law that cannot be
+/// What tactd --check may report of each law that was measured. An error names a law that cannot be
 /// made.
 model::Result<std::vector<model::scene::Accuracy>> accuracy_of(
     const model::scene::Scene& scene, const std::vector<ToolRow>& rows,

@@ -60,7 +60,7 @@ a Novint Falcon, by USB.
 a device of Force Dimension, a PHANTOM or a 3D Systems Touch, by the SDK of its vendor, which is no part of tact.
 .PP
 .B tactd \\-\\-list\\-devices
-tells what is plugged in, what it lacks, and the remedy. The group haptics may use these devices, by a rule of udev:
+lists what is plugged in, what it lacks, and the remedy. The group haptics may use these devices, by a rule of udev:
 .B sudo adduser $USER haptics
 , and log in again. Hardware stays without force until a person arms it:
 .B tactctl SCENE arm
@@ -94,7 +94,7 @@ a service that follows its device; copied to /etc by a person
 
 
 def literal(text):
-    """As it stands, whatever roff would read in it."""
+    """As written, with nothing read as roff."""
     lines = text.replace("\\", "\\e").replace("-", "\\-").splitlines()
     return ".nf\n" + "\n".join(f"\\&{line}" if line[:1] in ".'" else line for line in lines) + "\n.fi\n"
 
@@ -115,9 +115,9 @@ def page(name, section, body):
 
 def main():
     tactd, source, folder = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3])
-    told = subprocess.run([tactd, "--help-scene"], capture_output=True, text=True, check=True).stdout
-    pages = {"man5/tact-scene.5": page("tact\\-scene", 5, SCENE[0] + ".SH KEYS\n" + literal(told) + SCENE[1]),
-             "man7/tact-device.7": page("tact\\-device", 7, DEVICE[0] + literal(device_sections(told)) + ".SH EXAMPLES\n" +
+    keys = subprocess.run([tactd, "--help-scene"], capture_output=True, text=True, check=True).stdout
+    pages = {"man5/tact-scene.5": page("tact\\-scene", 5, SCENE[0] + ".SH KEYS\n" + literal(keys) + SCENE[1]),
+             "man7/tact-device.7": page("tact\\-device", 7, DEVICE[0] + literal(device_sections(keys)) + ".SH EXAMPLES\n" +
                                         literal(example(source)) + DEVICE[1])}
     for name, text in pages.items():
         path = folder / name

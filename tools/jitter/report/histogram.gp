@@ -8,7 +8,7 @@ set yrange [0.5:*]
 set format y '10^{%L}'
 set key top right
 set title run noenhanced
-# A step is drawn down to half a sample where a bucket is empty: zero has no logarithm. The peer tells whole
+# A step is drawn down to half a sample where a bucket is empty: zero has no logarithm. The peer reports whole
 # microseconds, which leaves gaps: points.
 samples(i, empty) = column(i+1) > 0 ? column(i+1) : empty
 if (peer == 0) {

@@ -30,7 +30,7 @@ json series_rows(const JitterResult& result) {
     json cells{std::to_string(h.count())};
     for (const Share& share : kShares) cells.push_back(in_us(percentile_ns(h, share.value)));
     cells.push_back(in_us(h.max_ns()));
-    // cyclictest tells buckets: no tick and no time.
+    // cyclictest reports buckets: no tick and no time.
     const bool of_peer = named.key == "peer_wake";
     cells.push_back(of_peer ? ""
                             : fmt::format("{:.3f}", seconds_into(result, named.series->max_at_ns)));

@@ -20,7 +20,7 @@ constexpr int kPerDecade = 20;
 std::size_t bin_of(std::uint64_t ns) {
   const double decades =
       std::log10(std::max(1e-3 * static_cast<double>(ns), kFirst_us) / kFirst_us);
-  // A value on an edge belongs to the bucket above it, whatever the logarithm's rounding.
+  // A value on an edge belongs to the bucket above it, for any rounding of the logarithm.
   return static_cast<std::size_t>(decades * kPerDecade + 1e-9);
 }
 

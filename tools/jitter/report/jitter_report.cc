@@ -42,7 +42,7 @@ json late_json(const JitterResult& result, const LateTick& late) {
   return {{"tick", late.times.tick},
           {"at_s", seconds_into(result, late.times.due_ns)},
           {"due_ns", late.times.due_ns},
-          // What the person feels; the phases say where it came from.
+          // The total, which reaches the hand; the phases show its parts.
           {"deadline_to_force_ns", late.worst_ns},
           {"skipped_before", late.times.skipped_before},
           {"phases_ns", phases},

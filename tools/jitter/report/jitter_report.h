@@ -2,9 +2,9 @@
 // jitter_report.h - a measurement as text for people, as JSON for machines and for `compare`, as a
 // picture, a page and a row of tools/deploy/PCS.md.
 //
-// A percentile is told where at least one sample lies beyond it, else it is "-" or null: of 10 000
-// samples p99.99 is the last. The largest of a run is told with its tick and its time, and is no
-// bound: no run of any length shows the worst case.
+// A percentile is reported where at least one sample lies beyond it, else it is "-" or null: of 10
+// 000 samples p99.99 is the last. The largest of a run is reported with its tick and its time, and
+// is no bound: no run of any length shows the worst case.
 #pragma once
 
 #include <array>
@@ -87,7 +87,7 @@ inline constexpr const char* kSubmissionHead =
 /// How a row of this PC begins: a file that begins otherwise is none, or another PC's.
 std::string submission_beginning();
 
-/// A row of that table with its line end. Neither the PC's name nor its user's stands in it.
+/// A row of that table with its line end. Neither the PC's name nor its user's is in it.
 std::string make_submission(const JitterResult& result);
 
 }  // namespace tact::tools::jitter

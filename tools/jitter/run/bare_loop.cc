@@ -32,7 +32,7 @@ void BareLoop::step() RT_SAFE {
   record_.phase_ns[static_cast<std::size_t>(kWake)] = clipped(wake_ns - due_ns_);
   ring_.push(record_);
   const std::int64_t end_ns = clock_.now_ns();
-  for (const auto phase : {kPublish, kTotal})  // told with the next tick, as the real loop does
+  for (const auto phase : {kPublish, kTotal})  // reported with the next tick, as the real loop does
     record_.phase_ns[static_cast<std::size_t>(phase)] = clipped(end_ns - wake_ns);
   ++record_.tick;
   due_ns_ += period_ns_;

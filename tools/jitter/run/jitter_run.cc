@@ -12,7 +12,7 @@
 
 #include "firmware/loop/rt_loop.h"
 #include "firmware/run/loop_parts.h"
-#include "hal/thread.h"
+#include "hal/threads/thread.h"
 #include "model/time_ns.h"
 #include "tools/jitter/run/bare_loop.h"
 #include "tools/jitter/run/follower.h"
@@ -186,7 +186,7 @@ std::optional<Error> Run::measure() {
   result_.interrupted = program::is_interrupted();
   result_.measured_s =
       static_cast<double>(sink.ticks() + sink.skipped() + sink.unseen()) / result_.rate_Hz;
-  // A load that died in between would make the numbers better than they are told.
+  // A load that died in between would make the numbers better than they are.
   if (load && !load->is_running()) return Error{"stress-ng ended before the loop; nothing counts"};
   return std::nullopt;
 }
@@ -208,7 +208,7 @@ std::optional<Error> Run::run_slice(double duration_s, bool last) {
   firmware::run::ThreadCosts costs;
   // follow() waits for the new thread's number: the counters of the old one are gone.
   loop_thread_.store(0);
-  auto thread = hal::start_thread("tact-loop", [&] {
+  auto thread = hal::threads::start_thread("tact-loop", [&] {
     costs = firmware::run::run_as_loop_thread(rt_, [&] {
       loop_thread_.store(gettid());
       if (bare) bare->run();

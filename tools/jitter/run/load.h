@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// load.h - a load beside the loop, by stress-ng: what a PC does while somebody works on it.
+// load.h - a load beside the loop, by stress-ng: what a PC does while a person works on it.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 

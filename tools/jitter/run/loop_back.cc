@@ -19,7 +19,7 @@ void PulseMeter::add(const hal::gpio::Edge& edge) {
 model::Result<std::unique_ptr<LoopBack>> LoopBack::start(
     std::unique_ptr<hal::gpio::EdgeMonitor> edges, std::int64_t period_ns) {
   std::unique_ptr<LoopBack> back(new LoopBack(std::move(edges), period_ns));
-  auto thread = hal::start_thread("tact-edges", [&back = *back] {
+  auto thread = hal::threads::start_thread("tact-edges", [&back = *back] {
     while (!back.ending_.load())
       for (const hal::gpio::Edge& edge : back.edges_->read(std::chrono::milliseconds(20)))
         back.meter_.add(edge);

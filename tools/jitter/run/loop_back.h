@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "hal/gpio/edge_monitor.h"
-#include "hal/thread.h"
+#include "hal/threads/thread.h"
 #include "tools/jitter/statistics/tick_times.h"
 
 namespace tact::tools::jitter {
@@ -50,7 +50,7 @@ class LoopBack {
   std::unique_ptr<hal::gpio::EdgeMonitor> edges_;
   PulseMeter meter_;
   std::atomic<bool> ending_{false};
-  hal::Thread thread_;
+  hal::threads::Thread thread_;
 };
 
 }  // namespace tact::tools::jitter

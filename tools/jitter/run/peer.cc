@@ -50,7 +50,7 @@ std::optional<Error> add_cyclictest(const std::string& text, std::uint64_t asked
   if (!thread.is_object() || !thread.contains("histogram") || !thread["histogram"].is_object() ||
       !thread.value("cycles", nlohmann::json()).is_number_unsigned() ||
       !thread.value("max", nlohmann::json()).is_number_unsigned())
-    return Error{"cyclictest told no histogram of a thread; this reads rt-tests 2.4"};
+    return Error{"cyclictest printed no histogram of a thread; this reads rt-tests 2.4"};
   const auto cycles = thread["cycles"].get<std::uint64_t>();
   // Counted before one is recorded: a file that claims 2^60 samples would keep the loop below busy.
   std::uint64_t counted = 0;
@@ -62,7 +62,7 @@ std::optional<Error> add_cyclictest(const std::string& text, std::uint64_t asked
   }
   if (cycles > asked_cycles || counted > asked_cycles)
     return Error{
-        fmt::format("cyclictest told more samples than the {} cycles it was asked for; "
+        fmt::format("cyclictest reported more samples than the {} cycles it was asked for; "
                     "this reads rt-tests 2.4",
                     asked_cycles)};
   std::uint64_t reported = 0;

@@ -56,7 +56,7 @@ void read_interrupts(const PcFiles& files, int core, Costs& costs) {
   }
 }
 
-/// The number after `key` at the start of a line, whatever stands between.
+/// The number after `key` at the start of a line, with any text between.
 Count number_after(const std::string& text, const std::string& key) {
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);)
@@ -127,7 +127,7 @@ Costs operator-(const Costs& after, const Costs& before) {
     if (more != 0) delta.interrupts[source] = more;
   }
   for (const Counter& c : kCounters)
-    // Known at both ends, or not told at all: half a difference would be the count since boot.
+    // Known at both ends, or not reported at all: half a difference would be the count since boot.
     if (after.*c.value && before.*c.value) delta.*c.value = *(after.*c.value) - *(before.*c.value);
   return delta;
 }

@@ -16,7 +16,7 @@ constexpr std::array kOfThisTick{Phase::kWake,   Phase::kRead,  Phase::kDetect,
 }  // namespace
 
 void TickSink::begin_slice() {
-  unfinished_.reset();  // its tell phase is not told any more
+  unfinished_.reset();  // its publish phase is not reported any more
   handed_ns_.reset();
   // A slice's loop counts from 0; the run goes on counting.
   base_ = ticks_ + unseen_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // tick_sink.h - from the ring of a running loop to histograms: one series per phase, and three that
-// the phases alone do not tell.
+// the phases alone do not show.
 //
 //     every wake-up       wake-up latency of every point of the grid. A tick that comes late hides
 //                         the points it skipped: each of those waited, too, by whole periods more.
@@ -11,9 +11,7 @@
 //                         was taken after it
 #pragma once
 
-#include <functional>
 #include <map>
-#include <memory>
 #include <optional>
 #include <vector>
 

@@ -7,7 +7,6 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <string>
 
 #include "firmware/loop/latency_histogram.h"
 #include "firmware/loop/tick_record.h"

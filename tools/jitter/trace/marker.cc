@@ -20,7 +20,7 @@ TraceMarker::~TraceMarker() {
     if (fd >= 0) close(fd);
 }
 
-// A marker that the kernel does not take is missed by nobody but its reader.
+// A marker that the kernel does not take is missed by its reader alone.
 void TraceMarker::write(const std::string& line) {
   if (fd_ < 0) return;
   [[maybe_unused]] ssize_t reported = ::write(fd_, line.data(), line.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// marker.h - a line in the kernel's own trace for each late tick, so that ftrace tells what ran.
+// marker.h - a line in the kernel's own trace for each late tick, so that ftrace shows what ran.
 #pragma once
 
 #include <string>

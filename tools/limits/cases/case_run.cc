@@ -25,8 +25,8 @@ constexpr double kLeverWithoutTorque_m = 0.05;
 constexpr double kHalfPlate_m = 4.0, kPlate_m = -1.0, kReach_m = 2.0;
 constexpr double kClear_m = 1.5;  // so far up it does not touch
 
-/// A plate far below and a sphere so large that it always touches: contact adds nothing to the
-/// command but its own way.
+/// A plate far below and a sphere so large that it is always in contact: contact adds nothing to
+/// the command but its own way.
 model::scene::Scene plate_scene(const Case& c, const LimitsBench& bench,
                                 const model::Limits& limits) {
   model::scene::Scene scene;
@@ -208,13 +208,13 @@ bool CaseRun::play() {
     }
     going = !program::is_interrupted() && !requests_.stop.load();
   }
-  // Zero force and power off, whatever ended it.
+  // Zero force and power off, for every end.
   loop_->release_device();
   return going;
 }
 
 // Between two ticks, before arming. The sphere comes from outside, no faster than the gate allows:
-// one that is found in the tissue feels nothing.
+// one that is found in the tissue has no force.
 void CaseRun::approach(const firmware::loop::TickInput& at) {
   constexpr std::uint32_t kPeriods = 20;
   const double reach_m = kPeriods * controller_->gate().speed_limit_mps() * moment_.period_s;
@@ -254,7 +254,7 @@ void CaseRun::keep(const firmware::loop::TickRecord& record, bool cause) {
                    .acted = acted,
                    .limit = out.limit,
                    .fault = out.fault,
-                   .given_J = out.given_energy_J,
+                   .given_energy_J = out.given_energy_J,
                    .rms_N = out.rms_force_N,
                    .gated_grip_N = out.written_grip_N,
                    .written_grip_N = device_->written_grip_N()});

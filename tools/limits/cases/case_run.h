@@ -26,14 +26,14 @@ struct TickRow {
   std::uint32_t skipped_periods = 0;  // before this tick
   std::uint32_t acted = 0;            // one bit a stage
   Fault limit = Fault::kNone, fault = Fault::kNone;
-  double given_J = 0.0, rms_N = 0.0;                // as the gate reckons
+  double given_energy_J = 0.0, rms_N = 0.0;         // as the gate reckons
   double gated_grip_N = 0.0, written_grip_N = 0.0;  // on the fingers
 };
 
 /// What all cases share.
 struct LimitsBench {
   const model::scene::Scene& scene;
-  model::Limits limits;      // of scene and device; what is claimed, and judged
+  model::Limits limits;      // of scene and device; what is claimed, and evaluated
   double force_share = 1.0;  // of them that the PC allows (session.h)
   bool hard_real_time = true;
   hal::Device* device = nullptr;                 // real; null: a simulated one for each case
@@ -47,7 +47,7 @@ struct LimitsBench {
   double period_s() const { return 1.0 / scene.rate_Hz; }
 };
 
-/// The limits that one case is judged by: of scene, device, PC, and what the case tightens.
+/// The limits that one case is evaluated by: of scene, device, PC, and what the case tightens.
 model::Limits checked_limits(const Case& c, const LimitsBench& bench);
 
 class CaseRun {
@@ -66,7 +66,7 @@ class CaseRun {
 
   const Case& subject() const { return case_; }
   const std::vector<TickRow>& rows() const { return rows_; }
-  const model::Limits& limits() const { return limits_; }  // judged by
+  const model::Limits& limits() const { return limits_; }  // evaluated by
   double period_s() const { return moment_.period_s; }
   /// The fault that kept it from arming.
   Fault refused() const { return refused_; }
@@ -78,7 +78,7 @@ class CaseRun {
   Case case_;
   model::Limits limits_;
   Moment moment_;
-  model::scene::Scene scene_;  // a plate that always touches
+  model::scene::Scene scene_;  // a plate always in contact
   std::unique_ptr<model::scene::Tissue> tissue_;
   hal::registry::OpenDevice simulated_device_;
   hal::sim::SimLines simulated_lines_;

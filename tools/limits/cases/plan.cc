@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <sstream>
 
 namespace tact::tools::limits {
@@ -184,8 +183,8 @@ constexpr std::array kCases{
          .reaches = Bound::kTorqueRms,
          .expected = {.stage = Stage::kMagnitude, .least_peak_ratio = 0.5}},
     Case{.name = "fingers",
-         .what =
-             "The jaws close on tissue that pushes them apart, harder than the fingers may feel.",
+         .what = "The jaws close on tissue that pushes them apart, harder than the fingers may be "
+                 "pressed.",
          .shape = Shape::kRamp,
          .size = 4.0,
          .grip = Grip::kJaws,

@@ -58,7 +58,7 @@ struct Expected {
   double and_ticks = 0.0;                 // besides, at the rate of the run (at_rate)
 };
 
-/// The limits that every case is judged by, in the order of the report.
+/// The limits that every case is evaluated by, in the order of the report.
 enum class Bound : std::uint8_t {
   kForce,
   kTorque,
@@ -110,7 +110,7 @@ inline bool opens_line(const Case& c) {
   return c.trouble == Trouble::kEmergencyStop || c.trouble == Trouble::kDeadMan;
 }
 /// Said of such a case on a real device with the line.
-inline constexpr const char* kReportedInSoftware = "told in software: the contact was not opened";
+inline constexpr const char* kReportedInSoftware = "set in software: the contact was not opened";
 /// The limits of this case: those of the scene, or one tighter.
 model::Limits limits_of(const Case& c, const model::Limits& limits);
 

@@ -27,7 +27,7 @@ Vec3 command_at(const Case& c, const Moment& now, const model::Tool& tool, doubl
   const bool after = now.after_cause();
   switch (c.shape) {
     case Shape::kHold:
-      // A trouble needs a force to stop: it stands from the start.
+      // A trouble needs a force to stop: it lasts from the start.
       return {0, 0, after || c.trouble != Trouble::kNone ? size_N : 0.0};
     case Shape::kRamp:
       if (c.trouble != Trouble::kNone) return {0, 0, size_N};
@@ -101,7 +101,7 @@ Fault PlayedLines::read(std::int64_t now_ns) RT_SAFE {
     simulated_->inputs().dead_man.store(!let_go, std::memory_order_relaxed);
   }
   const Fault fault = lines_.read(now_ns);
-  // A real line that has opened goes before the one that is told.
+  // A real line that has opened precedes the one that is set.
   if (simulated_ != nullptr || fault != Fault::kNone) return fault;
   if (stop) return Fault::kEmergencyStop;
   return let_go ? Fault::kDeadManReleased : Fault::kNone;

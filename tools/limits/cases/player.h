@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // player.h - plays a case to the loop: its command as a law, its troubles between loop and device.
 //
-// The loop is the real one (firmware/loop/rt_loop.h). What is played stands where the real things
-// stand, so the commanded force takes the way of every force: law, contact, gate, device. The
-// device and the lines of the bench are behind PlayedDevice and PlayedLines, which see what is
+// The loop is the real one (firmware/loop/rt_loop.h). What is played comes from the place of
+// the real parts, so the commanded force takes the way of every force: law, contact, gate, device.
+// The device and the lines of the bench are behind PlayedDevice and PlayedLines, which see what is
 // written last.
 #pragma once
 
@@ -22,7 +22,7 @@ using model::Fault;
 using model::Vec3;
 using model::Wrench;
 
-/// Where a case stands, in the tick that runs.
+/// The progress of a case, in the tick that runs.
 struct Moment {
   double period_s = 0.001;
   bool playing = false;  // the gate is open and the case has begun
@@ -39,7 +39,7 @@ Vec3 command_at(const Case& c, const Moment& now, const model::Tool& tool, doubl
 /// True in the ticks in which the case makes its trouble.
 bool in_trouble(const Case& c, const Moment& now) RT_SAFE;
 
-/// One spring that always touches and pushes as commanded.
+/// One spring, always in contact, that pushes as commanded.
 class CommandLaw final : public model::contact::ContactLaw {
  public:
   CommandLaw(const Case& c, double limit_N, const Moment& now, const model::Tool& tool)
@@ -98,8 +98,8 @@ class PlayedDevice final : public hal::Device {
   double written_grip_N_ = 0.0;
 };
 
-/// The lines of the bench: levels of the simulated ones are set; before real ones the fault is told
-/// in their place, as nobody can press an e-stop within a given tick.
+/// The lines of the bench: levels of the simulated ones are set; before real ones the fault is set
+/// in their place, as no person can press an e-stop within a given tick.
 class PlayedLines final : public hal::SafetyLines {
  public:
   PlayedLines(const Case& c, const Moment& now, hal::SafetyLines& lines,

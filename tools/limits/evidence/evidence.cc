@@ -22,7 +22,7 @@ using model::Result;
 
 constexpr std::size_t kLongestNumber = 60;
 
-/// The file of this program, links followed; empty if it cannot be told.
+/// The file of this program, links followed; empty if it is not known.
 fs::path own_program() {
   std::error_code none;
   return fs::read_symlink("/proc/self/exe", none);
@@ -45,7 +45,7 @@ std::optional<Error> check_number(const std::string& number) {
   if (number.size() <= kLongestNumber && std::all_of(number.begin(), number.end(), is_plain))
     return std::nullopt;
   return Error{fmt::format(
-      "--report-number: at most {} letters, digits, blanks and -_./, as it stands on every page",
+      "--report-number: at most {} letters, digits, blanks and -_./, as it is on every page",
       kLongestNumber)};
 }
 

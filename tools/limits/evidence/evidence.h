@@ -15,7 +15,7 @@ namespace tact::tools::limits {
 /// What only a person knows.
 struct Testers {
   std::string tester, place, number;  // of the report; an empty number is made
-  std::vector<std::string> serials;   // of device, PC and whatever was used
+  std::vector<std::string> serials;   // of device, PC and other equipment
 };
 
 struct Evidence {
@@ -35,7 +35,7 @@ std::optional<model::Error> check_number(const std::string& number);
 model::Result<Evidence> collect_evidence(const std::string& scene_path,
                                          const std::vector<std::string>& overrides,
                                          const Testers& people);
-/// When the plan was played: its limits, the time, and a number where nobody gave one.
+/// When the plan was played: its limits, the time, and a number where none was given.
 void close_evidence(Evidence& evidence, const model::Limits& in_use);
 
 }  // namespace tact::tools::limits

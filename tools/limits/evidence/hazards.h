@@ -3,7 +3,6 @@
 // adds to it: from a hazard to the requirements that meet it, and to what shows each of them.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,7 +26,7 @@ struct Hazard {
   std::vector<Requirement> requirements;
 };
 
-/// In the order of the table. A requirement of two hazards stands below both.
+/// In the order of the table. A requirement of two hazards is below both.
 std::vector<Hazard> hazard_table();
 /// Every test of the table once, in its order.
 std::vector<HazardTest> hazard_tests();

@@ -117,7 +117,7 @@ json case_data(const CaseVerdict& v, const LimitsReport& report) {
   return {{"name", v.subject.name},
           {"what", v.subject.what},
           {"tightened", tightened(v.limits, report.limits)},
-          {"told", is_reported(report, v) ? kReportedInSoftware : ""},
+          {"injected", is_reported(report, v) ? kReportedInSoftware : ""},
           {"has_broken", !broken.empty()},
           {"criteria", criteria},
           {"broken", broken},
@@ -140,7 +140,7 @@ json wall_data(const WallVerdict& wall, const std::string& plot) {
           {"picture", plot}};
 }
 
-/// What the page fills in as it is: words, numbers, and what is there to be told.
+/// What the page fills in as it is: words, numbers, and flags.
 json text_data(const LimitsReport& report) {
   const auto failed = static_cast<std::size_t>(std::ranges::count_if(
                           report.cases, [](const auto& r) { return !r.verdict.passed(); })) +
@@ -179,7 +179,7 @@ json text_data(const LimitsReport& report) {
                                      s.force_N, slew_beside_ramp_N_per_s(s), report.period_s))},
           {"has_cases", !report.cases.empty()},
           {"simulated", report.simulated},
-          {"any_told", std::ranges::any_of(report.cases, [&](const auto& r) {
+          {"any_injected", std::ranges::any_of(report.cases, [&](const auto& r) {
              return is_reported(report, r.verdict);
            })}};
 }

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -48,7 +47,7 @@ report::Table trace_table(const CaseResult& result) {
                {"position_z_m", r.tool.position_m.z},
                {"speed_mps", norm(r.tool.velocity_mps)},
                {"power_W", model::given_power_W({r.written_N, r.written_Nm}, r.tool)},
-               {"given_energy_J", r.given_J},
+               {"given_energy_J", r.given_energy_J},
                {"rms_N", r.rms_N},
                {"fresh", r.fresh},
                {"armed", r.armed},
@@ -67,11 +66,11 @@ report::Table wall_table(const WallVerdict& wall) {
                {"without_early_swing_m", p.without.early_swing_m},
                {"without_last_swing_m", p.without.last_swing_m},
                {"without_grows", p.without.grows},
-               {"without_given_J", p.without.given_J},
+               {"without_given_J", p.without.given_energy_J},
                {"with_early_swing_m", p.with.early_swing_m},
                {"with_last_swing_m", p.with.last_swing_m},
                {"with_grows", p.with.grows},
-               {"with_given_J", p.with.given_J},
+               {"with_given_J", p.with.given_energy_J},
                {"in_bounds", p.without.in_bounds && p.with.in_bounds}});
   return table;
 }
@@ -89,7 +88,7 @@ report::Row case_row(const CaseVerdict& v) {
           {"largest_step_N", v.worst.step_N},
           {"largest_step_Nm", v.worst.step_Nm},
           {"largest_power_W", v.worst.power_W},
-          {"given_energy_J", v.worst.given_J},
+          {"given_energy_J", v.worst.given_energy_J},
           {"largest_rms_N", v.worst.rms_N},
           {"largest_rms_Nm", v.worst.rms_Nm},
           // NaN: never, or not asked for.

@@ -42,7 +42,7 @@ struct LimitsReport {
   std::vector<CaseResult> cases;
   std::optional<WallVerdict> wall;
   Evidence evidence{};
-  std::vector<LeftOut> not_run;  // the rest of the plan, so that nobody takes it for tested
+  std::vector<LeftOut> not_run;  // the rest of the plan, so that it is not taken for tested
 
   bool passed() const;
   std::size_t played() const { return cases.size() + (wall ? 1 : 0); }

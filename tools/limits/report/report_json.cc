@@ -60,11 +60,12 @@ json report_json(const LimitsReport& report) {
 }
 
 json digests_json(const Evidence& e) {
-  return {{"tact_limits", e.program_sha256},
-          // tact-limits judges the parts that it has in common with tactd, so both files are named.
-          {"tactd", e.tactd_path.empty() ? json() : json(e.tactd_sha256)},
-          {"scene", e.scene_sha256},
-          {"limits", e.limits_sha256}};
+  return {
+      {"tact_limits", e.program_sha256},
+      // tact-limits evaluates the parts that it has in common with tactd, so both files are named.
+      {"tactd", e.tactd_path.empty() ? json() : json(e.tactd_sha256)},
+      {"scene", e.scene_sha256},
+      {"limits", e.limits_sha256}};
 }
 
 json wall_json(const WallVerdict& wall) {

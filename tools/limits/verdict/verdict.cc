@@ -32,23 +32,23 @@ bool is_zero(const TickRow& row) {
   return row.written_N == Vec3{} && row.written_Nm == Vec3{} && row.written_grip_N == 0.0;
 }
 
-/// From the cause to the first zero behind which no force or torque comes while the cause stands.
+/// From the cause to the first zero behind which no force or torque comes while the cause lasts.
 std::optional<double> time_to_zero_s(const std::vector<TickRow>& rows,
                                      const model::Limits& limits) {
   std::optional<double> since_s, zero_s;
-  bool stands = false;
+  bool lasts = false;
   for (const TickRow& row : rows) {
     const bool cause = is_cause(row, limits);
     if (!since_s) {
       if (!cause) continue;
       since_s = row.t_s;
-      stands = true;
+      lasts = true;
     }
     // A cause that has gone may let the force come back: that is no late force.
-    stands = stands && cause;
+    lasts = lasts && cause;
     if (is_zero(row) && !zero_s) zero_s = row.t_s - *since_s;
     // Zero for a tick in between is not zero for good.
-    if (!is_zero(row) && stands) zero_s.reset();
+    if (!is_zero(row) && lasts) zero_s.reset();
   }
   return zero_s;
 }
@@ -133,7 +133,7 @@ std::array<BoundCheck, kBoundCount> bounds_of(const Extremes& worst, const model
            rounded("largest change in a tick", "N", worst.step_N, step_N),
            rounded("largest change of torque in a tick", "N m", worst.step_Nm, step_Nm),
            rounded("largest power", "W", worst.power_W, l.power_W),
-           {"energy given", "J", worst.given_J, l.energy_J, worst.overdrawn_J <= 0.0},
+           {"energy given", "J", worst.given_energy_J, l.energy_J, worst.overdrawn_J <= 0.0},
            {"largest RMS", "N", worst.rms_N, std::min(l.continuous_force_N, l.force_N),
             worst.rms_N <= l.continuous_force_N * kRounding_ratio},
            rounded("largest RMS of the torque", "N m", worst.rms_Nm, continuous_Nm),
@@ -149,7 +149,7 @@ std::vector<Check> check_bounds(const Extremes& worst, const model::Limits& limi
          b.holds});
   // What comes back with time is part of the budget.
   checks[static_cast<std::size_t>(Bound::kEnergy)].message =
-      fmt::format("energy given {:.4g} J, budget {:.4g} J and {:.4g} W", worst.given_J,
+      fmt::format("energy given {:.4g} J, budget {:.4g} J and {:.4g} W", worst.given_energy_J,
                   limits.energy_J, limits.recovery_W);
   return checks;
 }

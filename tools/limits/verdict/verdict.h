@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// verdict.h - did the force keep its limits (model/limit_witness.h)? Judged from the record of a
+// verdict.h - did the force keep its limits (model/limit_witness.h)? Evaluated from the record of a
 // case alone: nothing here asks the gate what it thinks of itself. F is what the device was handed
 // last; it is zero exactly while not armed, and from a latched fault on.
 #pragma once
@@ -25,7 +25,7 @@ bool all_hold(const std::vector<Check>& checks);
 struct Extremes : model::LimitExtremes {
   double commanded_N = 0.0;
   std::string broken;  // the first limit of the witness that a tick broke, and when; empty: none
-  // From the cause to zero force and torque, which stay zero while it stands; none: no cause, or
+  // From the cause to zero force and torque, which stay zero while it lasts; none: no cause, or
   // never zero.
   std::optional<double> zero_s{};
 };

@@ -50,12 +50,12 @@ std::optional<WallRun> run_wall(double stiffness_N_per_m, const LimitsBench& ben
   CaseRun run(wall, here);
   if (!run.play()) return std::nullopt;
   model::Limits limits = run.limits();
-  // Judged by the limits that this run's gate had.
+  // Evaluated by the limits that this run's gate had.
   if (!passive) limits = without_passivity(limits);
   const Extremes worst = extremes_of(run.rows(), limits, run.period_s());
   WallRun out{.early_swing_m = swing_m(run.rows(), kEarly),
               .last_swing_m = swing_m(run.rows(), kLast),
-              .given_J = worst.given_J,
+              .given_energy_J = worst.given_energy_J,
               .force_N = worst.force_N};
   out.grows = out.last_swing_m > kStill_m && out.last_swing_m > kGrows * out.early_swing_m;
   out.in_bounds = all_hold(check_bounds(worst, limits, run.period_s()));

@@ -19,7 +19,7 @@ namespace tact::tools::limits {
 /// One stiffness, once with and once without the passivity stage.
 struct WallRun {
   double early_swing_m = 0.0, last_swing_m = 0.0;  // peak to peak
-  double given_J = 0.0, force_N = 0.0;             // largest
+  double given_energy_J = 0.0, force_N = 0.0;      // largest
   bool grows = false;
   bool in_bounds = true;  // of all limits that the gate had
 };

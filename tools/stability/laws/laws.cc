@@ -21,14 +21,14 @@ constexpr double kDegree_rad = std::numbers::pi / 180.0;
 // LW-1: the table is then within 1e-6 of the largest force.
 constexpr std::size_t kKnots = 65;
 
-/// Laws that solve equations are felt through a table, the others directly.
+/// Laws that solve equations are rendered by a table, the others directly.
 template <typename L>
 void add(std::vector<NamedLaw>& laws, const char* name, const model::Result<L>& law,
          const char* beyond) {
   // Left out: a map shows what this build has.
   if (!law) return;
   const auto direct = std::make_shared<const L>(*law);
-  // Laws in closed form are felt as they are.
+  // Laws in closed form are rendered directly.
   std::shared_ptr<const model::law::Law> rendered = direct;
   if constexpr (std::is_same_v<L, model::indent::RhombusChain> ||
                 std::is_same_v<L, model::indent::HexSheet>) {
@@ -141,7 +141,7 @@ std::vector<NamedLaw> make_laws() {
   model::indent::HexSheetParameters bare = kSheet;
   bare.tension_N = 0.0;
   add(laws, "hex sheet no tension", model::indent::make_hex_sheet(bare),
-      "the dent is a spike and the force stays");
+      "the indentation is a spike and the force stays");
   // X15: as printed, the force of both weights grows with the number of rings.
   const auto paper = [](model::indent::HexWeight weight) {
     return printed::make_hex_paper({.ring_pitch_m = 2e-3,

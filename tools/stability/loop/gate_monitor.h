@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // gate_monitor.h - the gate of the controller between a tissue and a device, with a witness.
 //
-// Whatever a law or an unstable loop asks for, the written force must keep its limits
+// For any output of a law or an unstable loop, the written force must keep its limits
 // (model/limit_witness.h); a latched fault may cut to zero at once.
 #pragma once
 

@@ -11,7 +11,7 @@
 namespace tact::tools::stability {
 namespace {
 
-constexpr double kPlain = 20.0;  // times the kick: it grows, whatever comes
+constexpr double kPlain = 20.0;  // times the kick: it grows for any further motion
 // More than DelayLine holds: no other force is still on its way.
 constexpr int kStillTicks = 200;
 
@@ -135,7 +135,7 @@ LoopRun run_loop(const LoopCase& loop, const TissueForce& tissue, const Check& c
         if (3 * k >= 2 * ticks) last.add(plant.position_m(), now_m != count_m);
         count_m = now_m;
       }
-      // A lost sample holds the force; the gate is told, and fades it.
+      // A lost sample holds the force; the gate gets the loss, and ramps it down.
       const double force_N = check ? check(wanted_N, fresh) : wanted_N;
       if (k > 0) run.max_step_N = std::max(run.max_step_N, std::abs(force_N - written_N));
       run.max_force_N = std::max(run.max_force_N, std::abs(force_N));

@@ -7,7 +7,7 @@
 // The hand pushes with F(x_0), so that x_0 is the point of balance; the tool is let go one kick
 // beside it. What happens then is the verdict:
 //
-//     rest   it comes to rest (with D > 0: the count stands still)
+//     rest   it comes to rest (with D > 0: the count is constant)
 //     buzz   it keeps moving, by less than the kick: a few counts
 //     grow   the motion grows
 //
@@ -46,7 +46,7 @@ struct LoopCase {
 using TissueForce = std::function<double(double depth_m)>;
 /// Makes such a tissue, settled at the balance: one with memory is new for each run.
 using TissueMaker = std::function<TissueForce()>;
-/// What stands between tissue and device, once per tick: the force written for the one wanted.
+/// The stage between tissue and device, once per tick: the force written for the one wanted.
 using Check = std::function<double(double wanted_N, bool fresh)>;
 
 enum class Verdict { kRest, kBuzz, kGrow };

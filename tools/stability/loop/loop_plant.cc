@@ -7,7 +7,7 @@
 namespace tact::tools::stability {
 namespace {
 
-// As far as a double can tell two times of one step apart.
+// The resolution of a double for two times of one step.
 constexpr int kBisections = 50;
 // Rounding must not make stops and starts go on for ever.
 constexpr int kMaxEvents = 10'000;
@@ -60,7 +60,7 @@ void LoopPlant::move(double force_N, double duration_s) {
   stuck_ = false;
   for (int i = 0; left_s > 0.0 && i < kMaxEvents; ++i) {
     double direction = velocity_mps_ > 0.0 ? 1.0 : -1.0;
-    // Coulomb: at rest friction takes whatever pulls, up to c; in motion it is c against the way.
+    // Coulomb: at rest friction balances any pull, up to c; in motion it is c against the way.
     if (velocity_mps_ == 0.0) {
       const double net_N = force_N - p_.stiffness_N_per_m * position_m_;
       stuck_ = std::abs(net_N) <= p_.friction_N;

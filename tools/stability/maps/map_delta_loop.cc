@@ -43,8 +43,8 @@ struct Settings {
   double precision = 1.05;
 };
 
-Settings settings(Grid grid) {
-  if (grid == Grid::kQuick)
+Settings settings(Extent extent) {
+  if (extent == Extent::kQuick)
     return {.rate_Hz = {1000.0},
             .delay_s = {0.5e-3},
             .damping_Nms_per_rad = {0.05, 0.2},
@@ -161,7 +161,7 @@ struct AtTool {
 };
 AtTool at_tool(double joint_damping_Nms_per_rad) {
   const hal::delta::DeltaKinematics delta(hal::sim::kGeometry);
-  // Where the tip touches the plate: the device's damping and mass depend on the pose.
+  // At the contact with the plate the device's damping and mass depend on the pose.
   const Vec3 p_D = hal::sim::point_D({0.0, 0.0, kRadius_m});
   const hal::delta::DeltaPose pose = delta.pose(p_D, delta.inverse(p_D).theta_rad);
   const Vec3 up_D = hal::sim::direction_D({0.0, 0.0, 1.0});
@@ -175,8 +175,8 @@ AtTool at_tool(double joint_damping_Nms_per_rad) {
   return out;
 }
 
-report::Row run(std::size_t job, Grid grid) {
-  const Settings s = settings(grid);
+report::Row run(std::size_t job, Extent extent) {
+  const Settings s = settings(extent);
   const auto [rate, delay, damping] = axes(s).at(job);
   // Hardly any encoder step, and no friction: HL-1 alone is the limit.
   const hal::sim::SimDeviceSettings device{
@@ -244,7 +244,7 @@ Map delta_loop_map() {
   return {.letter = 'c',
           .name = "loop_delta",
           .purpose = "spot checks: the real controller with the simulated Delta and its hand",
-          .jobs = [](Grid grid) { return axes(settings(grid)).jobs(); },
+          .jobs = [](Extent extent) { return axes(settings(extent)).jobs(); },
           .run = run,
           .check = check};
 }

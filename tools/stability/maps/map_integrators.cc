@@ -38,19 +38,19 @@ constexpr ProbedMethod kProbedMethods[] = {
 
 constexpr int kSteps = 20'000;
 constexpr int kChunk = 50;          // between two normalisations: 15^50 is still a number
-constexpr double kGrows = 5e-5;     // a step, in the logarithm: what kSteps can tell from 0
+constexpr double kGrows = 5e-5;     // a step, in the logarithm: what kSteps can resolve from 0
 constexpr double kRounding = 1e-9;  // of the spectral radius
 
 struct Cells {
   std::size_t z = 0, zeta = 0;
 };
-Cells cells(Grid grid) { return grid == Grid::kQuick ? Cells{15, 9} : Cells{60, 41}; }
+Cells cells(Extent extent) { return extent == Extent::kQuick ? Cells{15, 9} : Cells{60, 41}; }
 
-double z_of(std::size_t i, Grid grid) {
-  return 4.0 * static_cast<double>(i + 1) / static_cast<double>(cells(grid).z);
+double z_of(std::size_t i, Extent extent) {
+  return 4.0 * static_cast<double>(i + 1) / static_cast<double>(cells(extent).z);
 }
-double zeta_of(std::size_t i, Grid grid) {
-  return 2.0 * static_cast<double>(i) / static_cast<double>(cells(grid).zeta - 1);
+double zeta_of(std::size_t i, Extent extent) {
+  return 2.0 * static_cast<double>(i) / static_cast<double>(cells(extent).zeta - 1);
 }
 
 /// ln of the growth a step, over the second half of the run.
@@ -82,11 +82,11 @@ double measured_log_growth(const model::springs::Method& method, double z, doubl
   return (log_norm - half) / (0.5 * kSteps);
 }
 
-report::Row run(std::size_t job, Grid grid) {
+report::Row run(std::size_t job, Extent extent) {
   const auto [which, i, j] =
-      Axes<3>{{std::size(kProbedMethods), cells(grid).zeta, cells(grid).z}}.at(job);
+      Axes<3>{{std::size(kProbedMethods), cells(extent).zeta, cells(extent).z}}.at(job);
   const ProbedMethod& probed = kProbedMethods[which];
-  const double zeta = zeta_of(i, grid), z = z_of(j, grid);
+  const double zeta = zeta_of(i, extent), z = z_of(j, extent);
   // MA-10 to MA-15.
   const double radius =
       model::springs::spectral_radius(model::springs::amplification(probed.method, z, zeta));
@@ -117,7 +117,7 @@ std::vector<Finding> check(const report::Table& t) {
                         number(row, "z"), number(row, "zeta"), theory);
   }
   const double share = static_cast<double>(agree) / static_cast<double>(t.rows().size());
-  // Right on the line a growth below kGrows cannot be told from none.
+  // Right on the line a growth below kGrows counts as none.
   return {{share >= 0.995,
            fmt::format("the oscillator grows where its amplification matrix says in {:.3f} % of {} "
                        "cells{}{}",
@@ -129,7 +129,7 @@ std::vector<Finding> check(const report::Table& t) {
 }
 
 /// The methods, z_max over zeta of each, and the size of a cell.
-report::Variables variables(Grid grid) {
+report::Variables variables(Extent extent) {
   constexpr int kPoints = 200;
   std::vector<std::string> names;
   std::string theory = "method,z_max,zeta\n";
@@ -144,23 +144,24 @@ report::Variables variables(Grid grid) {
   }
   return {{"methods", names},
           {"$theory", theory},
-          {"cell_z", z_of(0, grid)},
-          {"cell_zeta", zeta_of(1, grid)}};
+          {"cell_z", z_of(0, extent)},
+          {"cell_zeta", zeta_of(1, extent)}};
 }
 
 }  // namespace
 
 Map integrator_map() {
-  return {
-      .letter = 'a',
-      .name = "integrators",
-      .purpose = "growth of the oscillator over step and damping, every integrator",
-      .jobs =
-          [](Grid grid) { return std::size(kProbedMethods) * cells(grid).zeta * cells(grid).z; },
-      .run = run,
-      .check = check,
-      .plot = {.width_px = 1600, .height_px = 850, .script = kIntegratorsScript},
-      .variables = variables};
+  return {.letter = 'a',
+          .name = "integrators",
+          .purpose = "growth of the oscillator over step and damping, every integrator",
+          .jobs =
+              [](Extent extent) {
+                return std::size(kProbedMethods) * cells(extent).zeta * cells(extent).z;
+              },
+          .run = run,
+          .check = check,
+          .plot = {.width_px = 1600, .height_px = 850, .script = kIntegratorsScript},
+          .variables = variables};
 }
 
 }  // namespace tact::tools::stability

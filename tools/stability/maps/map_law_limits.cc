@@ -6,7 +6,6 @@
 // a law with memory: what it gives when it has settled there.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "tools/stability/laws/laws.h"
@@ -22,21 +21,21 @@ constexpr double kRate_Hz = 1000.0;
 // Chosen: a quick press.
 constexpr double kSpeed_mps = 0.2;
 
-std::size_t depths(Grid grid) { return grid == Grid::kQuick ? 9 : 401; }
+std::size_t depths(Extent extent) { return extent == Extent::kQuick ? 9 : 401; }
 
 /// -1.5 .. 2.5 times the range.
-double depth_share(std::size_t i, Grid grid) {
-  return -1.5 + 4.0 * static_cast<double>(i) / static_cast<double>(depths(grid) - 1);
+double depth_share(std::size_t i, Extent extent) {
+  return -1.5 + 4.0 * static_cast<double>(i) / static_cast<double>(depths(extent) - 1);
 }
 
 /// By model::law::LawStatus.
 constexpr const char* kStatus[] = {"ok", "no contact", "saturated", "singular", "invalid"};
 
-report::Row run(std::size_t job, Grid grid) {
-  const auto [which, depth] = Axes<2>{{probed_laws().size(), depths(grid)}}.at(job);
+report::Row run(std::size_t job, Extent extent) {
+  const auto [which, depth] = Axes<2>{{probed_laws().size(), depths(extent)}}.at(job);
   const NamedLaw& named = probed_laws()[which];
   const double range_m = named.range_m;
-  const double share = depth_share(depth, grid), depth_m = share * range_m;
+  const double share = depth_share(depth, extent), depth_m = share * range_m;
   // A new gate for each cell: cells are independent and computed on any thread.
   GateMonitor gate(kRate_Hz);
   gate.open(0.0);
@@ -87,11 +86,11 @@ Map law_limit_map() {
   return {.letter = 'b',
           .name = "law_limits",
           .purpose = "every law pressed and pulled beyond its range, through the gate",
-          .jobs = [](Grid grid) { return probed_laws().size() * depths(grid); },
+          .jobs = [](Extent extent) { return probed_laws().size() * depths(extent); },
           .run = run,
           .check = check,
           .plot = {.width_px = 1600, .height_px = 800, .script = kLawLimitsScript},
-          .variables = [](Grid) { return report::Variables{{"laws", names_of_laws()}}; }};
+          .variables = [](Extent) { return report::Variables{{"laws", names_of_laws()}}; }};
 }
 
 }  // namespace tact::tools::stability

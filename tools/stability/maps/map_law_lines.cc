@@ -25,7 +25,7 @@ namespace {
 constexpr const char* kStudies[] = {"disc_cone", "disc_rate", "rhombus_snap",
                                     "hex_ring",  "hex_node",  "hex_sheet"};
 
-std::size_t points(Grid grid) { return grid == Grid::kQuick ? 9 : 41; }
+std::size_t points(Extent extent) { return extent == Extent::kQuick ? 9 : 41; }
 
 struct Point {
   double parameter = 0.0, measured = 0.0, theory = 0.0;
@@ -109,9 +109,10 @@ Point hex(double t, int kind) {
   return point;
 }
 
-report::Row run(std::size_t job, Grid grid) {
-  const std::size_t study = job / points(grid);
-  const double t = static_cast<double>(job % points(grid)) / static_cast<double>(points(grid) - 1);
+report::Row run(std::size_t job, Extent extent) {
+  const std::size_t study = job / points(extent);
+  const double t =
+      static_cast<double>(job % points(extent)) / static_cast<double>(points(extent) - 1);
   const Point p = study == 0   ? disc_cone(t)
                   : study == 1 ? disc_rate(t)
                   : study == 2 ? rhombus_snap(t)
@@ -170,7 +171,7 @@ Map law_line_map() {
   return {.letter = 'b',
           .name = "law_lines",
           .purpose = "parameters beyond which a law snaps, ends early or has no limit",
-          .jobs = [](Grid grid) { return std::size(kStudies) * points(grid); },
+          .jobs = [](Extent extent) { return std::size(kStudies) * points(extent); },
           .run = run,
           .check = check,
           .plot = {.width_px = 1400, .height_px = 1000, .script = kLawLinesScript}};

@@ -3,12 +3,11 @@
 //
 // Per cell one law, held at one depth of its range and shaken by a hair; its force is scaled by the
 // largest factor without growth. If the theory of the wall carries over, factor times tangent is
-// K_grow of model/law/haptic_limit.h, whatever the law. Of a law with memory the tangent is what
+// K_grow of model/law/haptic_limit.h, for any law. Of a law with memory the tangent is what
 // one tick can meet: its nodes and terms give way later, which may only make it more stable.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 
 #include "model/law/haptic_limit.h"
@@ -26,16 +25,16 @@ struct Settings {
   std::vector<double> depth_ratio, damping_Ns_per_m, delay_s;
 };
 
-Settings settings(Grid grid) {
-  if (grid == Grid::kQuick)
+Settings settings(Extent extent) {
+  if (extent == Extent::kQuick)
     return {.depth_ratio = {0.2, 0.7}, .damping_Ns_per_m = {1.0}, .delay_s = {0.5e-3}};
   return {.depth_ratio = {0.05, 0.2, 0.4, 0.6, 0.8, 0.95},
           .damping_Ns_per_m = {0.3, 1.0, 3.0},
           .delay_s = {0.0, 0.5e-3, 2e-3}};
 }
 
-Axes<4> axes(Grid grid) {
-  const Settings s = settings(grid);
+Axes<4> axes(Extent extent) {
+  const Settings s = settings(extent);
   return {
       {probed_laws().size(), s.delay_s.size(), s.damping_Ns_per_m.size(), s.depth_ratio.size()}};
 }
@@ -57,9 +56,9 @@ void run_gated(const LoopCase& loop, const TissueForce& tissue, GateMonitor& gat
   run_loop(shaken, tissue, [&](double wanted_N, bool fresh) { return gate.step(wanted_N, fresh); });
 }
 
-report::Row run(std::size_t job, Grid grid) {
-  const Settings s = settings(grid);
-  const auto [which, delay, damping, depth] = axes(grid).at(job);
+report::Row run(std::size_t job, Extent extent) {
+  const Settings s = settings(extent);
+  const auto [which, delay, damping, depth] = axes(extent).at(job);
   const NamedLaw& named = probed_laws()[which];
   const double range_m = named.rendered_range_m;
   LoopCase loop;
@@ -123,11 +122,11 @@ Map law_loop_map() {
   return {.letter = 'c',
           .name = "loop_laws",
           .purpose = "largest stable tangent of every law, at depths of its range",
-          .jobs = [](Grid grid) { return axes(grid).jobs(); },
+          .jobs = [](Extent extent) { return axes(extent).jobs(); },
           .run = run,
           .check = check,
           .plot = {.width_px = 1200, .height_px = 800, .script = kLoopLawsScript},
-          .variables = [](Grid) { return report::Variables{{"laws", names_of_laws()}}; }};
+          .variables = [](Extent) { return report::Variables{{"laws", names_of_laws()}}; }};
 }
 
 }  // namespace tact::tools::stability

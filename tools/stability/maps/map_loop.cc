@@ -37,8 +37,8 @@ struct Settings {
   std::vector<Hand> hands{std::begin(kHands), std::end(kHands)};
 };
 
-Settings settings(Grid grid) {
-  if (grid == Grid::kQuick)
+Settings settings(Extent extent) {
+  if (extent == Extent::kQuick)
     return {.damping_Ns_per_m = {0.5, 2.0, 10.0},
             .rate_Hz = {1000.0},
             .delay_s = {0.0, 1e-3},
@@ -57,8 +57,8 @@ Axes<6> axes(const Settings& s) {
            s.damping_Ns_per_m.size()}};
 }
 
-report::Row run(std::size_t job, Grid grid) {
-  const Settings s = settings(grid);
+report::Row run(std::size_t job, Extent extent) {
+  const Settings s = settings(extent);
   const auto [rate, delay, friction, hand, step, damping] = axes(s).at(job);
   LoopCase loop;
   loop.device = {.damping_Ns_per_m = s.damping_Ns_per_m[damping],
@@ -136,7 +136,7 @@ Map loop_map() {
   return {.letter = 'c',
           .name = "loop",
           .purpose = "largest stable wall over damping, rate, delay, encoder, friction, hand",
-          .jobs = [](Grid grid) { return axes(settings(grid)).jobs(); },
+          .jobs = [](Extent extent) { return axes(settings(extent)).jobs(); },
           .run = run,
           .check = check,
           .plot = {.width_px = 1400, .height_px = 1050, .script = kLoopScript}};

@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "tools/stability/loop/gate_monitor.h"
 #include "tools/stability/maps/scripts.h"
@@ -27,10 +26,12 @@ constexpr double kWall_N_per_m = 1000.0;
 constexpr double kPush_N = 2.0;
 constexpr std::size_t kLongest = 41;  // 0 .. 40 ticks
 
-Axes<2> axes(Grid grid) { return {{grid == Grid::kQuick ? 1 : std::size(kRates_Hz), kLongest}}; }
+Axes<2> axes(Extent extent) {
+  return {{extent == Extent::kQuick ? 1 : std::size(kRates_Hz), kLongest}};
+}
 
-report::Row run(std::size_t job, Grid grid) {
-  const auto [rate, lost] = axes(grid).at(job);
+report::Row run(std::size_t job, Extent extent) {
+  const auto [rate, lost] = axes(extent).at(job);
   const double period_s = 1.0 / kRates_Hz[rate];
   GateMonitor gate(kRates_Hz[rate]);
   // Armed and at the wall's force before the burst begins.
@@ -73,7 +74,7 @@ std::vector<Finding> check(const report::Table& t) {
     worst_step =
         std::max(worst_step, number(row, "gate_max_step_N") * rate_Hz / kSceneLimits.slew_N_per_s);
     if ((lost - 2.0) / rate_Hz >= 0.010) ends_at_zero &= number(row, "gate_force_N") == 0.0;
-    // Counted in samples, whatever the rate.
+    // Counted in samples, independent of the rate.
     latches &= (word(row, "state") == "latched") == (lost >= 20.0);
   }
   return {{ends_at_zero, "10 ms after the second lost sample the force is zero, or latched at 20"},
@@ -93,7 +94,7 @@ Map loss_map() {
   return {.letter = 'd',
           .name = "loss",
           .purpose = "a burst of lost samples: hold, fade, latch, and what the hand gets",
-          .jobs = [](Grid grid) { return axes(grid).jobs(); },
+          .jobs = [](Extent extent) { return axes(extent).jobs(); },
           .run = run,
           .check = check,
           .plot = {.width_px = 1200, .height_px = 800, .script = kLossScript}};

@@ -19,18 +19,18 @@ namespace {
 
 /// Additional periods that an event eats; 0: lost samples.
 constexpr int kEaten[] = {0, 1, 3, 9};
-std::vector<double> dampings_Ns_per_m(Grid grid) {
-  if (grid == Grid::kQuick) return {2.0};
+std::vector<double> dampings_Ns_per_m(Extent extent) {
+  if (extent == Extent::kQuick) return {2.0};
   return {0.5, 2.0};
 }
 
-std::vector<double> shares(Grid grid) {
-  if (grid == Grid::kQuick) return {0.0, 0.1, 0.5};
+std::vector<double> shares(Extent extent) {
+  if (extent == Extent::kQuick) return {0.0, 0.1, 0.5};
   return {0.0, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8};
 }
 
-Axes<3> axes(Grid grid) {
-  return {{std::size(kEaten), dampings_Ns_per_m(grid).size(), shares(grid).size()}};
+Axes<3> axes(Extent extent) {
+  return {{std::size(kEaten), dampings_Ns_per_m(extent).size(), shares(extent).size()}};
 }
 
 double theory_N_per_m(const LoopCase& loop) {
@@ -42,14 +42,14 @@ double theory_N_per_m(const LoopCase& loop) {
   return share * model::law::haptic_limit(loop.device, loop.rate_Hz).grow_N_per_m;
 }
 
-report::Row run(std::size_t job, Grid grid) {
-  const auto [event, damping, share] = axes(grid).at(job);
+report::Row run(std::size_t job, Extent extent) {
+  const auto [event, damping, share] = axes(extent).at(job);
   LoopCase loop;
-  loop.device.damping_Ns_per_m = dampings_Ns_per_m(grid)[damping];
+  loop.device.damping_Ns_per_m = dampings_Ns_per_m(extent)[damping];
   loop.late_periods = kEaten[event];
-  (loop.late_periods == 0 ? loop.lost_share : loop.late_share) = shares(grid)[share];
+  (loop.late_periods == 0 ? loop.lost_share : loop.late_share) = shares(extent)[share];
   // Rare events have to come: a share of 0.001 comes 30 times at 1 kHz.
-  loop.duration_s = grid == Grid::kQuick ? 5.0 : 30.0;
+  loop.duration_s = extent == Extent::kQuick ? 5.0 : 30.0;
   // One for all: neighbouring cells differ by their settings, not by their luck.
   loop.seed = 17;
   const double theory = theory_N_per_m(loop);
@@ -59,7 +59,7 @@ report::Row run(std::size_t job, Grid grid) {
   return {{"event", loop.late_periods == 0 ? "lost" : "late"},
           {"periods_held", 1.0 + loop.late_periods},
           {"damping_Ns_per_m", loop.device.damping_Ns_per_m},
-          {"share", shares(grid)[share]},
+          {"share", shares(extent)[share]},
           {"theory_N_per_m", theory},
           {"largest_without_growth_N_per_m", measured},
           {"measured_over_theory", measured / theory},
@@ -82,7 +82,7 @@ Map tick_map() {
   return {.letter = 'd',
           .name = "ticks",
           .purpose = "largest stable wall over the share of lost and of late ticks",
-          .jobs = [](Grid grid) { return axes(grid).jobs(); },
+          .jobs = [](Extent extent) { return axes(extent).jobs(); },
           .run = run,
           .check = check,
           .plot = {.width_px = 1200, .height_px = 700, .script = kTicksScript}};

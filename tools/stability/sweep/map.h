@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <map>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -33,17 +32,17 @@ struct Spread {
   }
 };
 
-enum class Grid { kFull, kQuick };
+enum class Extent { kFull, kQuick };
 
 struct Map {
   char letter = '?';  // of --map
   const char* name = "";
   const char* purpose = "";  // for --help
-  std::size_t (*jobs)(Grid grid) = nullptr;
-  report::Row (*run)(std::size_t job, Grid grid) = nullptr;
+  std::size_t (*jobs)(Extent extent) = nullptr;
+  report::Row (*run)(std::size_t job, Extent extent) = nullptr;
   std::vector<Finding> (*check)(const report::Table& table) = nullptr;
   report::Plot plot{};  // of the map's name; none without a script
-  report::Variables (*variables)(Grid grid) = nullptr;
+  report::Variables (*variables)(Extent extent) = nullptr;
 };
 
 /// All maps, in the order of their letters.

@@ -3,9 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <optional>
-
 #include "tools/program/run_program.h"
 #include "tools/program/sweep.h"
 
@@ -18,8 +15,8 @@ using model::Result;
 Result<report::Table> computed(const Map& map, const StabilityOptions& options) {
   // In the order of the jobs, not of their end: a second run gives the same bytes.
   auto rows =
-      program::sweep<report::Row>(map.jobs(options.grid), {.label = map.name},
-                                  [&](std::size_t job) { return map.run(job, options.grid); });
+      program::sweep<report::Row>(map.jobs(options.extent), {.label = map.name},
+                                  [&](std::size_t job) { return map.run(job, options.extent); });
   if (!rows) return program::interruption();
   return report::Table(map.name, std::move(*rows));
 }
@@ -28,7 +25,7 @@ Result<report::Table> computed(const Map& map, const StabilityOptions& options) 
 Result<MapReport> finished(const Map& map, const report::Table& table,
                            const StabilityOptions& options) {
   MapReport report{.name = map.name, .rows = table.rows().size(), .findings = {}, .files = {}};
-  // Before it is judged and drawn: the work stays even if gnuplot is missing.
+  // Before it is evaluated and drawn: the work stays even if gnuplot is missing.
   auto files = table.write(options.out);
   if (!files) return files.error();
   report.files = std::move(*files);
@@ -36,7 +33,7 @@ Result<MapReport> finished(const Map& map, const report::Table& table,
   if (!options.draw_plots || map.plot.script.empty()) return report;
   report::Plot plot = map.plot;
   plot.name = map.name;
-  if (map.variables != nullptr) plot.variables = map.variables(options.grid);
+  if (map.variables != nullptr) plot.variables = map.variables(options.extent);
   const auto drawn = draw(plot, options.out);
   if (!drawn) return drawn.error();
   report.files.insert(report.files.end(), drawn->begin(), drawn->end());

@@ -14,7 +14,7 @@ struct StabilityOptions {
   std::string out{};      // folder, made if need be
   std::string letters{};  // maps to make, "abcd"
   std::string only{};     // one map by its name; empty: all of the letters
-  Grid grid = Grid::kFull;
+  Extent extent = Extent::kFull;
   bool draw_plots = true;
 };
 

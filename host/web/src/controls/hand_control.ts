@@ -110,7 +110,7 @@ export class HandControl {
     const distance_m = at.clone().sub(camera.position).dot(camera.getWorldDirection(new THREE.Vector3()));
     const per_pixel_m = (2 * distance_m * Math.tan((camera.fov * Math.PI) / 360)) / this.canvas.clientHeight;
     if (this.fingers.size > 1) {
-      // each of them tells its half
+      // each of them checks its half
       const into = camera.getWorldDirection(new THREE.Vector3());
       return this.move(into.multiplyScalar((up_px * per_pixel_m) / this.fingers.size));
     }

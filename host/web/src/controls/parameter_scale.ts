@@ -6,14 +6,14 @@
 import type { Parameter } from "../link/protocol";
 
 const kDecade = 10;
-const kDigits = 4; // more cannot be felt
+const kDigits = 4; // more make no noticeable force
 
 function ends(of: Parameter): { low: number; high: number; even: boolean } {
   if (!(of.value > 0)) return { low: of.low, high: of.high, even: true };
   return { low: Math.max(of.low, of.value / kDecade), high: Math.min(of.high, of.value * kDecade), even: false };
 }
 
-/** Where it stands on the slider, 0 to 1. */
+/** Its position on the slider, 0 to 1. */
 export function share_of(of: Parameter, value: number): number {
   const { low, high, even } = ends(of);
   const share = even ? (value - low) / (high - low) : Math.log(value / low) / Math.log(high / low);

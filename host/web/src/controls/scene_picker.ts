@@ -117,16 +117,16 @@ export class ScenePicker {
     const is_new = picker !== null && this.now === null; // of another tact-view, maybe with others
     this.now = picker;
     if (is_new) {
-      this.heard = picker.answer; // to somebody, before this page looked
+      this.heard = picker.answer; // to another page, before this one opened
       this.refusal = "";
       this.scenes = await this.offered().catch(() => []);
       this.select.replaceChildren(...this.scenes.map((one) => new Option(one.scene)));
       this.shown = "";
     }
-    this.tell();
+    this.report();
   }
 
-  private tell(): void {
+  private report(): void {
     const picker = this.now;
     this.there = picker !== null && this.scenes.length > 0;
     document.body.classList.toggle("can_pick", this.there);
@@ -135,7 +135,7 @@ export class ScenePicker {
     if (runs !== this.shown) {
       this.elsewhere = this.shown !== "" && runs !== this.requested;
       this.shown = runs;
-      // What this page asked for stands there already, and perhaps the next edit.
+      // What this page asked for is there already, and perhaps the next edit.
       if (runs === this.requested && this.select.value === picker.scene)
         for (const row of this.rows) row.runs = picker.set[row.of.key] ?? row.of.value;
       else {
@@ -173,7 +173,7 @@ export class ScenePicker {
   private edited(): void {
     this.refusal = "";
     this.elsewhere = false;
-    this.tell();
+    this.report();
   }
 
   /** The numbers of the chosen scene, as shipped but for these. */
@@ -187,7 +187,7 @@ export class ScenePicker {
 
   private apply(): void {
     this.refusal = this.rows.find((row) => Number.isNaN(row.value))?.correct() ?? "";
-    if (this.refusal) return this.tell();
+    if (this.refusal) return this.report();
     if (this.now?.asked) {
       this.waits = true;
       return;

@@ -54,7 +54,7 @@ export class Connection {
     return fetch(path, { headers: this.token ? { Authorization: `Bearer ${this.token}` } : {} });
   }
 
-  /** Where a simulated hand shall go. Dropped when nobody listens. */
+  /** Where a simulated hand shall go. Dropped when no device listens. */
   move_hand(position_m: Vec, rotation_rad: Vec, grip_ratio: number): void {
     const [x_m, y_m, z_m] = position_m;
     const [turn_x_rad, turn_y_rad, turn_z_rad] = rotation_rad;
@@ -92,7 +92,7 @@ export class Connection {
     setTimeout(() => void this.open(), kRetry_ms);
   }
 
-  /** Whether the token is right; HTTP status; 0: nobody there. */
+  /** Whether the token is right; HTTP status; 0: no answer. */
   private async enter(): Promise<number> {
     const token = this.token;
     try {

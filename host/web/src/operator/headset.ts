@@ -10,13 +10,13 @@ import type { Stage } from "../scene/stage";
 
 // Where the eyes are when a session begins, from the middle of the device's workspace. That is 0.57 m away and 38 deg
 // below the horizon: where hands work, with bent elbows, and not nearer than a headset's lenses bear for long. From
-// the eyes and not from the floor (`local`), so that it is right for who sits and for who stands, and the headset's
+// the eyes and not from the floor (`local`), so that it is right seated and standing, and the headset's
 // own recentring brings the scene before the wearer again.
 const kBack_m = 0.45;
 const kUp_m = 0.35;
 const kDark = new THREE.Color("#131920");
 const kAlarm = new THREE.Color("#4a1512"); // behind everything: seen wherever the wearer looks
-const kPatience_ms = 250; // a headset that lies on the desk asks for no pictures: then the desk tells by itself
+const kPatience_ms = 250; // a headset that lies on the desk asks for no pictures: then the page on the desk updates by itself
 const kTold_ms = 8000;
 
 function words_of(error: unknown): string {
@@ -69,11 +69,11 @@ export class Headset {
   }
 
   /** Once per picture, after the page's own panels. */
-  tell(now_ms: number, ask: () => Said): void {
+  report(now_ms: number, ask: () => Said): void {
     this.drawn_ms = now_ms;
     if (!this.on) return;
     const said = ask();
-    this.panel.tell(said);
+    this.panel.show(said);
     this.background.copy(said.alarm ? kAlarm : kDark);
   }
 
@@ -82,7 +82,7 @@ export class Headset {
     const { cameras } = this.stage.renderer.xr.getCamera();
     return {
       on: this.on,
-      told: this.panel.told,
+      shown: this.panel.shown,
       alarm: this.background.equals(kAlarm),
       panel_m: this.panel.corners_m,
       eyes: cameras.map((eye) => ({ projection: eye.projectionMatrix.toArray(), view: eye.matrixWorldInverse.toArray() })),
@@ -104,7 +104,7 @@ export class Headset {
     }
   }
 
-  /** The headset may be gone already: then its end is told all the same. */
+  /** The headset may be gone already: then its end is reported all the same. */
   private async leave(): Promise<void> {
     await this.stage.renderer.xr
       .getSession()
@@ -121,7 +121,7 @@ export class Headset {
       if (now_ms - this.drawn_ms > kPatience_ms) this.draw(now_ms);
     }, 100);
     this.show("Leave VR");
-    this.say("the picture is in the headset; the one here stands still");
+    this.say("the picture is in the headset; the one here is paused");
   }
 
   private end(): void {

@@ -11,7 +11,7 @@ const kHigh_px = 576;
 const kMargin_px = 40;
 const kLine_px = 36; // letters of a line
 const kRow_px = 46;
-const kRows_px = 312; // where the first line of the warnings stands
+const kRows_px = 312; // the first line of the warnings
 const kRows = Math.ceil((kHigh_px - 16 - kRows_px) / kRow_px);
 const kWide_m = 0.32;
 const kHigh_m = (kWide_m * kHigh_px) / kWide_px;
@@ -58,7 +58,7 @@ export function shown_lines(texts: readonly string[], rows: number, fits: (line:
 export class HeadsetPanel {
   readonly object: THREE.Mesh;
   /** What is to be read on it, text by text. */
-  told: string[] = [];
+  shown: string[] = [];
   private readonly canvas = document.createElement("canvas");
   private readonly pen: CanvasRenderingContext2D;
   private readonly texture: THREE.CanvasTexture;
@@ -89,11 +89,11 @@ export class HeadsetPanel {
     );
   }
 
-  tell(said: Said): void {
+  show(said: Said): void {
     const all = JSON.stringify(said);
     if (all === this.painted) return;
     this.painted = all;
-    this.told = [];
+    this.shown = [];
     this.paint_ground(said);
     const right_px = kWide_px - kMargin_px;
     this.pen.textAlign = "right";
@@ -134,7 +134,7 @@ export class HeadsetPanel {
     this.pen.font = style;
     this.pen.fillStyle = color;
     this.pen.fillText(text, x_px, y_px, kWide_px - 2 * kMargin_px);
-    this.told.push(text);
+    this.shown.push(text);
     return this.pen.measureText(text).width;
   }
 
@@ -152,7 +152,7 @@ export class HeadsetPanel {
         this.pen.fillText(line, kMargin_px, y_px, kWide_px - 2 * kMargin_px);
         y_px += kRow_px;
       }
-      if (lines.length > 0) this.told.push(lines.join(" "));
+      if (lines.length > 0) this.shown.push(lines.join(" "));
     });
   }
 }

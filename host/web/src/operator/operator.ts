@@ -11,7 +11,7 @@ import type { Stage } from "../scene/stage";
 export class Operator {
   on = true;
   eyes_on = false;
-  view_chosen = false; // by a key or the mouse: from then on it changes for nobody else
+  view_chosen = false; // by a key or the mouse: from then on only these change it
   shown: FigureFrame | null = null;
   private newest: FigureFrame | null = null; // not drawn yet
   private figure: FigureView | null = null;
@@ -27,7 +27,7 @@ export class Operator {
     return this.figure !== null;
   }
 
-  /** The figure is there if tact-view tells its skeleton; every scene has its own. */
+  /** The figure is there if tact-view sends its skeleton; every scene has its own. */
   status(now: Status): void {
     const made_of = now.figure ? `${now.scene_number} ${JSON.stringify(now.figure)}` : "";
     if (made_of === this.known) return;

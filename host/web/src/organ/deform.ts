@@ -8,13 +8,13 @@
 //     u      profile (profile.ts)                        w    u / u_0, the same shape
 //     tilt   the organ sinks more towards a free lobe (model/tissue/indentation_tilt.h); p  the contact
 //     taper  1 near the contact and 0 a reach away
-//     fade   1 near the tangent plane and 0 a reach away or on skin that looks the other way, so that
+//     fade   1 near the tangent plane and 0 a reach away or on a surface that faces away, so that
 //            the far side of the organ stays where it is
 //
 // A mass-spring tissue names its displaced vertices itself (patch.ts).
-// Dents of several contacts add up, as tactd sends each sphere's own: beside the others it is smaller
+// Indentations of several contacts add up, as tactd sends each sphere's own: beside the others it is smaller
 // than its depth. Of their sideways shifts, which are not each its own, the larger is shown. Where
-// the sum would fold the skin over, its steepest parts are spread (fold_guard.ts).
+// the sum would fold the surface over, its steepest parts are spread (fold_guard.ts).
 
 import { FoldGuard } from "./fold_guard";
 import type { Moved } from "./patch";
@@ -29,7 +29,7 @@ export interface Deformed {
 
 const kTaperStart = 0.7; // of the reach, as the rings themselves have it
 
-/** u + tilt, but skin that leans does not rise out of a dent. */
+/** u + tilt, but a tilted surface does not rise out of an indentation. */
 function no_further_than_0(u_m: number, lean_m: number): number {
   return u_m < 0 ? Math.min(0, u_m + lean_m) : Math.max(0, u_m + lean_m);
 }
@@ -87,7 +87,7 @@ export class Deformer {
 
   private press(contacts: readonly Contact[], out_m: Float32Array): void {
     this.sideways_m.fill(0);
-    for (const contact of contacts) this.dent(contact, out_m);
+    for (const contact of contacts) this.indent(contact, out_m);
     for (let i = 0; i < out_m.length; ++i) out_m[i] += this.sideways_m[i];
     this.guard.hold(out_m);
     for (let i = 0; i < out_m.length; i += 3) {
@@ -99,7 +99,7 @@ export class Deformer {
   }
 
   /** d = -n u, added; s w, where it is the largest. */
-  private dent(contact: Contact, out_m: Float32Array): void {
+  private indent(contact: Contact, out_m: Float32Array): void {
     this.profile.set(contact.profile_m);
     const reach_m = this.profile.reach_m;
     const [px, py, pz] = contact.surface_point_m;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// fold_guard.ts - keeps drawn skin from folding over where dents are deep and steep.
+// fold_guard.ts - keeps the drawn surface from folding over where indentations are deep and steep.
 //
 //     A . A0 >= kMin |A0|^2       A0, A  area vector of a triangle at rest and now
 //     d_k += (mean d - d_k) / 2     its three corners, where that is not so
 //
 // Alike displacements leave a triangle as it was at rest, so what is too steep spreads to its
-// neighbours, a pass after the other, and the rest of the dent stays as the law says. Without a
+// neighbours, a pass after the other, and the rest of the indentation stays as the law says. Without a
 // fold it costs one look at each touched triangle.
 
 const kMin = 0.1;
-const kMaxPasses = 60; // 20 mm deep: the liver needs 14, skin of 1 mm edges 40
+const kMaxPasses = 60; // 20 mm deep: the liver needs 14, a surface of 1 mm edges 40
 
 export class FoldGuard {
   private readonly touched: Uint32Array; // triangles, the first so many

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // organ_view.ts - what is touched. Tissue is warm, moist and paler where it is stretched; what a scene's [look] says else
-// stands in material.ts.
+// is in material.ts.
 
 import * as THREE from "three";
 import { Deformer, type Deformed } from "./deform";
@@ -114,7 +114,7 @@ export class OrganView {
     tint.needsUpdate = true;
   }
 
-  /** Cut triangles are no longer skin: their corners fall together. */
+  /** Cut triangles are no longer surface: their corners fall together. */
   private open(): void {
     const index = this.geometry.getIndex() as THREE.BufferAttribute;
     const corner = index.array as Uint32Array;

@@ -30,7 +30,7 @@ export function decode_moved(patch: Patch): Moved {
   return { vertex, displacement_m };
 }
 
-/** All cut triangles that were ever told. */
+/** All cut triangles that were ever received. */
 export class Cuts {
   readonly triangles = new Set<number>();
 

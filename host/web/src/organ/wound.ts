@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// wound.ts - what one sees where the skin was cut away: the same triangles, a little deeper and raw.
+// wound.ts - what one sees where the surface was cut away: the same triangles, a little deeper and raw.
 
 import * as THREE from "three";
 
@@ -27,7 +27,7 @@ export class Wound {
     this.object.visible = cut.size > 0;
   }
 
-  /** Follows the lips: vertices and normals of the surface as it is now. */
+  /** Follows the cut edges: vertices and normals of the surface as it is now. */
   follow(vertex_m: Float32Array, normal: Float32Array): void {
     if (!this.object.visible) return;
     const position = this.object.geometry.getAttribute("position") as THREE.BufferAttribute;

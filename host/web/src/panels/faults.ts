@@ -35,7 +35,7 @@ export function latches(number: number): boolean {
   return table.faults.find((fault) => fault.number === number)?.latches ?? true;
 }
 
-/** In the state "stopped", no fault means that somebody asked for it. */
+/** In the state "stopped", no fault means that a person asked for it. */
 export function describe_state(number: number, fault: number): State {
   const state = table.states[number] ?? { name: `state ${number}`, words: "unknown" };
   return number === kStopped && fault === 0 ? { ...state, words: "force is off: stopped on request" } : state;

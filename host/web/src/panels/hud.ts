@@ -61,11 +61,11 @@ export class Hud {
     document.body.classList.toggle("has_torque", scene.torque_limit_Nm > 0);
     write("limits", scene.limits_checksum);
     write("force_of", `of ${Number(scene.force_limit_N.toPrecision(3))} N`);
-    this.tell_kind();
+    this.report_kind();
   }
 
   /** What is said of the whole run: it goes on, or it is a recording. */
-  private tell_kind(): void {
+  private report_kind(): void {
     by_id("now").setAttribute("aria-label", this.is_replay ? "In the recording" : "Now");
     const scene = this.scene_known;
     if (!scene) return;
@@ -86,7 +86,7 @@ export class Hud {
   link(status: Status | null, refused = false): void {
     this.status = status;
     this.refused = refused;
-    this.tell_kind();
+    this.report_kind();
     const detail = status?.detail ? ` (${status.detail})` : "";
     if (!status && refused) {
       pill("link", "not allowed", "bad");
@@ -117,7 +117,7 @@ export class Hud {
     this.unwritten.add(frame);
   }
 
-  /** Once per picture: the last frame before a silence is the one that tells why. */
+  /** Once per picture: the last frame before a silence is the one with the reason. */
   draw(now_ms: number, fps: number): void {
     const frame = this.unwritten.take(now_ms);
     if (!frame) return;
@@ -155,7 +155,7 @@ export class Hud {
     if (!silent) return;
     pill("state", `no news for ${seconds.toFixed(1)} s`, "bad");
     write("state_words", "");
-    if (this.status?.link !== "live") return; // what has gone is told already
+    if (this.status?.link !== "live") return; // what has gone is reported already
     pill("link", "silent", "bad");
     this.notice("tactd is silent: what is shown is old, and its force is not known");
   }

@@ -5,14 +5,14 @@ import { describe, kStopped, latches } from "./faults";
 import { kContactInside, type Frame } from "../link/protocol";
 
 const kHold_ms = 1500; // a limit that acted for one tick stays readable this long
-const kLoss_ms = 4000; // lost contact is over in one tick: it is looked for after it was felt
+const kLoss_ms = 4000; // lost contact is over in one tick: it is looked for after it has happened
 const kToolInside = 14;
 const kContactLost = 15;
 
 export class LimitNews {
   private number = 0;
   private seen_ms = -Infinity;
-  private losses: number | null = null; // so far, as the last frame told
+  private losses: number | null = null; // so far, of the last frame
   private lost_ms = -Infinity;
 
   frame(frame: Frame, now_ms: number): void {

@@ -22,7 +22,7 @@ export interface PlotSettings {
   digits: number;
   lines: readonly Line[];
   range: (values: readonly (number | null)[]) => Range;
-  /** What the caption tells of the newest values of all lines. */
+  /** What the caption says of the newest values of all lines. */
   headline: (values: readonly number[]) => number;
 }
 

@@ -38,7 +38,7 @@ export class Stage {
   private home = new THREE.Sphere(new THREE.Vector3(), 0.1);
   private ground: THREE.Object3D | null = null;
   private with_operator = false;
-  private at_home = true; // nobody has turned the view yet
+  private at_home = true; // the view was not turned yet
   private eyes: Eyes | null = null;
   private readonly looks_at = new THREE.Vector3();
   private drawn_ms = 0;
@@ -48,7 +48,7 @@ export class Stage {
   private counted_since_ms = performance.now();
 
   constructor(canvas: HTMLCanvasElement, draw: (now_ms: number) => void) {
-    // #sharp in the address is for still pictures: full quality whatever it costs.
+    // #sharp in the address is for still pictures: full quality at any cost.
     const sharp = location.hash.slice(1).split("&").includes("sharp");
     const software = draws_in_software();
     this.adapts = !sharp;

@@ -15,7 +15,7 @@
 namespace tact::rig {
 namespace {
 
-constexpr std::uint32_t kStranger = 0x10;  // added to a node's number: nobody's
+constexpr std::uint32_t kStranger = 0x10;  // added to a node's number: of no node
 
 can_frame error_frame(FaultKind kind) {
   can_frame frame{};

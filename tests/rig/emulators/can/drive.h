@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// drive.h - one emulated motor drive on the bus, whatever it speaks.
+// drive.h - one emulated motor drive on the bus, of any protocol.
 #pragma once
 
 #include <linux/can.h>

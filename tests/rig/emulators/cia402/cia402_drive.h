@@ -60,7 +60,7 @@ class Cia402Drive final : public Drive {
   bool is_enabled() const override { return state_ == Cia402State::kOperationEnabled; }
   double torque_Nm() const override;
   bool tripped() override;
-  /// Codes of the emergencies so far, but 0: what stands in its log.
+  /// Codes of the emergencies so far, but 0: the content of its log.
   const std::vector<std::uint16_t>& noted() const { return noted_; }
 
  private:
@@ -101,7 +101,7 @@ class Cia402Drive final : public Drive {
   bool has_tripped_ = false, is_limited_ = false;
   int syncs_ = 0;
   bool guard_toggle_ = false;
-  std::int64_t watch_ = 0;  // whom it misses: 1016:01, but for a zero that names nobody
+  std::int64_t watch_ = 0;  // whom it misses: 1016:01, but for a zero that names no node
   std::vector<std::uint16_t> noted_;
   std::int64_t boot_ns_ = 0, enable_ns_ = 0, heartbeat_ns_ = 0;
   std::int64_t host_ns_ = 0, set_point_ns_ = 0, guard_ns_ = 0, sync_ns_ = 0;  // last heard; 0: no

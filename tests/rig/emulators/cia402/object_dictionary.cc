@@ -55,7 +55,7 @@ ObjectDictionary::ObjectDictionary(int node, double rated_torque_Nm, ObjectHabit
           {0x1016, 2, kU32, true, false, habits_.second_watch},
           {0x1017, 0, kU16, true, false, 0},
           {0x1018, 0, kU8, false, false, 4},
-          {0x1018, 1, kU32, false, false, 0x7AC7},  // nobody's vendor id
+          {0x1018, 1, kU32, false, false, 0x7AC7},  // an unused vendor id
           {0x1018, 2, kU32, false, false, 0x0402},
           {0x1018, 3, kU32, false, false, 0x0001'0000},
           {0x1018, 4, kU32, false, false, 1000 + node},

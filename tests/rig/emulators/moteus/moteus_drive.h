@@ -6,9 +6,9 @@
 //
 // Each command of a mode begins with every other command register at its default: position 0, both
 // gains whole, the watchdog the drive's own. So a torque is only a torque when both gain scales are
-// written as 0. The integral term has a scale of its own (0x02b), of newer firmware, which nobody
-// writes here: with a gain and a limit it winds up all the same. A reply tells of the moment before
-// the command of its frame. Torque counts at the output.
+// written as 0. The integral term has a scale of its own (0x02b), of newer firmware, which no known
+// drive writes here: with a gain and a limit it winds up all the same. A reply holds the state
+// before the command of its frame. Torque counts at the output.
 //
 // Reading of the vendor's register reference and open firmware; nothing here comes from the drivers
 // under test.

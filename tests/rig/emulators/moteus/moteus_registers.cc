@@ -75,7 +75,7 @@ void append_value(std::vector<std::uint8_t>& out, double value, unsigned type,
   const auto bytes = std::span(out).last(size);
   if (type == 3) return put_raw(bytes, std::bit_cast<std::uint32_t>(static_cast<float>(value)));
   const double largest = std::exp2(8.0 * static_cast<double>(size) - 1.0) - 1.0;
-  // Cut, not rounded, as the firmware does; the smallest integer stands for what is not known.
+  // Cut, not rounded, as the firmware does; the smallest integer means not known.
   const double steps = std::isfinite(value)
                            ? std::clamp(value / steps_of(number).of_type[type], -largest, largest)
                            : -largest - 1.0;

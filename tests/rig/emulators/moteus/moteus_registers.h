@@ -17,7 +17,7 @@
 
 namespace tact::rig {
 
-/// What stands behind the registers of a drive.
+/// The state behind the registers of a drive.
 class MoteusRegisters {
  public:
   virtual ~MoteusRegisters() = default;

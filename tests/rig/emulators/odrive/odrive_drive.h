@@ -10,7 +10,7 @@
 // first gets the old torque. The torque is limited by current limit x torque constant and, where
 // its owner left that on, by velocity: between (+-velocity limit - velocity) x velocity gain; above
 // 1.2 x velocity limit it stops with an error. Estimates of 0.5 are 0 and 0 until the axis has
-// entered closed loop once since power-on, whatever its encoder counts; that lasts when it leaves
+// entered closed loop once since power-on, for any count of its encoder; that lasts when it leaves
 // again, also at once for a motor without supply.
 // Reading of public documentation and of the open firmware 0.5; nothing here comes from the drivers
 // under test.

@@ -49,7 +49,7 @@ struct Fault {
   std::int64_t injected_ns = 0;             // CLOCK_MONOTONIC; 0: not yet
   std::int64_t last_force_ns = 0;           // of the last command of more than 0.05 N after it
   std::int64_t torque_zero_ns = 0;          // when no motor had any torque, the first time
-  std::int64_t force_zero_ns = 0;           // when the hand first felt less than 0.05 N
+  std::int64_t force_zero_ns = 0;           // when the hand first got less than 0.05 N
   double largest_after_zero_N = 0.0;        // at the hand, since torque_zero_ns
   double largest_after_force_zero_N = 0.0;  // ... since force_zero_ns
   int watchdog_trips = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // real_time.h - clock, priority and end of an emulator process. Linux, CLOCK_MONOTONIC, ns.
 //
-// The emulator stands for hardware: it runs as FIFO below the controller's loop. It leaves FIFO
+// The emulator replaces hardware: it runs as FIFO below the controller's loop. It leaves FIFO
 // before it exits, because a process that gives back its memory at FIFO priority holds up all below
 // it.
 #pragma once

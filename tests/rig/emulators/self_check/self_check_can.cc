@@ -125,7 +125,7 @@ void check_received(SelfCheck& check, const Json& vectors, ObjectDictionary& dic
       check.equal(name, static_cast<double>(dictionary.get(0x6040)), args["controlword"], 0.0);
       check.equal(name, static_cast<double>(dictionary.get(0x6071)), args["torque_permille"], 0.0);
     } else if (name.starts_with("sdo_")) {
-      // Through the server: whatever it says, it speaks of the same object.
+      // Through the server: any answer is about the same object.
       const auto answer = ObjectDictionary(args["node"], 0.32).serve(payload, false);
       check.equal(name + " index", static_cast<double>(get_raw(std::span(answer).subspan(1, 2))),
                   args["index"], 0.0);

@@ -12,7 +12,7 @@
 
 #include "model/result.h"
 
-namespace tact::hal {
+namespace tact::hal::threads {
 
 /// A running thread, or none. The destructor joins it.
 class Thread {
@@ -38,4 +38,4 @@ class Thread {
 /// `name`: of at most 15 characters, for top(1).
 model::Result<Thread> start_thread(const char* name, std::function<void()> body);
 
-}  // namespace tact::hal
+}  // namespace tact::hal::threads

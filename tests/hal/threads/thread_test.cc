@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a thread takes of signals, and what becomes of one that does not start or throws.
-#include "hal/thread.h"
+#include "hal/threads/thread.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -14,7 +14,7 @@
 #include <new>
 #include <string>
 
-namespace tact::hal::thread_test {
+namespace tact::hal::threads::thread_test {
 
 std::string field(const char* name) {
   std::ifstream status("/proc/thread-self/status");
@@ -61,4 +61,4 @@ TEST(Thread, AnExceptionLeavesNone) {
   EXPECT_EXIT(throws(), testing::KilledBySignal(SIGTERM), "tact-x has ended .std::bad_alloc");
 }
 
-}  // namespace tact::hal::thread_test
+}  // namespace tact::hal::threads::thread_test

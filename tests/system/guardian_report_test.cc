@@ -7,16 +7,16 @@
 
 namespace tact::tests::guardian_reported_test {
 
-class GuardianTold : public Tactd {};
+class GuardianReport : public Tactd {};
 
-TEST_F(GuardianTold, ADeviceThatNobodyCanZeroIsNamedAtEachStart) {
+TEST_F(GuardianReport, ADeviceThatCannotBeZeroedIsNamedAtEachStart) {
   const Outcome out = tactd(kLiver + " --no-telemetry --check" + kStubDevice);
   EXPECT_EQ(out.status, 0) << out.output;
   EXPECT_TRUE(has(out, "if tactd is killed or the library hangs, nothing zeroes this device"))
       << out.output;
 }
 
-TEST_F(GuardianTold, TheSimulatedDeviceHasNoneAndNeedsNone) {
+TEST_F(GuardianReport, TheSimulatedDeviceHasNoneAndNeedsNone) {
   const Outcome out = tactd(kLiver + " --no-telemetry --check");
   EXPECT_EQ(out.status, 0) << out.output;
   EXPECT_FALSE(has(out, "is killed")) << out.output;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hal/thread.h"
+#include "hal/threads/thread.h"
 
 #include <fmt/format.h>
 #include <pthread.h>
@@ -11,7 +11,7 @@
 #include <cstdio>
 #include <exception>
 
-namespace tact::hal {
+namespace tact::hal::threads {
 namespace {
 
 /// By the kernel's call: glibc leaves two signals of its own (nptl(7)) unblocked, whose handler
@@ -49,4 +49,4 @@ model::Result<Thread> start_thread(const char* name, std::function<void()> body)
   }
 }
 
-}  // namespace tact::hal
+}  // namespace tact::hal::threads

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hal/latest_slot.h"
+#include "hal/threads/latest_slot.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 #include "tests/support/no_alloc.h"
 
-namespace tact::hal::latest_slot_test {
+namespace tact::hal::threads::latest_slot_test {
 
 TEST(LatestSlot, IsEmptyUntilTheFirstWrite) {
   LatestSlot<int> slot;
@@ -71,4 +71,4 @@ TEST(LatestSlot, LeavesTheHeapAlone) {
   EXPECT_EQ(guard.calls(), 0u);
 }
 
-}  // namespace tact::hal::latest_slot_test
+}  // namespace tact::hal::threads::latest_slot_test

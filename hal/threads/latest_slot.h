@@ -3,7 +3,7 @@
 //
 // Three buffers: the writer owns one, the reader owns one, the third lies between them. write and
 // read each copy once and swap their buffer with the middle one in a single atomic exchange; a
-// value that nobody fetched is overwritten. Exactly one writer thread and one reader thread.
+// value that was not fetched is overwritten. Exactly one writer thread and one reader thread.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 #include "model/rt.h"
 
-namespace tact::hal {
+namespace tact::hal::threads {
 
 template <typename T>
 class LatestSlot {
@@ -54,4 +54,4 @@ class LatestSlot {
   alignas(64) std::uint8_t read_ = 2;     // reader only
 };
 
-}  // namespace tact::hal
+}  // namespace tact::hal::threads
