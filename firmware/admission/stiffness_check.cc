@@ -196,8 +196,9 @@ model::Result<StiffnessMargin> check_renderable(const model::scene::Scene& scene
                                                 const hal::DeviceInfo& device) {
   // A device that does not report its damping cannot be checked, so it is refused.
   if (!device.at_tool)
-    return Error{fmt::format(
-        "device {} does not state its damping at the tool: fill DeviceInfo::at_tool", device.name)};
+    return Error{
+        fmt::format("device {} does not report its damping at the tool: fill DeviceInfo::at_tool",
+                    device.name)};
   const auto spheres = static_cast<double>(scene.tool.spheres.size());
   const double damping_Ns_per_m = tissue.law().damping_Ns_per_m();
   const Demand demand{

@@ -137,7 +137,8 @@ std::string silent_bus_trouble(const BasicCanBus<Frame>& bus, const std::string&
       seen.has(kNoAck) || seen.has(kTxPassive) || bus.cause().kind == kind_of(CanCause::kNoRoom);
   if (unheard && !seen.has(kBusOff)) {
     return fmt::format(
-        "no node on {} acknowledges a frame: switch on and connect the drives; if they are on, "
+        "no node on {} acknowledges a frame: switch the drives on and connect them; if they are "
+        "on, "
         "give {} their bit rate",
         interface, interface);
   }

@@ -15,10 +15,10 @@ class Scarce : public Tactd {
     std::ofstream(script)
         << "cd " << folder << "\nexport XDG_RUNTIME_DIR=" << folder << "\n"
         << "start() { " << program_path("tactd") << " " << kLiver
-        << " --set rate_Hz=500 --json report.json " << options << " >out 2>log & tactd=$!; }\n"
+        << " --set rate_Hz=500 --json report.json " << options << " >out 2>notes & tactd=$!; }\n"
         << "begun() { for i in {1..200}; do " << program_path("tactctl") << " " << kLiver
         << " status 2>&1 | grep -q armed && break; sleep .05; done; }\n"
-        << "logged() { for i in {1..100}; do grep -qs \"$1\" log && break; sleep .05; done; }\n"
+        << "logged() { for i in {1..100}; do grep -qs \"$1\" notes && break; sleep .05; done; }\n"
         << before << "\nstart\n"
         << acts << "\n";
     return run_command("timeout -s KILL 60 bash " + script);
@@ -38,7 +38,7 @@ TEST_F(Scarce, AFileSizeLimitEndsTheRecordAndNotTheLoop) {
   const Outcome out =
       in_bash("ulimit -f 64", "--no-black-box --no-telemetry --record log --seconds 3",
               "begun; logged 'goes on without its record'; kill -0 $tactd && echo "
-              "lives\nwait $tactd; echo status $?; cat log");
+              "lives\nwait $tactd; echo status $?; cat notes");
   EXPECT_TRUE(has(out, "lives\n")) << out.output;
   EXPECT_TRUE(has(out, "status 1\n")) << out.output;
   EXPECT_TRUE(has(out, "what was written before is kept")) << out.output;
@@ -95,7 +95,7 @@ TEST_F(Scarce, WithoutMemoryAFaultStillLeavesItsBlackBox) {
         "", "--black-box kept --record log --socket t.sock",
         "begun; k=$(awk '/" + kind.substr(0, gap) + "/ {print $2}' /proc/$tactd/status)\n" +
             "prlimit --pid $tactd " + kind.substr(gap + 1) + "=$((k * 1024)):$((k * 1024))\n" +
-            "kill -XCPU $tactd; wait $tactd; echo status $?; cat log; stat -c '%s B' kept/*\n"
+            "kill -XCPU $tactd; wait $tactd; echo status $?; cat notes; stat -c '%s B' kept/*\n"
             "rm -r kept log");
     EXPECT_TRUE(has(out, "status 1\n")) << kind << out.output;
     EXPECT_TRUE(has(out, "black box of fault 122")) << kind << out.output;
@@ -112,7 +112,7 @@ TEST_F(Scarce, WithoutAFreeDescriptorTheLoopGoesOnAndItsPersonIsHeard) {
               "--nofile=$((last + 1)):$((last + 1))\n"
               "sleep .3\n" +
                   program_path("tactctl") + " " + kLiver + " status; " + program_path("tactctl") +
-                  " " + kLiver + " stop; wait $tactd; echo status $?; cat log out");
+                  " " + kLiver + " stop; wait $tactd; echo status $?; cat notes out");
   EXPECT_TRUE(has(out, "simulated delta")) << out.output;
   EXPECT_TRUE(has(out, "force to zero, then tactd ends")) << out.output;
   EXPECT_TRUE(has(out, "status 0")) << "no fault: " << out.output;

@@ -101,7 +101,8 @@ TEST_F(Tactd, PrintsEveryFaultWithItsRemedy) {
 }
 
 TEST_F(Tactd, CitesItselfWithTheCommitOfItsBuild) {
-  std::ifstream file(TACT_SOURCE_DIR "/CITATION.cff");
+  std::ifstream file(TACT_SOURCE_DIR "/.github/CITATION.cff");
+  ASSERT_TRUE(file);
   const std::string citation{std::istreambuf_iterator<char>(file), {}};
   const Outcome out = tactd("--cite");
   EXPECT_EQ(out.status, 0);

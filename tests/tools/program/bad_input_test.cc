@@ -70,8 +70,8 @@ TEST_F(BadInput, EveryProgramReportsItsVersionAndWhatBuiltIt) {
     const std::string program = line.substr(0, line.find(' '));
     const Outcome outcome = run_program(program, "--version");
     EXPECT_EQ(outcome.status, 0) << program;
-    EXPECT_TRUE(std::regex_match(outcome.output,
-                                 std::regex(program + R"( \d+\.\d+\.\d+ \(\S+\), compiler .+\n)")))
+    EXPECT_TRUE(std::regex_match(
+        outcome.output, std::regex(program + R"( \d+\.\d+\.\d+(-rc\d+)? \(\S+\), compiler .+\n)")))
         << outcome.output;
   }
 }
