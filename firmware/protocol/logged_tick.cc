@@ -15,7 +15,7 @@ const char* clutch_name(std::uint64_t number) {
 }
 
 #define FIELD(member, meaning) TACT_FIELD(LoggedContact, member, #member, meaning)
-constexpr std::array kContact{
+constexpr std::array kLoggedContact{
     FIELD(surface_point_m, "contact point on the undeformed surface"),
     FIELD(depth_m, "press positive, pull negative"),
     FIELD(state, "inside: no force until it has once been outside").labelled(contact_state_name)};
@@ -80,7 +80,7 @@ constexpr std::array kTick{
 
 }  // namespace
 
-FieldTable LoggedContact::fields() { return kContact; }
+FieldTable LoggedContact::fields() { return kLoggedContact; }
 
 FieldTable LoggedTick::fields(std::size_t spheres) { return with_contacts<kTick>(spheres); }
 

@@ -36,12 +36,12 @@ void RestContact::reset() RT_SAFE {
 
 void RestContact::begin(const Sphere& sphere, const ContactPoint& contact_point,
                         double explained_m) RT_SAFE {
-  constexpr double kRounding_m = 1e-12;
+  constexpr double kMinUnexplained_m = 1e-12;
   RestSphere& s = sphere_[sphere.index];
   s.centre_m = sphere.centre_m;
   s.proxy.restart(contact_point, sphere.radius_m);
   const double unexplained_m = sphere.radius_m - contact_point.distance_m - explained_m;
-  s.unexplained_m = unexplained_m > kRounding_m ? unexplained_m : 0.0;
+  s.unexplained_m = unexplained_m > kMinUnexplained_m ? unexplained_m : 0.0;
   s.is_new = pressing_[sphere.index].presses = true;
 }
 
