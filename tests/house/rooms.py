@@ -76,7 +76,8 @@ ROOMS = {
 TOOLS = {
     **dict.fromkeys(["examples", "ground_truth", "printed", "program", "python"], []),
     **dict.fromkeys(["calibrate", "doctor", "mesh", "report"], ["program"]),
-    **dict.fromkeys(["jitter", "limits", "sweep"], ["program", "report"]),
+    **dict.fromkeys(["jitter", "limits"], ["program", "report"]),
+    "sweep": ["program", "report", "ground_truth"],
     "fit": ["program", "report", "ground_truth"],
     "chart": ["program", "report", "ground_truth"],
     "plan": ["program", "report", "chart"],

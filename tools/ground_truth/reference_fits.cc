@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/scene/scene_strokes.h"
+
 namespace tact::tools::ground_truth {
 namespace {
 
@@ -95,6 +97,14 @@ std::optional<Error> check_tool_reference_fits(const ToolReference& reference, c
   }
   if (scene.elastic) return elastic_differs(reference.body, scene, ModulusOf::kSame, kTool);
   return differs(scene, "has no [elastic], which the reference was solved with", kTool);
+}
+
+model::Tool tool_at(const Scene& scene, const ToolPoint& place, double depth_m) {
+  // p(d) = point - direction (reach - d), as a press stroke has it (scene_strokes.h)
+  const double reach_m = model::scene::reach_m(scene.tool.spheres, scene.hand_inward);
+  return {
+      .position_m = place.point_m + scene.organ.position_m - (reach_m - depth_m) * place.direction,
+      .orientation = place.orientation};
 }
 
 }  // namespace tact::tools::ground_truth

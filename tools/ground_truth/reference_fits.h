@@ -23,4 +23,7 @@ std::optional<model::Error> check_reference_fits(const ReferenceData& reference,
 std::optional<model::Error> check_tool_reference_fits(const ToolReference& reference,
                                                       const model::scene::Scene& scene);
 
+/// The tool at a place, its lowest point `depth_m` beyond it.
+model::Tool tool_at(const model::scene::Scene& scene, const ToolPoint& place, double depth_m);
+
 }  // namespace tact::tools::ground_truth

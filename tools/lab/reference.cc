@@ -30,9 +30,9 @@ std::string default_cache_directory() {
 
 struct Options {
   program::SceneArguments scene;
-  std::string out, cache = default_cache_directory(), self_check;
+  std::string out, cache = default_cache_directory(), self_check, finite_strain;
   std::vector<std::uint32_t> sites, large_strain_sites;
-  std::vector<double> depths_m;
+  std::vector<double> depths_m, tilts_deg;
   int level = 2;
   unsigned jobs = 1;
   bool tool = false, away_from_edges = false, skin = false, sideways = false, json = false;
@@ -49,6 +49,13 @@ void add_options(CLI::App& app, Options& o) {
   app.add_flag("--away-from-edges", o.away_from_edges,
                "with --tool: none of the six where a face within three radii is turned by 30 "
                "degrees or more")
+      ->needs("--tool");
+  app.add_option("--finite-strain", o.finite_strain,
+                 "with --tool: neo-Hookean, at finite strain, solved by FEniCSx or by CalculiX")
+      ->check(CLI::IsMember({"FEniCSx", "CalculiX"}))
+      ->needs("--tool");
+  app.add_option("--tilts", o.tilts_deg, "with --tool: at the hand's site also tilted by degrees")
+      ->delimiter(',')
       ->needs("--tool");
   app.add_flag("--skin", o.skin, "with --tool: also how far the surface around it goes")
       ->needs("--tool");
@@ -120,6 +127,8 @@ Result<json> job_of(const Options& o) {
               {"sideways", o.sideways},
               {"cache", o.cache},
               {"away_from_edges", o.away_from_edges},
+              {"finite_strain", o.finite_strain},
+              {"tilts_deg", o.tilts_deg},
               {"out", o.out},
               {"json", o.json},
               {"self_check", o.self_check}};

@@ -52,7 +52,7 @@ void add_options(CLI::App& app, Options& o) {
   auto* out = app.add_option("--out", o.out, "folder for table and picture; made if need be");
   app.add_option("--reference", o.reference,
                  "hold the scene against the presses of this file instead, as "
-                 "tests/data/reference/finite_strain_liver.json")
+                 "tests/data/reference/liver_finite_strain.json")
       ->excludes(out);
   app.add_option("--vertices", o.vertices,
                  "how many vertices of the organ each way, spread over all, or \"all\" (default "

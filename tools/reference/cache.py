@@ -10,6 +10,7 @@ import pathlib
 from dataclasses import asdict, replace
 
 import contact
+import finite_strain
 import indentation
 import tool_press
 from run import Failure, write
@@ -74,6 +75,9 @@ class Cache:
 
     def tool_cases(self, what):
         return self.solve(what, tool_press, tool_press.ToolCase)
+
+    def finite_cases(self, what):
+        return self.solve(what, finite_strain, tool_press.ToolCase)
 
 
 def probe_of(vertex, tool_radius_m):

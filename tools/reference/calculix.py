@@ -3,7 +3,8 @@
 
 Elements are C3D10, isotropic linear elastic. With large strain (NLGEOM) the material is neo-Hookean with the same E and nu at
 small strain: W = C10 (I1' - 3) + (J - 1)^2 / D1, C10 = G / 2, D1 = 2 / K (CalculiX manual 6.8), G = E / (2 (1 + nu)),
-K = E / (3 (1 - 2 nu)). Either nodes are moved by known ways, or a rigid frictionless ball comes and its contact area is found.
+K = E / (3 (1 - 2 nu)). Either nodes are moved by known ways, or a rigid frictionless tool of balls comes and its contact
+area is found.
 Units of a deck are mm, kPa and mN: CalculiX's tolerances suit numbers near one. Its x goes along the load, so that a moved
 node needs no equation between its coordinates. Source: G. Dhondt, The Finite Element Method for Three-Dimensional
 Thermomechanical Applications, Wiley 2004.
@@ -29,11 +30,12 @@ TET_FACES = np.array([[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]])  # S1 to S4, 
 
 
 @dataclass
-class Ball:
-    radius_m: float
-    centre_m: np.ndarray  # (3,), before it moves
-    along_m: float
-    corners: np.ndarray  # (f, 3), of the faces that it may touch
+class Tool:
+    """One rigid body of balls."""
+    radius_m: np.ndarray  # (b,)
+    centre_m: np.ndarray  # (b, 3), before it moves
+    along_m: list[float]  # where it stops, rising
+    face: np.ndarray  # (f, 6), that it may touch
 
 
 @dataclass
@@ -43,14 +45,15 @@ class Load:
     along_m: np.ndarray = field(default_factory=lambda: np.empty(0))  # how far each goes along the direction
     is_bonded: bool = False  # the moved nodes cannot move sideways; else they slide without friction
     large_strain: bool = False
-    ball: Ball | None = None  # instead of moved nodes; needs large strain
+    tool: Tool | None = None  # instead of moved nodes; needs large strain
 
 
 @dataclass
 class Answer:
     force_N: np.ndarray  # (3,), that moves the moved nodes, or the ball
     moved_force_N: np.ndarray  # (m, 3), of each moved node
-    displacement_m: np.ndarray  # (N, 3); NaN where it was not asked for
+    displacement_m: np.ndarray  # (N, 3), at the end; NaN where it was not asked for
+    tool_N: np.ndarray | None = None  # (stops, b, 3), that moves each ball
 
 
 def rows(first, table):
@@ -88,23 +91,22 @@ def rigid_ball():
     return np.vstack([INNER * point[used], point[used], MIDDLE * point[used]])[kept], wedge.reshape(-1, 15)
 
 
-def ball_text(organ, body, ball, axes):
+def tool_text(organ, body, tool, axes):
     node, wedge = rigid_ball()
-    first_node, modulus_kPa = len(body.node_m), organ.youngs_modulus_Pa * KPA
-    node_mm = ((node * ball.radius_m) + axes @ ball.centre_m) * MM
-    number = wedge + first_node + 1
+    size, modulus_kPa = len(body.node_m), organ.youngs_modulus_Pa * KPA
+    node_mm = (tool.radius_m[:, None, None] * node + (tool.centre_m @ axes.T)[:, None]) * MM
+    number = size + 1 + len(node) * np.arange(len(node_mm))[:, None, None] + wedge
     lines = "".join(f"{i},{','.join(map(str, w[:12]))},\n{','.join(map(str, w[12:]))}\n"
-                    for i, w in enumerate(number.tolist(), len(body.element) + 1))
-    size = len(body.node_m)
-    key, wanted = (np.sort(corners, axis=-1) @ [size**2, size, 1] for corners in (body.element[:, TET_FACES], ball.corners))
+                    for i, w in enumerate(number.reshape(-1, 15).tolist(), len(body.element) + 1))
+    key, wanted = (np.sort(corners, axis=-1) @ [size**2, size, 1] for corners in (body.element[:, TET_FACES], tool.face[:, :3]))
     touched = "".join(f"{e + 1},S{f + 1}\n" for e, f in np.argwhere(np.isin(key, wanted)).tolist())
-    # Every node of the ball is moved by the same way: its own stiffness does not matter.
-    return (f"*NODE,NSET=BALL\n{rows(first_node + 1, node_mm)}*ELEMENT,TYPE=C3D15,ELSET=BALL\n{lines}"
-            f"*MATERIAL,NAME=BALL\n*ELASTIC\n{modulus_kPa:.12g},0.3\n*SOLID SECTION,ELSET=BALL,MATERIAL=BALL\n"
-            f"*SURFACE,NAME=BALL,TYPE=ELEMENT\nBALL,S2\n*SURFACE,NAME=TOUCHED,TYPE=ELEMENT\n{touched}"
+    # Every node of the tool is moved by the same way: its own stiffness does not matter.
+    return (f"*NODE,NSET=TOOL\n{rows(size + 1, node_mm.reshape(-1, 3))}*ELEMENT,TYPE=C3D15,ELSET=TOOL\n{lines}"
+            f"*MATERIAL,NAME=TOOL\n*ELASTIC\n{modulus_kPa:.12g},0.3\n*SOLID SECTION,ELSET=TOOL,MATERIAL=TOOL\n"
+            f"*SURFACE,NAME=TOOL,TYPE=ELEMENT\nTOOL,S2\n*SURFACE,NAME=TOUCHED,TYPE=ELEMENT\n{touched}"
             "*SURFACE INTERACTION,NAME=SLIDES\n*SURFACE BEHAVIOR,PRESSURE-OVERCLOSURE=LINEAR\n"
-            f"{BALL_STIFFNESS * modulus_kPa / (ball.radius_m * MM):.12g}\n"
-            "*CONTACT PAIR,INTERACTION=SLIDES,TYPE=MORTAR\nTOUCHED,BALL\n")
+            f"{BALL_STIFFNESS * modulus_kPa / (tool.radius_m.min() * MM):.12g}\n"
+            "*CONTACT PAIR,INTERACTION=SLIDES,TYPE=MORTAR\nTOUCHED,TOOL\n")
 
 
 def material_text(organ, large_strain):
@@ -115,17 +117,17 @@ def material_text(organ, large_strain):
     return f"*MATERIAL,NAME=TISSUE\n{law}*SOLID SECTION,ELSET=BODY,MATERIAL=TISSUE\n"
 
 
-def step_text(load):
+def step_text(load, along_m, before_m, printed):
+    """One step, to where all moved nodes or the tool stop."""
     text = f"*STEP{',NLGEOM,INC=1000' if load.large_strain else ''}\n*STATIC\n"
     if load.large_strain:
-        largest = min(MAX_STEP, BALL_STEP * load.ball.radius_m / load.ball.along_m) if load.ball else MAX_STEP
+        way_m, only = along_m - before_m, not load.tool or len(load.tool.along_m) == 1
+        largest = min(MAX_STEP if only else 1.0, BALL_STEP * load.tool.radius_m.min() / way_m if load.tool else 1.0)
         text += f"{0.5 * largest:.6g},1.,1e-5,{largest:.6g}\n"
     text += "*BOUNDARY\n"
-    for node, along_m in zip(load.moved, load.along_m):
-        text += f"{node + 1},1,1,{along_m * MM:.12g}\n" + (f"{node + 1},2,3\n" if load.is_bonded else "")
-    if load.ball:
-        text += f"BALL,1,1,{load.ball.along_m * MM:.12g}\nBALL,2,3\n"
-    return text
+    for node, node_along_m in zip(load.moved, load.along_m):
+        text += f"{node + 1},1,1,{node_along_m * MM:.12g}\n" + (f"{node + 1},2,3\n" if load.is_bonded else "")
+    return text + (f"TOOL,1,1,{along_m * MM:.12g}\nTOOL,2,3\n" if load.tool else "") + printed + "*END STEP\n"
 
 
 def axes_of(load):
@@ -134,37 +136,56 @@ def axes_of(load):
 
 
 def deck_of(organ, body, load, reported):
-    """Prints forces of the set MOVED (with a ball: HELD) and displacements of the set REPORTED, at the end of the way."""
+    """Prints forces of the set FORCED (moved, or touched by the tool) and displacements of REPORTED, at the end of each step."""
     axes = axes_of(load)
-    sets = {"HELD": body.held, "MOVED": load.moved, "REPORTED": reported}
+    sets = {"HELD": body.held, "FORCED": forced(load), "REPORTED": reported}
+    printed = "".join(f"*NODE PRINT,NSET={name},FREQUENCY=1000\n{what}\n" for name, what in (("FORCED", "RF"), ("REPORTED", "U")))
+    stops_m = load.tool.along_m if load.tool else [0.0]
     return (f"*NODE,NSET=ALL\n{rows(1, body.node_m @ axes.T * MM)}"
             f"*ELEMENT,TYPE=C3D10,ELSET=BODY\n{rows(1, body.element + 1)}" +
             "".join(node_set(name, nodes) for name, nodes in sets.items() if len(nodes)) +
             material_text(organ, load.large_strain) +
-            (ball_text(organ, body, load.ball, axes) if load.ball else "") +
-            ("*BOUNDARY\nHELD,1,3\n" if len(body.held) else "") + step_text(load) +
-            f"*NODE PRINT,NSET={'HELD' if load.ball else 'MOVED'},FREQUENCY=1000\nRF\n"
-            "*NODE PRINT,NSET=REPORTED,FREQUENCY=1000\nU\n*END STEP\n")
+            (tool_text(organ, body, load.tool, axes) if load.tool else "") +
+            ("*BOUNDARY\nHELD,1,3\n" if len(body.held) else "") +
+            "".join(step_text(load, *ends_m, printed) for ends_m in zip(stops_m, [0.0, *stops_m])))
+
+
+def forced_by(tool):
+    return np.unique(tool.face)
+
+
+def forced(load):
+    return forced_by(load.tool) if load.tool else load.moved
 
 
 def read_vectors(text, heading, nodes, size):
-    """(N, 3), NaN but for the nodes asked for, from the lines "node x y z" below a heading."""
-    lines = text.split(heading)[1].split("\n\n")[1]
-    table = np.array(lines.split(), dtype=float).reshape(-1, 4)
-    out = np.full((size, 3), np.nan)
-    out[table[:, 0].astype(int) - 1] = table[:, 1:]
-    if not np.isfinite(out[nodes]).all():
+    """(steps, N, 3), NaN but for the nodes asked for, from the lines "node x y z" below each heading."""
+    parts = text.split(heading)[1:]
+    out = np.full((len(parts), size, 3), np.nan)
+    for one, part in zip(out, parts):
+        table = np.array(part.split("\n\n")[1].split(), dtype=float).reshape(-1, 4)
+        one[table[:, 0].astype(int) - 1] = table[:, 1:]
+    if not len(parts) or not np.isfinite(out[:, nodes]).all():
         raise ValueError
     return out
 
 
+def tool_force_N(body, tool, force_N, moved_m, direction):
+    """(stops, b, 3): the force on a node is that of the ball nearest to it."""
+    out = np.zeros((len(force_N), len(tool.radius_m), 3))
+    for stop, along_m in enumerate(tool.along_m):
+        off_m = (body.node_m + moved_m[stop])[forced_by(tool), None] - tool.centre_m - along_m * direction
+        nearest = (np.linalg.norm(off_m, axis=2) - tool.radius_m).argmin(axis=1)
+        np.add.at(out[stop], nearest, force_N[stop])
+    return out
+
+
 def read_answer(text, body, load, reported):
-    size, axes = len(body.node_m), axes_of(load)
-    name, nodes = ("HELD", body.held) if load.ball else ("MOVED", load.moved)
-    force_N = read_vectors(text, f"forces (fx,fy,fz) for set {name} ", nodes, size)[nodes] @ axes * NEWTON
+    size, axes, nodes = len(body.node_m), axes_of(load), forced(load)
+    force_N = read_vectors(text, "forces (fx,fy,fz) for set FORCED ", nodes, size)[:, nodes] @ axes * NEWTON
     moved_m = read_vectors(text, "displacements (vx,vy,vz) for set REPORTED ", reported, size) @ axes / MM
-    # What is held keeps the body from following the ball.
-    return Answer(force_N.sum(axis=0) * (-1.0 if load.ball else 1.0), force_N, moved_m)
+    tool_N = tool_force_N(body, load.tool, force_N, moved_m, load.direction) if load.tool else None
+    return Answer(force_N[-1].sum(axis=0), force_N[-1], moved_m[-1], tool_N)
 
 
 def solve(organ, body, load, reported):

@@ -98,20 +98,21 @@ def load_of(body, rim, what):
     if what.depth_m < 0.0:
         return calculix.Load(rim.axis, nodes, along_m, is_bonded=True, large_strain=what.large_strain)
     if what.large_strain:
-        return calculix.Load(rim.axis, large_strain=True, ball=ball_on(body, rim, what.tool_radius_m, what.depth_m))
+        return calculix.Load(rim.axis, large_strain=True, tool=ball_on(body, rim, what.tool_radius_m, what.depth_m))
     return press_load(body, rim, what)
 
 
 def ball_on(body, rim, radius_m, depth_m):
     """The ball rests on the site and goes along the axis."""
     reach = surface.Circle(rim.at_m, rim.axis, BALL_REACH * radius_m)
-    return calculix.Ball(radius_m, rim.at_m - radius_m * rim.axis, depth_m, body.face[body.within(reach), :3])
+    return calculix.Tool(np.array([radius_m]), (rim.at_m - radius_m * rim.axis)[None], [depth_m], body.face[body.within(reach)])
 
 
 def touched_radius_m(body, ball, axis, displacement_m):
-    """Of a circle as large as the ball's contact area, seen along its way."""
-    p = body.node_m[ball.corners] + displacement_m[ball.corners]
-    touching = np.linalg.norm(p - ball.centre_m - ball.along_m * axis, axis=2) < (1.0 + BALL_TOUCH) * ball.radius_m
+    """Of a circle as large as the contact area of the ball, seen along its way."""
+    corners = ball.face[:, :3]
+    p = body.node_m[corners] + displacement_m[corners]
+    touching = np.linalg.norm(p - ball.centre_m - ball.along_m[-1] * axis, axis=2) < (1.0 + BALL_TOUCH) * ball.radius_m
     # Tissue that folds in over the ball's widest circle is not seen along the way.
     seen_m2 = np.maximum(0.0, -0.5 * np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]) @ axis)
     return float(np.sqrt(touching.mean(axis=1) @ seen_m2 / np.pi))
@@ -132,6 +133,6 @@ def solve(organ, what):
     load = load_of(body, rim, what)
     answer = calculix.solve(organ, body, load, np.unique(body.face))
     inward_m = answer.displacement_m @ rim.axis
-    radius_m = touched_radius_m(body, load.ball, rim.axis, answer.displacement_m) if load.ball else rim.radius_m
+    radius_m = touched_radius_m(body, load.tool, rim.axis, answer.displacement_m) if load.tool else rim.radius_m
     profile_m = profile_of(body, rim.at_m, -rim.axis, inward_m, inward_m[what.vertex])
     return [Case(what.depth_m, what.large_strain, float(answer.force_N @ load.direction), float(radius_m), profile_m.tolist())]

@@ -11,6 +11,7 @@ import numpy as np
 import body
 import cache as caches
 import calculix
+import finite_strain
 import plan as plans
 import run
 import self_check
@@ -89,8 +90,13 @@ def solve_tool(job):
     places = tool_plan.Places(organ, np.array([s["offset_m"] for s in tool]), np.array([s["radius_m"] for s in tool]),
                               np.array(hand["inward"]), depths_m[-1], job["away_from_edges"])
     fitted = [site["vertex"] for site in job["reference_sites"] if not site["held_out"]]
+    tool_places = tool_plan.places_of(places, hand, fitted, job["sites"], job["tilts_deg"])
+    if job["finite_strain"]:
+        solver = finite_strain.version(job["finite_strain"])
+        presses = tool_plan.finite_presses_of(places, tool_places, depths_m, job["level"], job["finite_strain"])
+        solved = run.run_jobs(caches.Cache(job["cache"], organ, solver).finite_cases, presses, job["jobs"], LABEL)
+        return texts.tool(places, solver, [replace(place, cases=cases) for place, cases in zip(tool_places, solved)])
     solver = f"tact, gmsh {body.gmsh_version()}"
-    tool_places = tool_plan.places_of(places, hand, fitted, job["sites"])
     if job["skin"]:
         tool_places = [replace(place, skin=tool_plan.surface_around(organ, place)) for place in tool_places]
     cache = caches.Cache(job["cache"], organ, solver)

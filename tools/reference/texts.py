@@ -63,6 +63,7 @@ def tool(places, solver, tool_places):
     spheres = [{"offset_m": short(offset_m), "radius_m": short(radius_m)}
                for offset_m, radius_m in zip(places.offset_m, places.radius_m.tolist())]
     data = [{"vertex": place.vertex, **({"slid_m": short(place.slid_m)} if np.any(place.slid_m) else {}),
+             **({"tilt_deg": place.tilt_deg} if place.tilt_deg else {}),
              "point_m": short(place.point_m), "direction": short(place.direction),
              "orientation_wxyz": short(place.orientation, 9), **({"skin": place.skin} if place.skin else {}),
              "cases": [case_of(c, sphere_N=short(c.sphere_N, 6), **({"skin_m": short(c.skin_m, 4)} if c.skin_m else {}))

@@ -19,6 +19,7 @@ import numpy as np
 import scipy.spatial
 
 import surface
+from finite_strain import FinitePress
 from indentation import ROUGH
 from plan import remaining_error
 from tool_press import ToolCase, ToolPress
@@ -43,9 +44,12 @@ class PressPlace:
     orientation: np.ndarray = field(default_factory=lambda: np.array([1.0, 0, 0, 0]))  # (4,), w x y z, from how the tool rests
     skin: tuple[int, ...] = ()
     cases: list[ToolCase] = field(default_factory=list)
+    tilt_deg: float = 0.0  # at the hand's own site: how far the tool is turned there
 
     @property
     def name(self):
+        if self.tilt_deg:
+            return f"tilted {self.tilt_deg:g}"
         if self.vertex is not None:
             return str(self.vertex)
         slid_m = np.linalg.norm(self.slid_m)
@@ -164,14 +168,24 @@ def slides_of(hand, places):
     return out
 
 
-def places_of(places, hand, fitted, vertices):
+def tilted(places, own, tilt_deg):
+    """At the same site, turned about the axis across its way and the line of its spheres: one of them comes first."""
+    off_m = places.offset_m[-1] - places.offset_m[0]
+    axis = np.cross(own.direction, off_m)
+    half_rad = np.radians(0.5 * tilt_deg)
+    turn = np.array([np.cos(half_rad), *(np.sin(half_rad) * surface.unit(axis))])
+    return places.touching(replace(own, orientation=turn, tilt_deg=tilt_deg))
+
+
+def places_of(places, hand, fitted, vertices, tilts_deg=()):
     """Every Place of the tool; `vertices`: instead of the slides and of those that the rule chooses."""
     site_m, organ = np.array(hand["site_m"]), places.organ
     own = PressPlace(None, np.zeros(3), site_m, places.inward)
     slides = [] if vertices else slides_of(hand, places)
     taken_m = [site_m, *(organ.vertex_m[v] for v in fitted if v < len(organ.vertex_m))]
     chosen = vertices or places.unseen(taken_m)
-    return [own, *(places.touching(replace(own, slid_m=slid_m, point_m=site_m + slid_m)) for slid_m in slides),
+    return [own, *(tilted(places, own, tilt_deg) for tilt_deg in tilts_deg),
+            *(places.touching(replace(own, slid_m=slid_m, point_m=site_m + slid_m)) for slid_m in slides),
             *(places.touching(places.at(v)) for v in chosen)]
 
 
@@ -186,6 +200,12 @@ def presses_of(places, tool_places, depths_m, level):
     return [ToolPress(tuple(place.direction.tolist()), tuple(map(tuple, places.centres_m(place).tolist())),
                       tuple(places.radius_m.tolist()), tuple(depths_m), place.skin if finer else (), level - (not finer))
             for finer in (True, False) if level - (not finer) >= ROUGH for place in tool_places]
+
+
+def finite_presses_of(places, tool_places, depths_m, level, solver):
+    """Every solve at finite strain, at one level: minutes each."""
+    return [FinitePress(tuple(place.direction.tolist()), tuple(map(tuple, places.centres_m(place).tolist())),
+                        tuple(places.radius_m.tolist()), tuple(depths_m), solver, level) for place in tool_places]
 
 
 def assemble(tool_places, solved):

@@ -128,6 +128,21 @@ class ToolPlans(unittest.TestCase):
             point_m = np.einsum("gk,fki->fgi", weight, self.places.corner_m[facing])
             self.assertAlmostEqual(tool_press.reach_beyond(what, point_m)[0].max(), 0.0, delta=0.03e-3)
 
+    def test_a_tilted_tool_brings_one_sphere_first_at_the_same_site(self):
+        own, tilted = tool_plan.places_of(self.places, self.hand, self.fitted, [1985], [40.0])[:2]
+        self.assertEqual((own.name, tilted.name), ("hand's", "tilted 40"))
+        np.testing.assert_array_equal(tilted.direction, own.direction)
+        along_m = self.places.centres_m(tilted) @ own.direction
+        self.assertAlmostEqual(np.ptp(along_m), 8e-3 * np.sin(np.radians(40.0)), delta=1e-9, msg="centres are 8 mm apart")
+        off_m = tilted.point_m - own.point_m
+        np.testing.assert_allclose(off_m - off_m @ own.direction * own.direction, 0.0, atol=1e-12)
+
+    def test_at_finite_strain_each_place_is_solved_once_by_the_program_that_is_named(self):
+        found = tool_plan.places_of(self.places, self.hand, self.fitted, [1985])
+        presses = tool_plan.finite_presses_of(self.places, found, [1e-3, 2e-3], 1, "CalculiX")
+        self.assertEqual([(what.solver, what.level, what.depths_m) for what in presses], [("CalculiX", 1, (1e-3, 2e-3))] * 2)
+        self.assertEqual(presses[0].centre_m, tool_plan.presses_of(self.places, found, [1e-3], 1)[0].centre_m)
+
     def test_an_error_is_what_is_left_of_the_change_between_two_levels(self):
         def solved(force_N):
             return [tool_press.ToolCase(0.002, force_N, [0.0, force_N])]

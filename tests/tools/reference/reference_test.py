@@ -82,10 +82,10 @@ if grep -q NLGEOM case.inp; then
   echo no convergence; exit 201
 fi
 awk -F, '/^[*]/ { set = "" } /^[*]NSET/ { set = $2; next }
-  set == "NSET=MOVED" { for (i = 1; i <= NF; ++i) if ($i) moved = moved $i " 1 0 0\n" }
+  set == "NSET=FORCED" { for (i = 1; i <= NF; ++i) if ($i) moved = moved $i " 1 0 0\n" }
   set == "NSET=REPORTED" { for (i = 1; i <= NF; ++i) if ($i) reported = reported $i " 0 0 0\n" }
   END {
-    print "forces (fx,fy,fz) for set MOVED and time 1\n\n" moved
+    print "forces (fx,fy,fz) for set FORCED and time 1\n\n" moved
     print "displacements (vx,vy,vz) for set REPORTED and time 1\n\n" reported
   }' case.inp > case.dat"""
         asked = [LIVER, "--sites", 1714, "--depths", "0.002,0.007", "--level", 1, "--cache", self.folder / "cache"]
@@ -172,6 +172,6 @@ run.run_jobs(work, [0], 1, "")"""
 
 
 if __name__ == "__main__":
-    names = sys.argv[2:] or ["__main__", "cache_test", "plan_test", "solve_test", "surface_test"]
+    names = sys.argv[2:] or ["__main__", "cache_test", "finite_strain_test", "plan_test", "solve_test", "surface_test"]
     tests = unittest.defaultTestLoader.loadTestsFromNames(names)
     sys.exit(not unittest.TextTestRunner(verbosity=1).run(tests).wasSuccessful())

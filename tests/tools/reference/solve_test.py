@@ -117,14 +117,14 @@ class Deck(unittest.TestCase):
 
     def deck(self, depth_m=0.0, corners=((0, 1, 2),), **load):
         way = np.array([0.0, 0.0, 1.0])
-        ball = calculix.Ball(5e-3, np.array([0, 0, -5e-3]), depth_m, np.array(corners)) if depth_m else None
-        return calculix.deck_of(self.organ, self.body, calculix.Load(way, large_strain=bool(ball), ball=ball, **load), [0])
+        tool = calculix.Tool(np.array([5e-3]), np.array([[0, 0, -5e-3]]), [depth_m], np.array(corners)) if depth_m else None
+        return calculix.deck_of(self.organ, self.body, calculix.Load(way, large_strain=bool(tool), tool=tool, **load), [0])
 
     def test_a_ball_goes_by_a_tenth_of_its_radius_at_a_time(self):
         # CalculiX keeps the direction of a contact through a step.
         self.assertIn("\n*STATIC\n0.025,1.,1e-5,0.05\n", self.deck(10e-3))
         self.assertIn("\n*STATIC\n0.1,1.,1e-5,0.2\n", self.deck(1e-3))
-        self.assertIn("\nBALL,1,1,10\nBALL,2,3\n", self.deck(10e-3))
+        self.assertIn("\nTOOL,1,1,10\nTOOL,2,3\n", self.deck(10e-3))
 
     def test_names_the_element_and_the_number_of_every_face_that_may_be_touched(self):
         # CalculiX manual 6.2: face 1 is 1-2-3, 2 is 1-4-2, 3 is 2-4-3, 4 is 3-4-1; in any order here.
@@ -133,7 +133,7 @@ class Deck(unittest.TestCase):
 
     def test_the_ball_rests_where_it_is_put_in_millimetres(self):
         # The deck's x is the direction of the load; nodes of the body are 1 to 10.
-        first = self.deck(1e-3).split("*NODE,NSET=BALL\n11,")[1].split("\n")[0]
+        first = self.deck(1e-3).split("*NODE,NSET=TOOL\n11,")[1].split("\n")[0]
         known_mm = calculix.rigid_ball()[0][0] * 5.0 + [-5, 0, 0]
         np.testing.assert_allclose([float(x) for x in first.split(",")], known_mm, atol=1e-9)
 
@@ -141,7 +141,7 @@ class Deck(unittest.TestCase):
         deck = self.deck(moved=np.array([1]), along_m=np.array([2e-3]), is_bonded=True)
         self.assertIn("\n*STEP\n*STATIC\n*BOUNDARY\n2,1,1,2\n2,2,3\n", deck)
         self.assertNotIn("CONTACT", deck)
-        self.assertNotIn("BALL", deck)
+        self.assertNotIn("TOOL", deck)
 
     def test_the_ball_is_round_outside_and_has_its_wedges_right_side_out(self):
         node, wedge = calculix.rigid_ball()
@@ -208,10 +208,10 @@ class CalculiX(Solves):
         rim = surface.Circle(np.zeros(3), np.array([0.0, 0.0, -1.0]), radius_m)
         made = body.make_body(block, surface.EdgeLengths(np.zeros((1, 3)), 5e-3, 2.2e-3, 0.8, 8e-3))
         ball = indentation.ball_on(made, rim, radius_m, depth_m)
-        np.testing.assert_array_equal(ball.centre_m, [0, 0, radius_m], err_msg="it rests on the site")
+        np.testing.assert_array_equal(ball.centre_m, [[0, 0, radius_m]], err_msg="it rests on the site")
         centres_m = made.node_m[made.face[:, :3]].mean(axis=1)
-        self.assertEqual(len(ball.corners), (centres_m[:, 2] == 0.0).sum(), "all of the top lies within two radii")
-        answer = calculix.solve(block, made, calculix.Load(rim.axis, large_strain=True, ball=ball), np.unique(made.face))
+        self.assertEqual(len(ball.face), (centres_m[:, 2] == 0.0).sum(), "all of the top lies within two radii")
+        answer = calculix.solve(block, made, calculix.Load(rim.axis, large_strain=True, tool=ball), np.unique(made.face))
         away_m = np.linalg.norm(made.node_m + answer.displacement_m - [0, 0, radius_m - depth_m], axis=1)
         self.assertAlmostEqual(np.nanmin(away_m) / radius_m, 1.0, delta=0.005)
         slid_m = np.hypot(*answer.displacement_m[away_m < 1.01 * radius_m, :2].T)

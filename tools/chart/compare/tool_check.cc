@@ -15,6 +15,7 @@
 namespace tact::tools::chart {
 namespace {
 
+using ground_truth::tool_at;
 using ground_truth::ToolPoint;
 using ground_truth::ToolReference;
 using model::Result;
@@ -31,15 +32,6 @@ Scene reference_scene(Scene scene) {
   scene.contact.friction_ratio = 0.0;
   scene.compliance.large_strain = false;
   return scene;
-}
-
-/// The tool at a place, its lowest point `depth_m` beyond it.
-Tool tool_at(const Scene& scene, const ToolPoint& place, double depth_m) {
-  // p(d) = point - direction (reach - d), as a press stroke has it (scene_strokes.h)
-  const double reach_m = model::scene::reach_m(scene.tool.spheres, scene.hand_inward);
-  return {
-      .position_m = place.point_m + scene.organ.position_m - (reach_m - depth_m) * place.direction,
-      .orientation = place.orientation};
 }
 
 /// The force against the way, from above down to each depth.
