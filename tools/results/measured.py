@@ -231,7 +231,7 @@ def finite_strain():
     for name, keys in STRAINS.items():
         found[name] = json.loads(output_of(*command, "--json", *(word for key in keys for word in ("--set", key))))
         deepest = json.loads(output_of(*command[:-1], "tests/data/reference/liver_finite_strain_12mm.json", "--json",
-                                     *(word for key in keys for word in ("--set", key))))
+                                       *(word for key in keys for word in ("--set", key))))
         for place, press in deepest.items():
             found[name][place]["off_ratio"] += press["off_ratio"]
             found[name][place]["worst_sphere_ratio"] = max(found[name][place]["worst_sphere_ratio"], press["worst_sphere_ratio"])

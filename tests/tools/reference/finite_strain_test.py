@@ -67,7 +67,8 @@ class Programs(Solves):
         self.assertAlmostEqual(case.force_N / 3.776e-3, 1.0, delta=0.06, msg="RF-7, neo-Hookean; the roughest mesh")
 
     def test_a_force_is_that_of_the_nearest_ball(self):
-        tool = calculix.Tool(np.array([1.0, 1.0]), np.array([[-1.0, 0, 1], [1.0, 0, 1]]), [0.1, 0.2], np.array([[0, 1, 2, 3, 4, 5]]))
+        tool = calculix.Tool(np.array([1.0, 1.0]), np.array([[-1.0, 0, 1], [1.0, 0, 1]]), [0.1, 0.2],
+                             np.array([[0, 1, 2, 3, 4, 5]]))
         made = body.Body(np.array([[x, 0.0, 0.0] for x in (-1.2, -1.0, -0.5, 0.5, 1.0, 1.2)]), None, None, None, None)
         force_N = np.tile(DOWN, (2, 6, 1))
         found_N = calculix.tool_force_N(made, tool, force_N, np.zeros((2, 6, 3)), DOWN)
