@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""No phase of a tick is more than 10 % above its budget, which is its cost in the last release.
+"""No phase of a tick is more than 10 % above its budget, which is its cost in the last release; a p99.9 not more than 25 %,
+as a few ticks decide it, and of the wake-up the kernel.
 
 usage: tests/house/budgets_test.py [--release VERSION]     with a version: the costs of now become the budgets
 
@@ -19,7 +20,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 DATA = ROOT / "tests/data"
 CHANGELOG = "tools/deploy/CHANGELOG.md"
 BUDGETS = "tests/data/bench_budgets.json"
-ALLOWED_GROWTH = 1.10
+ALLOWED_GROWTH, P999_GROWTH = 1.10, 1.25
 RAISE = re.compile(r"^- Budget: (.+) ([\d.]+) -> ([\d.]+): \S", re.M)
 DIGEST = re.compile(r"^- Budgets of \S+: `([0-9a-f]{16})`", re.M)
 
@@ -38,6 +39,10 @@ def digest(budgets):
     return hashlib.sha256(json.dumps(budgets, sort_keys=True).encode()).hexdigest()[:16]
 
 
+def most_allowed(name, budget):
+    return budget * (P999_GROWTH if name.endswith(" p99.9") else ALLOWED_GROWTH)
+
+
 def breaches(now, budgets, changelog):
     if DIGEST.findall(changelog)[:1] != [digest(budgets)]:
         yield (f"{BUDGETS}:1: it is not the file that the last release's line in {CHANGELOG} names; "
@@ -47,14 +52,14 @@ def breaches(now, budgets, changelog):
         budget = budgets["costs"].get(name)
         if budget is None:
             continue  # of a device, law or row that the release did not have
-        allowed = raised.get(name, (budget, budget))[1] * ALLOWED_GROWTH
+        allowed = most_allowed(name, raised.get(name, (budget, budget))[1])
         if cost > allowed:
             yield (f"{BUDGETS}:1: {name} costs {cost:g}, its budget is {budget:g}: make it shorter, or write in {CHANGELOG} "
                    f"'- Budget: {name} {budget:g} -> {cost:g}: REASON'")
     for name, (old, new) in raised.items():
         if now.get(name) is None or budgets["costs"].get(name) != old:
             yield f"{CHANGELOG}:1: '- Budget: {name} {old:g} -> {new:g}' raises no budget of {BUDGETS}; take the line out"
-        elif now[name] <= old * ALLOWED_GROWTH:
+        elif now[name] <= most_allowed(name, old):
             yield f"{CHANGELOG}:1: '- Budget: {name} {old:g} -> {new:g}' is not needed, it costs {now[name]:g}; take the line out"
 
 
@@ -68,6 +73,10 @@ def self_test():
         found = len(list(breaches({"liver render median": cost}, budgets, changelog)))
         if found != count:
             yield f"tests/house/budgets_test.py:1: a cost of {cost} with {changelog!r} has {found} breaches"
+    steep = {"release": "1", "costs": {"liver render p99.9": 1000.0}}
+    for cost, count in ((1240, 0), (1260, 1)):
+        if len(list(breaches({"liver render p99.9": cost}, steep, f"- Budgets of 1: `{digest(steep)}`\n"))) != count:
+            yield f"tests/house/budgets_test.py:1: a p99.9 of {cost} is {'refused' if count == 0 else 'good'}"
     other = {"release": "1", "costs": {"liver render median": 2000.0}}
     if not list(breaches({"liver render median": 1900}, other, line)):
         yield "tests/house/budgets_test.py:1: a budget can be raised without a line in the CHANGELOG"
