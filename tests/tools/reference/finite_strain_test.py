@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The whole tool at finite strain: the coarser surface far away, each program on a small body, their committed answers."""
 import importlib.util
+import json
 import unittest
 
 import numpy as np
 
-from support import Solves, ball, liver, needs_calculix, organ_of
+from support import ROOT, Solves, ball, liver, needs_calculix, organ_of
 
 import body
 import calculix
@@ -72,3 +73,15 @@ class Programs(Solves):
         force_N = np.tile(DOWN, (2, 6, 1))
         found_N = calculix.tool_force_N(made, tool, force_N, np.zeros((2, 6, 3)), DOWN)
         np.testing.assert_array_equal(found_N @ DOWN, [[3, 3], [3, 3]])
+
+
+class Committed(unittest.TestCase):
+    def test_both_programs_agree_within_2_percent(self):
+        told = json.loads((ROOT / "tools/results/second_solver.json").read_text())["values"]
+        for place, at in told["place"].items():
+            for depth_mm, one in at.items():
+                with self.subTest(place=place, depth_mm=depth_mm):
+                    self.assertAlmostEqual(one["fenicsx_N"] / one["calculix_N"], 1.0, delta=0.02)
+                    self.assertAlmostEqual(one["percent"], 100.0 * (one["fenicsx_N"] / one["calculix_N"] - 1.0), delta=1e-9)
+                    self.assertLess(one["sphere_percent"], 2.0)
+        self.assertIn("5", told["place"]["hand's"], "deeper than the tip's radius")
