@@ -178,14 +178,19 @@ def tilted(places, own, tilt_deg):
 
 
 def places_of(places, hand, fitted, vertices, tilts_deg=()):
-    """Every Place of the tool; `vertices`: instead of the slides and of those that the rule chooses."""
+    """Every Place of the tool; `vertices`: instead of the slides and of those that the rule chooses.
+
+    With tilts and no vertices only the hand's site.
+    """
     site_m, organ = np.array(hand["site_m"]), places.organ
     own = PressPlace(None, np.zeros(3), site_m, places.inward)
+    turned = [own, *(tilted(places, own, tilt_deg) for tilt_deg in tilts_deg if tilt_deg)]
+    if len(tilts_deg) and not vertices:
+        return turned
     slides = [] if vertices else slides_of(hand, places)
     taken_m = [site_m, *(organ.vertex_m[v] for v in fitted if v < len(organ.vertex_m))]
     chosen = vertices or places.unseen(taken_m)
-    return [own, *(tilted(places, own, tilt_deg) for tilt_deg in tilts_deg),
-            *(places.touching(replace(own, slid_m=slid_m, point_m=site_m + slid_m)) for slid_m in slides),
+    return [*turned, *(places.touching(replace(own, slid_m=slid_m, point_m=site_m + slid_m)) for slid_m in slides),
             *(places.touching(places.at(v)) for v in chosen)]
 
 

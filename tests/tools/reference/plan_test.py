@@ -131,6 +131,7 @@ class ToolPlans(unittest.TestCase):
     def test_a_tilted_tool_brings_one_sphere_first_at_the_same_site(self):
         own, tilted = tool_plan.places_of(self.places, self.hand, self.fitted, [1985], [40.0])[:2]
         self.assertEqual((own.name, tilted.name), ("hand's", "tilted 40"))
+        self.assertEqual(len(tool_plan.places_of(self.places, self.hand, self.fitted, [], [0.0, 20.0])), 2, "of that site alone")
         np.testing.assert_array_equal(tilted.direction, own.direction)
         along_m = self.places.centres_m(tilted) @ own.direction
         self.assertAlmostEqual(np.ptp(along_m), 8e-3 * np.sin(np.radians(40.0)), delta=1e-9, msg="centres are 8 mm apart")
