@@ -13,14 +13,14 @@ namespace {
 
 struct Unit {
   const char* column;
-  double in_SI;
+  double in_si;
 };
 
 /// The first of the columns that the file has.
 Result<std::pair<std::size_t, double>> find_one(const io::Csv& csv,
                                                 const std::array<Unit, 2>& units) {
   for (const Unit& unit : units)
-    if (const auto column = csv.find(unit.column)) return std::pair{*column, unit.in_SI};
+    if (const auto column = csv.find(unit.column)) return std::pair{*column, unit.in_si};
   return csv.blame(csv.header_line(),
                    fmt::format("no column {} or {}; write their names as the first line, "
                                "\"depth_mm,force_N\"",

@@ -7,12 +7,14 @@ The displacement u, quadratic on tetrahedra with straight edges, makes this ener
     P(g) = 0 for g <= 0,  g^3 / (6 w) to w,  then g^2 / 2 - w g / 2 + w^2 / 6
 
 F = I + grad u, J = det F, G = E / (2 (1 + nu)), K = E / (3 (1 - 2 nu)); c_s, R_s centre and radius of a sphere, rigid and without
-friction; k its penalty per area of the resting skin, w where its pressure becomes straight. The force on a sphere is -dW/dc_s.
+friction; k its penalty per area of the resting surface, w where its pressure becomes straight. The force on a sphere is -dW/dc_s.
 Nothing is shared with CalculiX but the mesh: no element, no contact search, no program. mm, kPa, mN.
 
 Newton's method with MUMPS; the next step begins where the last two point. A step without solution is halved.
 Source: P. Wriggers, Computational Contact Mechanics, Springer 2006, 6.3.
 """
+import re
+
 import numpy as np
 
 from run import Code, Failure
@@ -51,6 +53,16 @@ def touch(ufl, inside, soft):
             by_depth(inside - 0.5 * soft, inside**2 / (2.0 * soft)))
 
 
+def compiled(dolfinx, form):
+    """dolfinx keeps what it has compiled, and a lock beside it."""
+    try:
+        return dolfinx.fem.form(form)
+    except TimeoutError as locked:
+        file = re.search(r"remove (\S+\.c)", str(locked))
+        raise Failure("another press compiles the same equations for FEniCSx, or one was stopped while it did: wait, or remove "
+                      f"{file[1] if file else '~/.cache/fenics'}") from None
+
+
 class Problem:
     """The energy's slope and curvature of a body under a tool."""
 
@@ -82,8 +94,8 @@ class Problem:
             energy += penalty * touch_energy * ds
             pushes.append(penalty * pressure * ufl.dot(away, way) / ufl.sqrt(ufl.inner(away, away)) * ds)
         slope = ufl.derivative(energy, self.u, v)
-        self.slope, self.curvature = dolfinx.fem.form(slope), dolfinx.fem.form(ufl.derivative(slope, self.u, du))
-        self.force = [dolfinx.fem.form(push) for push in pushes]
+        self.slope, self.curvature = compiled(dolfinx, slope), compiled(dolfinx, ufl.derivative(slope, self.u, du))
+        self.force = [compiled(dolfinx, push) for push in pushes]
         held = dolfinx.mesh.locate_entities_boundary(mesh, 2, lambda x: organ.held(x.T / MM))
         self.held = dolfinx.fem.dirichletbc(np.zeros(3), dolfinx.fem.locate_dofs_topological(space, 2, held), space)
         self.matrix, self.residual = dolfinx.fem.petsc.create_matrix(self.curvature), dolfinx.fem.petsc.create_vector(self.slope)

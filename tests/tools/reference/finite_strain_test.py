@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The whole tool at finite strain: the coarser surface far away, each program on a small body, their committed answers."""
+"""The whole tool at finite strain: the coarser surface far away, each program on a small body."""
 import importlib.util
+import types
 import unittest
 
 import numpy as np
@@ -10,10 +11,12 @@ from support import Solves, ball, liver, needs_calculix, organ_of
 import body
 import calculix
 import coarsen
+import fenicsx
 import finite_strain
 import job
 import self_check
 import surface
+from run import Failure
 
 DOWN, RADIUS_M = np.array([0.0, 0.0, -1.0]), 5e-3
 needs_fenicsx = unittest.skipUnless(importlib.util.find_spec("dolfinx"),
@@ -73,3 +76,10 @@ class Programs(Solves):
         force_N = np.tile(DOWN, (2, 6, 1))
         found_N = calculix.tool_force_N(made, tool, force_N, np.zeros((2, 6, 3)), DOWN)
         np.testing.assert_array_equal(found_N @ DOWN, [[3, 3], [3, 3]])
+
+    def test_a_compile_that_was_stopped_is_named_with_its_file(self):
+        def form(_):
+            raise TimeoutError("JIT compilation timed out.\n  Try cleaning cache (e.g. remove /home/a/libffcx_forms_1.c) or ...")
+        stopped = types.SimpleNamespace(fem=types.SimpleNamespace(form=form))
+        with self.assertRaisesRegex(Failure, "wait, or remove /home/a/libffcx_forms_1.c$"):
+            fenicsx.compiled(stopped, None)
