@@ -98,7 +98,8 @@ class Device {
   /// that the first tick is not longer.
   virtual void catch_up(std::int64_t now_ns) RT_SAFE { (void)now_ns; }
 
-  // Called by the loop's thread, once per tick, in this order.
+  // Called by the loop's thread, once per tick: read, with a clutch shift_tool, ready, permit,
+  // set_grip_force, write.
 
   /// Newest sample; not fresh until the device knows its position. Returns the device's fault.
   [[nodiscard]] virtual Fault read(Sample& sample, std::int64_t now_ns) RT_SAFE = 0;

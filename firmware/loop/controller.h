@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // controller.h - the phases detect, render and limit of a tick, without device and clock.
 //
-// The force depends on TickInput only, so a replay of a recorded run gives the same bits
-// (replay.h). The loop (rt_loop.h) calls the three phases and measures their durations.
+// The force depends on TickInput and on the contact in use, so a replay of a recorded run gives the
+// same bits (replay.h): TickInput::variant names the contact. The loop (rt_loop.h) calls the three
+// phases and measures their durations.
 #pragma once
 
 #include <optional>

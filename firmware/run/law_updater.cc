@@ -120,10 +120,19 @@ std::optional<std::string> LawUpdater::poll() {
   std::unique_lock lock(mutex_);
   auto outcome = std::exchange(outcome_, std::nullopt);
   lock.unlock();
+  std::string older;  // its client has its answer
+  if (outcome && state_ == State::kReplacing && !use_.contacts.is_pending()) {
+    state_ = next(state_, Event::kUsed);
+    older = offered_.named + ": set";
+  }
   if (outcome) {
     state_ = next(state_, *outcome ? Event::kPrepared : Event::kFailed);
-    if (!*outcome) return refuse(take_waiting(), outcome->error().message);
+    if (!*outcome) {
+      const std::string refused = refuse(take_waiting(), outcome->error().message);
+      return older.empty() ? refused : older + "; " + refused;
+    }
     offer(std::move(**outcome));
+    if (!older.empty()) return older;
   }
   if (state_ == State::kIdle || state_ == State::kPreparing) return std::nullopt;
   const bool is_used = !use_.contacts.is_pending();

@@ -5,6 +5,7 @@
 //     write    torques of force and gravity, in these drives' own frames         one sendmmsg
 //
 //     off --permit--> starting --all three give torque--> ready --not permitted--> off
+//     any --fault--> stopped
 //
 // Torque is zero unless ready. A sample is fresh, of drives that sample at one SYNC, when all three
 // have sent a new position since the last read; of drives with their own clocks, when one has and

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""No two files say the same at length: the longest run of tokens that two of them share, for any names and numbers
-are, is shorter than LIMITS has it, or the pair is EXCUSED with its reason.
+"""No two files say the same at length: the longest run of tokens that two of them share, regardless of names and
+numbers, is shorter than LIMITS has it, or the pair is EXCUSED with its reason.
 
 Runs Debian's sim_c++ (similarity-tester) on the C++ without its #include lines and prints every breach as file:line:
 sentence. A file is not held against itself: what repeats there is a table. Exit status 0 or 1.

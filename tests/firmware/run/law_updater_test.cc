@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each transition of the update of a law's numbers, with a loop on simulated time.
+// The update of a law's numbers: its transitions, and with a loop on simulated time.
 #include "firmware/run/law_updater.h"
 
 #include <gtest/gtest.h>
@@ -134,6 +134,19 @@ TEST_F(LawUpdaterTest, ARequestWhileOfferedIsRefused) {
   EXPECT_EQ(updater->state(), State::kOffered);
   step();
   EXPECT_EQ(poll(), std::string(kSofter) + ": set") << "the first request is not disturbed";
+}
+
+TEST_F(LawUpdaterTest, AnOlderOfferThatIsUsedIsReportedWhileItIsReplaced) {
+  defer(client);
+  EXPECT_FALSE(updater->request(second.request(), "rhombus.normal_stiffness_N_per_m=130"));
+  EXPECT_EQ(updater->state(), State::kReplacing);
+  step_until_clear(true);
+  step();
+  // Whether the newer tissue is ready or not: with a pause, it mostly is.
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_EQ(poll(), std::string(kSofter) + ": set");
+  poll_until_prepared();
+  EXPECT_EQ(updater->state(), State::kOffered);
 }
 
 TEST_F(LawUpdaterTest, NumbersThatCannotBePreparedAreRefusedAndForgotten) {

@@ -137,7 +137,7 @@ TEST(ToolArm, TurnsTheElbowToItsGoalUnlessALimitIsInTheWay) {
   for (const ArmGoal& same : {goal(-0.40, 0.09, 0.22), goal(-0.22, 0.12, 0.45)}) {
     ToolArm settled(kPlan);
     for (int i = 0; i < 100; ++i) settled.relax(0.05), settled.hold(same);
-    for (double reported_rad = -3.0; reported_rad <= 3.0; reported_rad += 0.1) {
+    for (double elbow_goal_rad = -3.0; elbow_goal_rad <= 3.0; elbow_goal_rad += 0.1) {
       ToolArm arm = settled;
       const auto before = arm.points_m();
       const Vector3d shoulder_m = before[kShoulderBone],
@@ -146,8 +146,8 @@ TEST(ToolArm, TurnsTheElbowToItsGoalUnlessALimitIsInTheWay) {
         return (p_m - shoulder_m) - (p_m - shoulder_m).dot(along) * along;
       };
       ArmGoal reported = same;
-      reported.elbow_m =
-          shoulder_m + Eigen::AngleAxisd(reported_rad, along) * (1.3 * beside(before[kElbowBone]));
+      reported.elbow_m = shoulder_m + Eigen::AngleAxisd(elbow_goal_rad, along) *
+                                          (1.3 * beside(before[kElbowBone]));
       EXPECT_TRUE(arm.hold(reported).reached);
       const auto left_rad = [&](std::size_t i) {
         const Bone& bone = arm.chain().bones[i];

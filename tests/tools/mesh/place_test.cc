@@ -25,10 +25,10 @@ namespace fs = std::filesystem;
 
 const std::string kScenes = TACT_SOURCE_DIR "/model/scenes/";
 
-class SurfacePoint : public testing::Test {
+class PlaceOrgan : public testing::Test {
  protected:
   /// The liver's scene with absolute names, so that it may lie anywhere.
-  SurfacePoint() {
+  PlaceOrgan() {
     std::string text = tests::read_text(kScenes + "liver.toml");
     for (std::size_t at = 0; (at = text.find("\"meshes/", at)) != text.npos; at += 10)
       text.insert(at + 1, kScenes);
@@ -69,7 +69,7 @@ class SurfacePoint : public testing::Test {
   std::string scene_, organ_, before_;
 };
 
-TEST_F(SurfacePoint, TheTopOfTheOrganComesToTheSiteAndIsNotTurned) {
+TEST_F(PlaceOrgan, TheTopOfTheOrganComesToTheSiteAndIsNotTurned) {
   const tests::Ran printed = run(organ_ + " --align " + scene_);
   ASSERT_EQ(printed.status, 0) << printed.err;
   for (const std::string& part :
@@ -84,7 +84,7 @@ TEST_F(SurfacePoint, TheTopOfTheOrganComesToTheSiteAndIsNotTurned) {
   expect_top_at_site(scene_);
 }
 
-TEST_F(SurfacePoint, AChosenPointIsTurnedTowardsTheTool) {
+TEST_F(PlaceOrgan, AChosenPointIsTurnedTowardsTheTool) {
   const auto liver = model::scene::load_scene(kScenes + "liver.toml", {});
   ASSERT_TRUE(liver);
   // What lies on top in the liver's own scene, in the scanner's frame.
@@ -100,7 +100,7 @@ TEST_F(SurfacePoint, AChosenPointIsTurnedTowardsTheTool) {
   EXPECT_LT(norm(scene->organ_mesh.vertex_normal[touched] + scene->hand_inward), 1e-4);
 }
 
-TEST_F(SurfacePoint, WriteChangesItsOwnKeysAndNoOtherLine) {
+TEST_F(PlaceOrgan, WriteChangesItsOwnKeysAndNoOtherLine) {
   ASSERT_EQ(run(organ_ + " --write --align " + scene_).status, 0);
   std::istringstream was(before_), is(tests::read_text(scene_));
   std::vector<std::string> gone, come;
@@ -117,7 +117,7 @@ TEST_F(SurfacePoint, WriteChangesItsOwnKeysAndNoOtherLine) {
   EXPECT_EQ(tests::read_text(scene_), once) << "the same again changes nothing";
 }
 
-TEST_F(SurfacePoint, RefusesWhatItCannotWriteAndLeavesTheSceneAsItWas) {
+TEST_F(PlaceOrgan, RefusesWhatItCannotWriteAndLeavesTheSceneAsItWas) {
   std::string text = before_;
   text.replace(text.find("position_m = ["), 14, "position_m = [\n ");
   const std::string split = temp_.write("split.toml", text);
@@ -132,7 +132,7 @@ TEST_F(SurfacePoint, RefusesWhatItCannotWriteAndLeavesTheSceneAsItWas) {
   EXPECT_EQ(tests::read_text(scene_), before_);
 }
 
-TEST_F(SurfacePoint, APointFarFromTheOrganIsRefusedWithItsDistance) {
+TEST_F(PlaceOrgan, APointFarFromTheOrganIsRefusedWithItsDistance) {
   const std::string cube =
       temp_.write("cube.obj", tests::kCubeVertices + tests::kCubeFaces);  // 10 units each way
   const auto point = [&](const std::string& xyz, const std::string& more = "") {
@@ -149,7 +149,7 @@ TEST_F(SurfacePoint, APointFarFromTheOrganIsRefusedWithItsDistance) {
   EXPECT_EQ(tests::read_text(scene_), before_);
 }
 
-TEST_F(SurfacePoint, ReportsWhatOfTheSceneWasMadeForAnotherOrgan) {
+TEST_F(PlaceOrgan, ReportsWhatOfTheSceneWasMadeForAnotherOrgan) {
   const auto misfits = [&](const std::string& organ, const std::string& scene) {
     const tests::Ran ran = run(organ + " --json --align " + scene);
     EXPECT_EQ(ran.status, 0) << ran.err;
@@ -187,7 +187,7 @@ TEST_F(SurfacePoint, ReportsWhatOfTheSceneWasMadeForAnotherOrgan) {
   EXPECT_EQ(left[0]["keys"], "compliance.map");
 }
 
-TEST_F(SurfacePoint, AFailureLeavesTheSceneUntouched) {
+TEST_F(PlaceOrgan, AFailureLeavesTheSceneUntouched) {
   std::string text = before_;
   text.replace(text.find("position_m = ["), 10, "\"position_m\"");
   const std::string odd = temp_.write("odd.toml", text);
@@ -205,7 +205,7 @@ TEST_F(SurfacePoint, AFailureLeavesTheSceneUntouched) {
   EXPECT_EQ(run(organ_ + " --align " + odd).status, 0) << "they are printed";
 }
 
-TEST_F(SurfacePoint, ANameThatIsNoTextIsRefused) {
+TEST_F(PlaceOrgan, ANameThatIsNoTextIsRefused) {
   const std::string organ = temp_.write("b\xff.obj", tests::read_text(organ_));
   const tests::Ran ran = run(organ + " --align " + scene_);
   EXPECT_EQ(ran.status, 2);
@@ -231,7 +231,7 @@ TEST(HeldBox, IsTheTenthFarthestFromTheTool) {
   }
 }
 
-TEST_F(SurfacePoint, ReportsAsJsonToo) {
+TEST_F(PlaceOrgan, ReportsAsJsonToo) {
   const tests::Ran ran = run(organ_ + " --json --unit cm --align " + scene_);
   ASSERT_EQ(ran.status, 0) << ran.err;
   EXPECT_EQ(json::parse(ran.out)["unit_from"], "named");
