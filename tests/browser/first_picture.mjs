@@ -38,7 +38,12 @@ async function one_run(browser, number) {
   await stop(tactd);
   await stop(viewer);
   if (process.env.STEPS) {
-    for (const [name, at, end] of [["link printed", ready_ms], ["page opened", measured.opened_ms], ...measured.steps, ...measured.loads])
+    for (const [name, at, end] of [
+      ["link printed", ready_ms],
+      ["page opened", measured.opened_ms],
+      ...measured.steps,
+      ...measured.loads,
+    ])
       console.log(`   ${Math.round(at - begin_ms)} ${end ? Math.round(end - begin_ms) : ""} ${name}`);
   }
   return measured.drawn_ms - begin_ms;

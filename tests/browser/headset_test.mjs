@@ -226,7 +226,10 @@ async function check_stop(page, tactd) {
     await waits(page, () => {
       const { shown, alarm } = window.tact.headset;
       return (
-        alarm && shown.includes("connection lost") && shown.some((line) => /tactd went away/.test(line)) && !shown.includes("armed")
+        alarm &&
+        shown.includes("connection lost") &&
+        shown.some((line) => /tactd went away/.test(line)) &&
+        !shown.includes("armed")
       );
     }),
     (await numbers(page)).headset.shown.join(" | "),

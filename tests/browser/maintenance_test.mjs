@@ -188,7 +188,10 @@ async function lose_the_tracker(browser) {
   const all = await start_all(browser, "udp", tracking);
   const { page, url } = all;
   await page.goto(url);
-  check("is there without a tracker", await waits(page, () => window.tact.link === "live" && window.tact.drawn_figure_m !== null));
+  check(
+    "is there without a tracker",
+    await waits(page, () => window.tact.link === "live" && window.tact.drawn_figure_m !== null),
+  );
   const path = join(folder, "leaning.jsonl");
   write_looks_before(path, kSilent_s);
   const sent = send_looks(path, port);
