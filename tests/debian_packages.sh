@@ -80,7 +80,7 @@ grep -c youngs_modulus_Pa <(man 5 tact-scene)
 cp /usr/share/tact/scenes/liver.toml /root/mine.toml && ln -s /usr/share/tact/scenes/meshes /root/meshes
 tactd /root/mine.toml --set limits.force_N=1 --check >/dev/null && rm /root/mine.toml /root/meshes
 grep -q "<h1" /usr/share/doc/tact-doc/html/tools/deploy/FIRST_FORCE.html && test -s /usr/share/doc/tact-doc/html/index.html'
-step "a program of one's own finds tact-dev and feels a wall"
+step "a program of one's own finds tact-dev and renders a wall"
 inside 'apt-get -qq install -y --no-install-recommends cmake g++ make >/dev/null 2>&1
 cp -r /usr/share/doc/tact-dev/examples /root/own && cmake -S /root/own -B /root/own/build >/dev/null && cmake --build /root/own/build >/dev/null
 /root/own/build/wall | tail -n 1 && /root/own/build/own_loop /usr/share/tact/scenes/liver.toml

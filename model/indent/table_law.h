@@ -8,7 +8,7 @@
 //     K    stiffness, N/m   F  force, N   U  energy, J      d_i, F_i  the rows, m, N
 //
 // K is linear between the knots, so F rises by quadratics without a corner, and U is the exact
-// integral: passive for any measured values. The knots are dense at light touch, where errors weigh
+// integral: passive for any measured values. The knots are dense at small depth, where errors weigh
 // as shares of the force. What is no loading of a passive body is refused, with its row.
 // Valid to the deepest row; beyond, the force stays. It cannot pull. It holds for the tip that it
 // was measured with.

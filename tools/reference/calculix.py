@@ -35,7 +35,7 @@ class Tool:
     radius_m: np.ndarray  # (b,)
     centre_m: np.ndarray  # (b, 3), before it moves
     along_m: list[float]  # where it stops, rising
-    face: np.ndarray  # (f, 6), that it may touch
+    face: np.ndarray  # (f, 6), that it may press
 
 
 @dataclass
@@ -136,7 +136,7 @@ def axes_of(load):
 
 
 def deck_of(organ, body, load, reported):
-    """Prints forces of the set FORCED (moved, or touched by the tool) and displacements of REPORTED, at the end of each step."""
+    """Prints forces of the set FORCED (moved, or in contact with the tool) and displacements of REPORTED, at the end of each step."""
     axes = axes_of(load)
     sets = {"HELD": body.held, "FORCED": forced(load), "REPORTED": reported}
     printed = "".join(f"*NODE PRINT,NSET={name},FREQUENCY=1000\n{what}\n" for name, what in (("FORCED", "RF"), ("REPORTED", "U")))

@@ -24,7 +24,7 @@ PENALTY = 500.0  # of E / R: sinks in by 1e-3 of R and less
 SOFT = 1e-3  # w, of R: with a kink Newton's method turns in circles
 FIRST_STEP, STEP, LEAST_STEP = 0.05, 0.15, 2e-3  # of R
 STEPS_OF_NEWTON, GOOD = 15, 1e-4  # of the force
-REACH = 2.0  # of R beyond the deepest press: faces that may touch
+REACH = 2.0  # of R beyond the deepest press: faces that may be in contact
 BODY_DEGREE, SKIN_DEGREE = 3, 4  # of the rules of integration
 
 
@@ -44,7 +44,7 @@ def body_energy(ufl, u, shear, bulk):
     return (0.5 * shear * (j**(-2.0 / 3.0) * ufl.inner(f, f) - 3.0) + 0.5 * bulk * (j - 1.0)**2) * dx
 
 
-def touch(ufl, inside, soft):
+def contact_energy(ufl, inside, soft):
     """Energy and pressure of a penalty of one, where a sphere reaches so far beyond the surface."""
     def by_depth(deep, shallow):
         return ufl.conditional(ufl.gt(inside, soft), deep, ufl.conditional(ufl.gt(inside, 0.0), shallow, 0.0))
@@ -84,14 +84,14 @@ class Problem:
         shear_kPa, modulus_kPa = organ.shear_modulus_Pa * KPA, organ.youngs_modulus_Pa * KPA
         bulk_kPa = modulus_kPa / (3.0 * (1.0 - 2.0 * organ.poisson_ratio))
         shear_kPa, bulk_kPa, way = (dolfinx.fem.Constant(mesh, value) for value in (shear_kPa, bulk_kPa, self.way))
-        skin = self.touchable(dolfinx, mesh)
-        ds = ufl.Measure("ds", domain=mesh, subdomain_data=skin, metadata={"quadrature_degree": SKIN_DEGREE})(1)
+        faces = self.contact_faces(dolfinx, mesh)
+        ds = ufl.Measure("ds", domain=mesh, subdomain_data=faces, metadata={"quadrature_degree": SKIN_DEGREE})(1)
         energy, pushes = body_energy(ufl, self.u, shear_kPa, bulk_kPa), []
         for centre, radius_mm in zip(self.centre, self.radius_mm):
             radius, penalty = (dolfinx.fem.Constant(mesh, x) for x in (radius_mm, PENALTY * modulus_kPa / radius_mm))
             away = ufl.SpatialCoordinate(mesh) + self.u - centre
-            touch_energy, pressure = touch(ufl, radius - ufl.sqrt(ufl.inner(away, away)), SOFT * radius)
-            energy += penalty * touch_energy * ds
+            overlap_energy, pressure = contact_energy(ufl, radius - ufl.sqrt(ufl.inner(away, away)), SOFT * radius)
+            energy += penalty * overlap_energy * ds
             pushes.append(penalty * pressure * ufl.dot(away, way) / ufl.sqrt(ufl.inner(away, away)) * ds)
         slope = ufl.derivative(energy, self.u, v)
         self.slope, self.curvature = compiled(dolfinx, slope), compiled(dolfinx, ufl.derivative(slope, self.u, du))
@@ -107,7 +107,7 @@ class Problem:
         self.solver.getPC().setType("cholesky")
         self.solver.getPC().setFactorSolverType("mumps")
 
-    def touchable(self, dolfinx, mesh):
+    def contact_faces(self, dolfinx, mesh):
         """Tags 1 the faces near the spheres' way."""
         centre_mm = np.array(self.what.centre_m) * MM
         reach_mm = (1.0 + REACH) * self.radius_mm + self.what.depths_m[-1] * MM

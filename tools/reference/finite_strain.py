@@ -19,7 +19,7 @@ from tool_press import ToolCase
 # A level: edge of an element under the tool, of the radius; growth with distance; how far the far surface may be off, m.
 LEVELS = [(0.6, 0.72, 3e-3), (0.42, 0.6, 1.5e-3), (0.3, 0.4, 0.8e-3), (0.21, 0.33, 0.4e-3), (0.15, 0.28, 0.2e-3)]
 LARGEST_M, COARSENED_FROM, COARSE_GROWTH = 14e-3, 3.0, 0.5  # of the radius
-TOUCHED = 2.0  # of R around each sphere's axis: faces that CalculiX lets it touch
+CONTACT_REACH = 2.0  # of R around each sphere's axis: faces that CalculiX lets it press
 
 
 @dataclass(frozen=True)
@@ -51,18 +51,18 @@ def body_of(organ, what):
     return make_body(replace(organ, vertex_m=vertex_m, triangle=triangle), lengths)
 
 
-def touchable(body, what):
+def contact_faces(body, what):
     """Faces (f, 6) around the spheres that look against their way."""
     near = np.zeros(len(body.face), dtype=bool)
     for centre_m, radius_m in zip(what.centre_m, what.radius_m):
         tip_m = np.array(centre_m) + radius_m * np.array(what.direction)
-        near |= body.within(surface.Circle(tip_m, np.array(what.direction), TOUCHED * radius_m))
+        near |= body.within(surface.Circle(tip_m, np.array(what.direction), CONTACT_REACH * radius_m))
     return body.face[near]
 
 
 def by_calculix(organ, body, what):
     way = np.array(what.direction)
-    tool = calculix.Tool(np.array(what.radius_m), np.array(what.centre_m), list(what.depths_m), touchable(body, what))
+    tool = calculix.Tool(np.array(what.radius_m), np.array(what.centre_m), list(what.depths_m), contact_faces(body, what))
     load = calculix.Load(way, large_strain=True, tool=tool)
     return calculix.solve(organ, body, load, np.unique(body.face)).tool_N @ way
 

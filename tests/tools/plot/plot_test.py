@@ -66,16 +66,16 @@ class Plot(unittest.TestCase):
         _, force_N = run.quantity("force", 0, 0)
         spheres = len([name for name in self.rows[0] if re.fullmatch(r"contact\d+_depth_m", name)])
         self.assertEqual(spheres, len(run.header["spheres"]))
-        touched = 0
+        in_contact = 0
         for row, depth, force in zip(self.rows, depth_mm, force_N):
             deep = [1e3 * float(row[f"contact{i}_depth_m"]) for i in range(1, spheres + 1)
                     if row[f"contact{i}_state_name"] in ("contact", "held")]
             self.assertEqual(bool(deep), not np.isnan(depth))
             if deep:
-                touched += 1
+                in_contact += 1
                 self.assertAlmostEqual(depth, max(deep, key=abs), places=4)
             self.assertAlmostEqual(force, np.linalg.norm([float(row[f"force_{axis}_N"]) for axis in "xyz"]), places=9)
-        self.assertTrue(100 < touched < len(self.rows))
+        self.assertTrue(100 < in_contact < len(self.rows))
         self.assertGreater(np.nanmax(depth_mm), 5.0)
 
     def test_its_columns_are_those_of_the_table(self):

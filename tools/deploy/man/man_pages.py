@@ -11,7 +11,7 @@ import sys
 
 SCENE = ("""tact-scene \\- a scene of tact, as tactd reads it
 .SH DESCRIPTION
-A scene says what is touched, by what tool, with which law, on which device and within which limits.
+A scene names the organ, the tool, the law, the device and the limits.
 .BR tactd (1)
 refuses what it does not know, with file, line and remedy; proof-read one by
 .PP
