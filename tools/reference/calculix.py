@@ -136,7 +136,7 @@ def axes_of(load):
 
 
 def deck_of(organ, body, load, reported):
-    """Prints forces of the set FORCED (moved, or in contact with the tool) and displacements of REPORTED, at the end of each step."""
+    """Prints forces of the set FORCED (moved, or in contact) and displacements of REPORTED, at the end of each step."""
     axes = axes_of(load)
     sets = {"HELD": body.held, "FORCED": forced(load), "REPORTED": reported}
     printed = "".join(f"*NODE PRINT,NSET={name},FREQUENCY=1000\n{what}\n" for name, what in (("FORCED", "RF"), ("REPORTED", "U")))
