@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""No phase of a tick is more than 10 % above its budget, which is its cost in the last version of the changelog; a p99.9 not more than 25 %,
-as a few ticks decide it, and of the wake-up the kernel.
+"""No phase of a tick is more than 10 % above its budget, which is its cost in the last version of the changelog; a
+p99.9 not more than 25 %, as a few ticks decide it, and of the wake-up the kernel.
 
 usage: tests/house/budgets_test.py [--release VERSION]     with a version: the costs of now become the budgets
 

@@ -20,7 +20,10 @@ STAND_INS = {
     "uname": 'echo "#1 SMP PREEMPT_RT Debian 6.1"',
     "editor": 'test -e "$1"',
     # What the unit starts, as its user, with its folders, as a service: it waits for a person to arm it.
-    "systemctl": """case $1 in start) shift ;; stop) pkill -x tactd; while pgrep -x tactd >/dev/null; do sleep .1; done; exit 0 ;; esac
+    "systemctl": """case $1 in
+  start) shift ;;
+  stop) pkill -x tactd; while pgrep -x tactd >/dev/null; do sleep .1; done; exit 0 ;;
+esac
 for unit; do case $unit in
   tactd@*) install -d -o tact -g haptics -m 0750 /run/tact /var/lib/tact
     rm -f /root/tactd.log
