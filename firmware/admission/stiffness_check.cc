@@ -241,15 +241,18 @@ model::Result<PressCheck> check_sweep(const model::scene::Scene& scene,
 }
 
 model::Result<PressCheck> check_presses(const model::scene::Scene& scene,
-                                        const model::scene::TissueLaw& law,
+                                        const model::scene::Tissue& tissue,
                                         const hal::DeviceInfo& device, double limit_N_per_m) {
+  const model::scene::TissueLaw& law = tissue.law();
   std::vector<model::scene::PressPoint> places{hand_place(scene)};
   if (law.curve() != nullptr) {
     const auto others = press_points(scene, kSampled, true, true);
     places.insert(places.end(), others.begin(), others.end());
   }
-  const auto sweep =
-      sweep_presses(scene, places, {.limit_N_per_m = limit_N_per_m, .checks_energy = false});
+  const auto pressed = tissue_for_check(scene, tissue);
+  if (!pressed) return pressed.error();
+  const auto sweep = sweep_presses(
+      scene, places, {.limit_N_per_m = limit_N_per_m, .checks_energy = false}, {}, pressed->tissue);
   if (!sweep) return sweep.error();
   return check_sweep(scene, law, device, *sweep);
 }

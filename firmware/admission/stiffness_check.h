@@ -41,9 +41,9 @@ struct PressCheck {
 
 /// Presses upright at the vertex nearest to hand.site_m, and at a fixed sample of other vertices
 /// in both directions; a stepped law only at the first. A slope above the limit at the hand's
-/// vertex is an error, elsewhere a note. Uses a tissue of its own; takes 0.1 to 0.2 s.
+/// vertex is an error, elsewhere a note. Takes 0.1 to 0.2 s, before the loop uses the tissue.
 model::Result<PressCheck> check_presses(const model::scene::Scene& scene,
-                                        const model::scene::TissueLaw& law,
+                                        const model::scene::Tissue& tissue,
                                         const hal::DeviceInfo& device, double limit_N_per_m);
 /// The same check of a finished sweep, whose first place is the hand's.
 model::Result<PressCheck> check_sweep(const model::scene::Scene& scene,

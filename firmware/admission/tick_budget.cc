@@ -89,11 +89,11 @@ double at_share(const std::vector<double>& ascending, double share) {
 
 }  // namespace
 
-TickTime measure_tick(const model::scene::Scene& scene, const model::contact::ContactScene& twin,
+TickTime measure_tick(const model::scene::Scene& scene, const model::contact::ContactScene& contact,
                       double deepest_m) {
-  const std::vector<model::Tool> path = contact_path(scene, twin, deepest_m);
+  const std::vector<model::Tool> path = contact_path(scene, contact, deepest_m);
   const auto controller = std::make_unique<loop::Controller>(
-      twin, gate::Gate(scene.limits, twin.period_s, 1.0), /*hard_real_time=*/true);
+      contact, gate::Gate(scene.limits, contact.period_s, 1.0), /*hard_real_time=*/true);
   loop::MonotonicClock clock;
   std::vector<double> all_us, contact_us;
   double unused_N = 0.0;
@@ -121,11 +121,9 @@ TickTime measure_tick(const model::scene::Scene& scene, const model::contact::Co
 model::Result<TimeMargin> check_budget(const model::scene::Scene& scene,
                                        const model::scene::Tissue& tissue,
                                        const std::optional<pc::RtSettings>& hard_real_time) {
-  const auto law = model::scene::make_tissue_law(scene, scene.law);
-  if (!law) return law.error();
-  model::contact::ContactScene twin = tissue.contact_scene();
-  twin.law = &(*law)->contact_law();
-  twin.organ = (*law)->organ();
+  const auto measured = tissue_for_check(scene, tissue);
+  if (!measured) return measured.error();
+  const model::scene::TissueLaw& law = measured->tissue->law();
   TimeMargin margin;
   margin.tail_counts = hard_real_time.has_value();
   margin.budget_us = scene.tolerance ? scene.tolerance->tick_budget_us : 0.5e6 / scene.rate_Hz;
@@ -134,7 +132,7 @@ model::Result<TimeMargin> check_budget(const model::scene::Scene& scene,
     std::vector<pc::Shortfall> known;  // probe_rt_threads has reported them
     if (hard_real_time) pc::enter_rt_thread(*hard_real_time, known);
     pc::flush_denormals();
-    margin.measured = measure_tick(scene, twin, (*law)->range().press_m);
+    margin.measured = measure_tick(scene, measured->tissue->contact_scene(), law.range().press_m);
   });
   if (!thread) return thread.error();
   thread->join();
@@ -143,7 +141,7 @@ model::Result<TimeMargin> check_budget(const model::scene::Scene& scene,
   return model::Error{fmt::format(
       "{}: {} needs {:.1f} us a tick here ({}), {} {:g} us; choose a smaller model (tact-lab plan "
       "names one), {} or take a faster machine",
-      scene.path, (*law)->title(), margin.checked_us,
+      scene.path, law.title(), margin.checked_us,
       margin.tail_counts ? "p99.9" : "median: without hard real time the tail is the kernel's",
       scene.tolerance ? "tolerance.tick_budget_us is" : "half a period of rate_Hz is",
       margin.budget_us, scene.tolerance ? "raise the budget" : "lower rate_Hz")};

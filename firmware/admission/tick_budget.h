@@ -22,8 +22,8 @@ struct TickTime {
 
 /// The tool presses at the hand's site, on a small circle, so that a patch is gathered repeatedly;
 /// ticks in contact count. They change the state of a law with memory and cut with a blade, so
-/// measure a twin, not the tissue that will be rendered. Takes about 0.2 s at most.
-TickTime measure_tick(const model::scene::Scene& scene, const model::contact::ContactScene& twin,
+/// measure what tissue_for_check gives. Takes about 0.2 s at most.
+TickTime measure_tick(const model::scene::Scene& scene, const model::contact::ContactScene& contact,
                       double deepest_m);
 
 struct TimeMargin {
@@ -33,8 +33,9 @@ struct TimeMargin {
   double budget_us = 0.0;  // [tolerance] tick_budget_us, or half a period without one
 };
 
-/// Measures a twin of the tissue against the budget. With hard real time it runs like the loop and
-/// p99.9 counts. A stock kernel preempts at any time, so there only the median characterizes it.
+/// Measures the tissue, which the loop does not use yet, against the budget. With hard real time it
+/// runs like the loop and p99.9 counts. A stock kernel preempts at any time, so there only the
+/// median characterizes it.
 model::Result<TimeMargin> check_budget(const model::scene::Scene& scene,
                                        const model::scene::Tissue& tissue,
                                        const std::optional<pc::RtSettings>& hard_real_time);

@@ -109,8 +109,8 @@ LawUpdater::Outcome LawUpdater::prepare(const std::vector<std::string>& set) con
   const hal::DeviceInfo device = use_.device.info();
   const auto stiffness = admission::check_renderable(*variant->scene, *variant->tissue, device);
   if (!stiffness) return stiffness.error();
-  const auto presses = admission::check_presses(*variant->scene, variant->tissue->law(), device,
-                                                stiffness->limit_N_per_m);
+  const auto presses =
+      admission::check_presses(*variant->scene, *variant->tissue, device, stiffness->limit_N_per_m);
   if (!presses) return presses.error();
   return std::make_unique<Prepared>(std::move(*variant));
 }

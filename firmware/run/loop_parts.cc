@@ -34,7 +34,7 @@ std::optional<Error> admit(const model::scene::Scene& scene, const PartsSetup& s
   if (!time) return time.error();
   parts.time = *time;
   // After the time check: presses of a law that is too slow would take minutes.
-  auto presses = admission::check_presses(scene, parts.tissue->law(), parts.device->info(),
+  auto presses = admission::check_presses(scene, *parts.tissue, parts.device->info(),
                                           parts.stiffness.limit_N_per_m);
   if (!presses) return presses.error();
   parts.presses = std::move(*presses);

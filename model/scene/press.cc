@@ -154,11 +154,15 @@ PressResult press_once(const contact::ContactScene& contact, const Vec3& inward,
   return out;
 }
 
-Result<std::unique_ptr<Presser>> Presser::make(const Scene& scene, const PressSettings& settings) {
+Result<std::unique_ptr<Presser>> Presser::make(const Scene& scene, const PressSettings& settings,
+                                               const Tissue* tissue) {
   std::unique_ptr<Presser> presser(new Presser(scene, settings));
-  auto tissue = make_tissue(scene);
-  if (!tissue) return tissue.error();
-  presser->tissue_ = std::move(*tissue);
+  if (tissue == nullptr) {
+    auto own = make_tissue(scene);
+    if (!own) return own.error();
+    presser->own_tissue_ = std::move(*own);
+  }
+  presser->tissue_ = tissue != nullptr ? tissue : presser->own_tissue_.get();
   const TissueLaw& law = presser->tissue_->law();
   PressSettings& own = presser->settings_;
   if (!(own.depth_m > 0.0)) own.depth_m = law.range().press_m;

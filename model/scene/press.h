@@ -106,11 +106,13 @@ PressResult press_once(const contact::ContactScene& contact, const Vec3& inward,
                        const PressPoint& place, const PressSettings& settings,
                        const std::function<void(const PressStep&)>& on_step = {});
 
-/// Presses the tool of a scene, on a tissue of its own, as a law may remember.
+/// Presses the tool of a scene.
 class Presser {
  public:
-  /// `scene` must outlive it.
-  static Result<std::unique_ptr<Presser>> make(const Scene& scene, const PressSettings& settings);
+  /// `scene` and `tissue` must outlive it; tissue: that of the scene which is pressed
+  /// (tissue_for_check), or null for one of its own.
+  static Result<std::unique_ptr<Presser>> make(const Scene& scene, const PressSettings& settings,
+                                               const Tissue* tissue = nullptr);
   /// Independent of earlier presses.
   PressResult press(const PressPoint& place);
   /// With the depth that is pressed, and whether the energy is checked.
@@ -122,7 +124,8 @@ class Presser {
 
   Vec3 inward_;
   PressSettings settings_;
-  std::unique_ptr<Tissue> tissue_;
+  const Tissue* tissue_ = nullptr;
+  std::unique_ptr<Tissue> own_tissue_;
   Scene elastic_scene_;  // without friction and relaxation
   std::unique_ptr<Tissue> elastic_tissue_;
 };

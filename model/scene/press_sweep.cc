@@ -54,8 +54,8 @@ std::size_t PressSweep::count(PressState state) const {
 
 Result<PressSweep> sweep_presses(
     const Scene& scene, std::span<const PressPoint> places, const PressSettings& settings,
-    const std::function<bool(std::size_t done, std::size_t all)>& goes_on) {
-  const auto presser = Presser::make(scene, settings);
+    const std::function<bool(std::size_t done, std::size_t all)>& goes_on, const Tissue* tissue) {
+  const auto presser = Presser::make(scene, settings, tissue);
   if (!presser) return presser.error();
   PressSweep out{.settings = (*presser)->settings(), .results = {}};
   for (const PressPoint& place : places) {

@@ -28,9 +28,10 @@ struct PressSweep {
 };
 
 /// Every place in turn; `goes_on` is asked after each press, with how many are done. An error if
-/// the scene's law has no meaning or it was stopped.
+/// the scene's law has no meaning or it was stopped. `tissue`: as Presser takes it.
 Result<PressSweep> sweep_presses(
     const Scene& scene, std::span<const PressPoint> places, const PressSettings& settings,
-    const std::function<bool(std::size_t done, std::size_t all)>& goes_on = {});
+    const std::function<bool(std::size_t done, std::size_t all)>& goes_on = {},
+    const Tissue* tissue = nullptr);
 
 }  // namespace tact::model::scene

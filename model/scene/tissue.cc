@@ -37,4 +37,12 @@ Result<std::unique_ptr<Tissue>> make_tissue(const Scene& scene) {
   return tissue;
 }
 
+Result<CheckTissue> tissue_for_check(const Scene& scene, const Tissue& tissue) {
+  if (!tissue.law().has_net()) return CheckTissue{.tissue = &tissue};
+  auto other = make_tissue(scene);
+  if (!other) return other.error();
+  const Tissue* const made = other->get();
+  return CheckTissue{.tissue = made, .own = std::move(*other)};
+}
+
 }  // namespace tact::model::scene

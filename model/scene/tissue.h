@@ -30,4 +30,13 @@ class Tissue {
 /// `scene` must outlive the tissue. An error if the law's parameters have no meaning.
 Result<std::unique_ptr<Tissue>> make_tissue(const Scene& scene);
 
+/// A tissue that a check may press before the loop starts.
+struct CheckTissue {
+  const Tissue* tissue = nullptr;
+  std::unique_ptr<Tissue> own{};
+};
+/// `tissue` itself where nothing remains of a contact that has ended; of a net of masses and
+/// springs another one, since the loop would start with the net as the check has left it.
+Result<CheckTissue> tissue_for_check(const Scene& scene, const Tissue& tissue);
+
 }  // namespace tact::model::scene

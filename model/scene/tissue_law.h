@@ -43,6 +43,8 @@ class TissueLaw {
   double damping_Ns_per_m() const { return damping_Ns_per_m_; }
   /// The organ, where it bends far; else null. Its curve() is then that of the tip alone.
   const contact::BendingOrgan* organ() const { return organ_ ? &*organ_ : nullptr; }
+  /// A net of masses and springs: its motion and its cuts outlive a contact.
+  bool has_net() const { return organ_law_ != nullptr || curves_.empty(); }
   /// Bytes that the loop may touch.
   std::size_t memory_bytes() const { return memory_bytes_; }
   /// For people.

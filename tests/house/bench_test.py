@@ -10,6 +10,7 @@ import importlib.machinery
 import importlib.util
 import json
 import pathlib
+import subprocess
 import sys
 import tempfile
 
@@ -58,6 +59,21 @@ def bounds(folder):
         yield "tests/rig/bench/baseline.py:1: a baseline without a phase is taken for whole"
 
 
+def seeds():
+    """Of six seeds the baseline keeps the middle of the medians and the longest of the others."""
+    values = (10, 30, 20, 60, 50, 40)
+    for name, wanted in (("median_ns", 40), (baseline.MOST, 60), (baseline.LONGEST, 60)):
+        if baseline.recorded(name, values) != wanted:
+            yield f"tests/rig/bench/baseline.py:1: of {values} the baseline keeps {baseline.recorded(name, values)} as {name}"
+
+
+def listed():
+    said = subprocess.run([sys.executable, RIG / "run", "--list", "--long"], capture_output=True, text=True)
+    missing = [case.name for case in all_cases() if f"{case.name:24} {case.message}\n" not in said.stdout]
+    if missing:
+        yield f"tests/rig/run:1: --list lacks {missing[0]}{said.stderr[-300:]}"
+
+
 def once():
     loader = importlib.machinery.SourceFileLoader("rig_run", str(RIG / "run"))
     run = importlib.util.module_from_spec(importlib.util.spec_from_loader("rig_run", loader))
@@ -92,7 +108,7 @@ def front_page():
 
 def main():
     with tempfile.TemporaryDirectory() as folder:
-        found = [*bounds(pathlib.Path(folder)), *once(), *front_page()]
+        found = [*bounds(pathlib.Path(folder)), *seeds(), *listed(), *once(), *front_page()]
     print(*found, sep="\n", end="\n" if found else "")
     print(f"bench: {len(GROWN)} kinds of growth, {len(all_cases())} cases, {len(found)} breaches")
     return 1 if found else 0

@@ -173,7 +173,7 @@ TEST(PressCheck, ReportsTheLargestSlopeAndWhereTheSameEachTime) {
   const model::scene::Scene scene = tests::make_plate_scene();
   const auto tissue = std::move(*model::scene::make_tissue(scene));
   const model::scene::TissueLaw& law = tissue->law();
-  const auto check = check_presses(scene, law, device_with(0.3), 300.0);
+  const auto check = check_presses(scene, *tissue, device_with(0.3), 300.0);
   ASSERT_TRUE(check) << check.error().message;
   // One sphere on a plate: the steepest press of the law.
   double steepest_N_per_m = 0.0;
@@ -183,7 +183,7 @@ TEST(PressCheck, ReportsTheLargestSlopeAndWhereTheSameEachTime) {
   EXPECT_EQ(check->presses, 33U) << "the hand's, 16 square and 16 upright";
   EXPECT_TRUE(check->place.starts_with("vertex ")) << check->place;
   EXPECT_EQ(check->note, "");
-  const auto again = check_presses(scene, law, device_with(0.3), 300.0);
+  const auto again = check_presses(scene, *tissue, device_with(0.3), 300.0);
   EXPECT_EQ(again->slope_N_per_m, check->slope_N_per_m);
   EXPECT_EQ(again->place, check->place);
 }

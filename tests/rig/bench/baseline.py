@@ -4,9 +4,10 @@
 One instruction is one nanosecond here, so a path is exact, but for an interrupt that falls into it. No
 timer of the kernel and none of tactd does: the loop's grid of deadlines keeps away from both
 (firmware/loop/release_schedule.h), and the kernel's lockup detector is off here as it is on an isolated core. What is
-left are emulators and other programs, whose phase differs from seed to seed. What is ours is there with
-every seed. So a number has grown when the shortest of the timed runs has, and `run` adds seeds before
-it says so; the baseline is the middle of six seeds. What a wake-up takes at most is the kernel's path
+left are emulators and other programs, whose phase differs from seed to seed, and from host to host, as the
+moment of the snapshot does. What is ours is there with every seed. So a number has grown when the shortest
+of the timed runs is above what any of the baseline's six seeds had (its median: above their middle), and
+`run` adds seeds before it says so. What a wake-up takes at most is the kernel's path
 more than ours: it may grow by a quarter (and is held against cyclictest besides); its median like all
 others. With another kernel of the baseline's series (6.1), so may all phases that call it. With one of
 another series, of a release with its own compiler and libraries, numbers are reported and not evaluated.
@@ -32,13 +33,25 @@ LONGEST = "longest_ns"
 MEASURES = {"median_ns": "p50_ns", MOST: MOST, LONGEST: "max_ns"}
 
 
-def measure(runs, of_seeds=min):
-    """{back end: {phase: {median_ns, p99.9_ns, longest_ns}}} of the timed runs that have a report."""
+def shortest(_, of_seeds):
+    return min(of_seeds)
+
+
+def recorded(name, of_seeds):
+    """For the baseline: the middle of the medians, and the longest of what another host's phase may show."""
+    return statistics.median_high(of_seeds) if name == "median_ns" else max(of_seeds)
+
+
+def measure(runs, over_seeds=shortest):
+    """{back end: {phase: {median_ns, p99.9_ns, longest_ns}}} of the timed runs that have a report.
+
+    over_seeds: a function of the number's name and of its value with each seed.
+    """
     reports = {}
     for run in runs:
         if run.case.timed and run.report:
             reports.setdefault(run.case.back_end.name, []).append(run.report["phases"])
-    return {back_end: {phase: {name: of_seeds(seed[phase][key] for seed in seeds)
+    return {back_end: {phase: {name: over_seeds(name, [seed[phase][key] for seed in seeds])
                                for name, key in MEASURES.items()} for phase in PHASES}
             for back_end, seeds in reports.items()}
 
@@ -70,13 +83,13 @@ def most_allowed(phase, name, old, same_kernel):
 
 def with_longest_of_scene(known, scene_of):
     """`known`, with the longest own phases of each back end as long as any with its scene had them."""
-    recorded = {}
+    lengthened = {}
     for back_end, phases in known.items():
         alike = [of for name, of in known.items() if scene_of.get(name) == scene_of.get(back_end)]
         longest = {phase: max(of[phase][LONGEST] for of in alike) for phase in OWN}
         longest["total"] = phases["total"][LONGEST] + sum(longest[phase] - phases[phase][LONGEST] for phase in OWN)
-        recorded[back_end] = phases | {phase: phases[phase] | {LONGEST: longest[phase]} for phase in longest}
-    return recorded
+        lengthened[back_end] = phases | {phase: phases[phase] | {LONGEST: longest[phase]} for phase in longest}
+    return lengthened
 
 
 def incomplete(path):
@@ -129,8 +142,8 @@ def read_cycles(path):
 def write(runs, gate, cycles, path, kernel):
     """Replaces the back ends, the gate's paths and the cycles of buses that were measured, keeps the others."""
     known, old_kernel = read(path)
-    fresh = measure(runs, statistics.median_high)
-    recorded = {"kernel": kernel if fresh else old_kernel, "gate": gate or read_gate(path),
+    fresh = measure(runs, recorded)
+    numbers = {"kernel": kernel if fresh else old_kernel, "gate": gate or read_gate(path),
                 "bus_cycles": dict(sorted((read_cycles(path) | cycles).items())),
                 "back_ends": dict(sorted((known | fresh).items()))}
-    path.write_text(json.dumps(recorded, indent=2) + "\n")
+    path.write_text(json.dumps(numbers, indent=2) + "\n")
