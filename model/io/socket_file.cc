@@ -71,8 +71,13 @@ Result<std::string> runtime_directory() {
   struct stat info{};
   // lstat: in /tmp another user may have placed a link of that name.
   // 027: only its owner writes, others do not read.
-  if (lstat(path.c_str(), &info) != 0 || !S_ISDIR(info.st_mode) || info.st_uid != getuid() ||
-      (info.st_mode & 027) != 0)
+  if (lstat(path.c_str(), &info) != 0) return system_error(path, "cannot be examined");
+  if (info.st_uid != getuid())
+    return Error{path + ": was made by user " + std::to_string(info.st_uid) +
+                 ", and only root can remove it; set XDG_RUNTIME_DIR to a folder of yours, as a "
+                 "login session has it in /run/user/" +
+                 std::to_string(getuid())};
+  if (!S_ISDIR(info.st_mode) || (info.st_mode & 027) != 0)
     return Error{path +
                  ": is not a folder that only you can write to and no stranger can open; remove it "
                  "and start again, or set XDG_RUNTIME_DIR to a folder of yours"};

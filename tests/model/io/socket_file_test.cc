@@ -94,6 +94,21 @@ TEST_F(SocketFileTest, AFolderOfAStrangerIsRefused) {
   EXPECT_FALSE(check_socket_folder(path(), {.user = kStranger, .group = std::nullopt}));
 }
 
+TEST_F(SocketFileTest, ARuntimeFolderOfAStrangerIsRefusedWithARemedy) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root gives a folder away";
+  ASSERT_EQ(setenv("XDG_RUNTIME_DIR", folder_.c_str(), 1), 0);
+  const std::string made = folder_ + "/tact";
+  ASSERT_EQ(mkdir(made.c_str(), 0700), 0);
+  ASSERT_EQ(chown(made.c_str(), kStranger, kStranger), 0);
+  const auto refused = runtime_directory();
+  unsetenv("XDG_RUNTIME_DIR");
+  ASSERT_FALSE(refused);
+  const std::string& message = refused.error().message;
+  EXPECT_NE(message.find("user " + std::to_string(kStranger)), std::string::npos) << message;
+  EXPECT_NE(message.find("set XDG_RUNTIME_DIR"), std::string::npos) << message;
+  EXPECT_EQ(message.find("remove it and start again"), std::string::npos) << "forbidden in /tmp";
+}
+
 TEST_F(SocketFileTest, OnlyTheSameUserAndRootAreTrusted) {
   EXPECT_TRUE(is_trusted(geteuid()));
   EXPECT_TRUE(is_trusted(0));

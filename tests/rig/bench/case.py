@@ -50,15 +50,19 @@ class Case:
     long_only: bool = False     # its like runs on another back end; both with --long
     variables: dict = dataclasses.field(default_factory=dict)  # for the script and the set-up
 
+    @property
+    def settings(self):
+        """KEY=VALUE of the scene."""
+        # A fault does not depend on the place, and tactd starts in half the time, which a guest spends mostly on it.
+        is_even = self.fault is not None and not self.timed and self.back_end.scene == BackEnd.scene
+        return (*self.back_end.settings, "varies_by_place=false") if is_even else self.back_end.settings
+
     def guest_script(self, seed):
         """The whole text that bash runs in the guest."""
-        settings = list(self.back_end.settings)
+        settings = list(self.settings)
         # One instruction is one nanosecond here, far slower than a PC: the scene's budget is for a PC.
         if "tick_budget_us" in (ROOT / self.back_end.scene).read_text():
             settings.append("tolerance.tick_budget_us=450")
-        # A fault does not depend on the place, and tactd starts in half the time, which a guest spends mostly on it.
-        if self.fault is not None and not self.timed and self.back_end.scene == BackEnd.scene:
-            settings.append("varies_by_place=false")
         device = " ".join([*self.back_end.options, *(f"--set '{setting}'" for setting in settings)])
         variables = "".join(f'{name}="{value}"\n' for name, value in self.variables.items())
         return (f". /tact/guest/bench.sh\nSEED={seed} SECONDS_OF_RUN={self.seconds}\n"

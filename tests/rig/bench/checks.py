@@ -59,16 +59,16 @@ class SameForcesAs:
     root = build = None  # folders, set before the first run
 
     def __call__(self, run):
-        want = self.reference(run.case.back_end, run.case.seconds)
+        want = self.reference(run.case.back_end.scene, run.case.settings, run.case.seconds)
         have = run.report.get("force_hash")
         return [] if have == want else [
             f"force hash {have}, but {want} in simulated time on the host: something moved a force"]
 
     @functools.cache
-    def reference(self, back_end, seconds):
-        settings = [word for setting in back_end.settings for word in ("--set", setting)]
+    def reference(self, scene, settings, seconds):
+        options = [word for setting in settings for word in ("--set", setting)]
         done = subprocess.run(
-            [self.build / "tactd", self.root / back_end.scene, *settings, "--free-run", "--seconds",
+            [self.build / "tactd", self.root / scene, *options, "--free-run", "--seconds",
              str(seconds), "--no-telemetry", "--json", "-"], capture_output=True, text=True, check=True)
         return json.loads(done.stdout)["force_hash"]
 
