@@ -127,7 +127,7 @@ systemd-analyze verify --man=no tactd@liver.service 2>&1 | tee /root/verify && t
 test -L /etc/systemd/system/tact-falcon.device.wants/tactd@liver.service
 systemctl disable tactd@liver && rm -r /etc/systemd/system/tactd@liver.service.d'
 step "the units are sound"
-inside 'systemd-analyze verify --man=no tactd@liver.service tact-view.service tact-rt.service 2>&1 | tee /root/verify
+inside 'systemd-analyze verify --man=no tactd@liver.service tact-awake@liver.service tact-view.service tact-rt.service 2>&1 | tee /root/verify
 test ! -s /root/verify'
 step "an edited scene outlives the same package"
 inside 'echo "# mine" >>/etc/tact/liver.toml

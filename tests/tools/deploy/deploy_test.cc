@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -81,8 +82,10 @@ TEST_F(Deploy, AnOlderDebianIsRefusedWithTheReleasesThatDo) {
   EXPECT_EQ(checked("ID=arch\nVERSION_ID=1\n"), 0) << content(said);
 }
 
+constexpr std::array kUnits{"tactd@.service", "tact-awake@.service", "tact-view.service"};
+
 TEST_F(Deploy, NoUnitArms) {
-  for (const char* unit : {"tactd@.service", "tact-view.service"}) {
+  for (const char* unit : kUnits) {
     std::istringstream lines(content(kDeploy + unit));
     int starts = 0;
     for (std::string line; std::getline(lines, line);) {
@@ -119,6 +122,14 @@ TEST_F(Deploy, TheViewerIsNotTheUserOfTheController) {
   EXPECT_EQ(value_in("tact-view.service", "PrivateDevices"), "yes") << "haptics may use devices";
 }
 
+TEST_F(Deploy, APcDoesNotSuspendWhileTheControllerRuns) {
+  EXPECT_EQ(value_in("tactd@.service", "Wants"), "tact-awake@%i.service");
+  EXPECT_EQ(value_in("tact-awake@.service", "BindsTo"), "tactd@%i.service") << "ends with it";
+  EXPECT_EQ(value_in("tact-awake@.service", "After"), "tactd@%i.service");
+  EXPECT_NE(value_in("tact-awake@.service", "ExecStart").find("systemd-inhibit --what=sleep "),
+            std::string::npos);
+}
+
 // What the loop needs in a sandbox; where it is missing, tactd reports "no hard real time" alone.
 TEST_F(Deploy, TheUnitLetsTheLoopBeHardRealTime) {
   const std::string unit = content(kDeploy + "tactd@.service");
@@ -133,7 +144,7 @@ TEST_F(Deploy, TheUnitLetsTheLoopBeHardRealTime) {
 
 TEST_F(Deploy, AUnitIsExposedToNoMoreThanTwoOfTen) {
   if (std::system("command -v systemd-analyze >/dev/null") != 0) GTEST_SKIP() << "no systemd";
-  for (const char* unit : {"tactd@.service", "tact-view.service"}) {
+  for (const char* unit : kUnits) {
     const std::string command =
         "systemd-analyze security --offline=true --no-pager --threshold=20 " + kDeploy + unit +
         " >" + said + " 2>&1";

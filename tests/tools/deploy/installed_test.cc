@@ -83,9 +83,11 @@ TEST_F(Installed, TheViewerServesTheInstalledPage) {
 
 TEST_F(Installed, TheFilesOfAPCLieWhereSystemdLooks) {
   install("tact");
-  for (const char* path : {"lib/udev/rules.d/60-tact.rules", "lib/sysusers.d/tact.conf",
-                           "lib/systemd/system/tactd@.service", "share/tact/pc/80-can0.network",
-                           "share/tact/pc/haptics.conf", "share/tact/pc/tactd-device.conf"})
+  for (const char* path :
+       {"lib/udev/rules.d/60-tact.rules", "lib/sysusers.d/tact.conf",
+        "lib/systemd/system/tactd@.service", "lib/systemd/system/tact-awake@.service",
+        "share/tact/pc/80-can0.network", "share/tact/pc/haptics.conf",
+        "share/tact/pc/tactd-device.conf"})
     EXPECT_TRUE(fs::exists(prefix_ + "/" + path)) << path;
 }
 
