@@ -7,6 +7,7 @@
 
 #include "hal/can/can_device.h"
 #include "hal/can/can_open.h"
+#include "hal/can/excess_torque.h"
 #include "hal/cia402/canopen_frames.h"
 #include "hal/cia402/cia402_bring_up.h"
 #include "hal/cia402/cia402_state.h"
@@ -34,6 +35,8 @@ class Cia402s final : public can::CanDrives {
         ticks_per_heartbeat_(rate_Hz > kHostHeartbeat_Hz
                                  ? static_cast<std::uint64_t>(rate_Hz / kHostHeartbeat_Hz)
                                  : 1) {
+    const auto& delta = settings.of<can::DeltaSettings>();
+    max_excess_Nm_ = can::kMaxExcess_ratio * delta.max_joint_torque_Nm / delta.gear_ratio;
     for (std::size_t i = 0; i < 3; ++i) {
       axes_[i].node = settings.of<can::CanSettings>().node[i];
       axes_[i].rated_torque_Nm = start.rated_torque_Nm[i];
@@ -82,6 +85,7 @@ class Cia402s final : public can::CanDrives {
     for (std::size_t i = 0; i < 3; ++i) {
       const Axis& axis = axes_[i];
       if (lost && axis.idle_ticks >= kMaxIdleTicks) loop.fail(i, Cia402Cause::kNotFollowing, 0);
+      if (axis.excess.exceeds(max_excess_Nm_)) fail_excess(loop, i);
       if (axis.state == Cia402State::kOperationEnabled) continue;
       const auto state = static_cast<std::uint32_t>(axis.state);
       if (!lost && !late) continue;
@@ -144,6 +148,7 @@ class Cia402s final : public can::CanDrives {
     std::uint16_t statusword = 0;
     std::uint16_t controlword = kControlDisableVoltage;  // sent last
     int idle_ticks = 0;  // enabled without following, in a row, since ready
+    can::ExcessTorque excess;
     HeartbeatGuard guard;
   };
 
@@ -162,8 +167,16 @@ class Cia402s final : public can::CanDrives {
                       axis.state == Cia402State::kOperationEnabled &&
                       !cia402_flags(sample.statusword).following;
     axis.idle_ticks = idle ? axis.idle_ticks + 1 : 0;
+    axis.excess.measure(1e-3 * sample.torque_permille * axis.rated_torque_Nm,
+                        loop.power == CanPower::kReady);
     if (axis.state == Cia402State::kFault || axis.state == Cia402State::kFaultReaction)
       loop.fail(at, Cia402Cause::kStatus, static_cast<std::uint32_t>(axis.state));
+  }
+
+  void fail_excess(CanLoop& loop, std::size_t at) const RT_SAFE {
+    const double excess_mNm = std::clamp(1e3 * axes_[at].excess.mean_Nm(), -1e6, 1e6);
+    loop.fail(at, Cia402Cause::kExcessTorque,
+              static_cast<std::uint32_t>(static_cast<std::int32_t>(excess_mNm)));
   }
 
   /// The state may have come first, without a reason.
@@ -203,6 +216,7 @@ class Cia402s final : public can::CanDrives {
   void push_command(can::CanBus& bus, Axis& axis, std::uint16_t controlword,
                     double torque_Nm) RT_SAFE {
     axis.controlword = controlword;
+    axis.excess.command(torque_Nm);
     const auto permille = cst_torque_permille(torque_Nm, axis.rated_torque_Nm);
     // Nothing to push makes the batch a missed cycle (can_bus.h): the bus then counts it.
     bus.push(permille ? cst_command(axis.node, controlword, *permille) : std::nullopt);
@@ -216,6 +230,7 @@ class Cia402s final : public can::CanDrives {
   bool command_at_sync_;
   std::uint64_t ticks_per_heartbeat_;
   std::array<Axis, 3> axes_;
+  double max_excess_Nm_ = 0.0;
   std::uint64_t ticks_ = 0;
   std::uint64_t extra_ = 0;  // a second sample of a drive in one tick: the newer one is taken
   std::uint64_t old_ = 0;    // samples from before the last read

@@ -103,6 +103,11 @@ std::string text_of_cia402_cause(const FaultCause& cause) {
           "the drive is {} (statusword 0x{:04X}); it is ready when motor supply, enable and STO "
           "are there",
           cia402_state_name(cia402_state(static_cast<std::uint16_t>(cause.code))), cause.code);
+    case Cia402Cause::kExcessTorque:
+      return fmt::format(
+          "the drive gives {:.2f} N m that was not commanded (object 6077): set its torque offset "
+          "(60B2) and friction compensation to 0, and check its commutation",
+          1e-3 * static_cast<std::int32_t>(cause.code));
     case Cia402Cause::kUnguarded:
       return "the drive does not take up its watch over the controller's heartbeat again (object "
              "1016): start tactd again";

@@ -66,6 +66,7 @@ enum class Cia402Cause : std::uint8_t {
   kLeftOperational,  // code: NmtState
   kUnguarded,        // would not notice that the host is gone
   kWaits,            // code: statusword; for motor supply, enable or STO, before any force
+  kExcessTorque,     // code: mN m
 };
 
 /// For a person, with the remedy; empty for a cause that all drives have. Any thread.

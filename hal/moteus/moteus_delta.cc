@@ -10,6 +10,7 @@
 
 #include "hal/can/can_device.h"
 #include "hal/can/can_open.h"
+#include "hal/can/excess_torque.h"
 #include "hal/moteus/moteus_bring_up.h"
 #include "hal/moteus/moteus_protocol.h"
 #include "model/time_ns.h"
@@ -25,11 +26,8 @@ using Loop = can::CanFdLoop;
 constexpr double kWatchdog_s = 0.010;
 constexpr double kMinRate_Hz = 500.0;  // then the watchdog spans five periods
 constexpr std::int64_t kSilence_ns = 100'000'000;
-constexpr int kSettledTicks = 10;    // in position mode and without torque, before a force may pass
-constexpr int kMaxIncomplete = 10;   // replies in a row
-constexpr double kIdleTorque = 0.1;  // of the largest: measured at rest, when 0 is asked for
-// Weight of one reply in the mean of the torque that was not commanded: 50 ms at 1 kHz.
-constexpr double kUnaskedShare = 0.02;
+constexpr int kSettledTicks = 10;   // in position mode and without torque, before a force may pass
+constexpr int kMaxIncomplete = 10;  // replies in a row
 
 constexpr int kLowSupplyFault = 40;
 
@@ -37,17 +35,17 @@ constexpr int kLowSupplyFault = 40;
 enum class MoteusCause : std::uint8_t {
   kFault = static_cast<std::uint8_t>(can::CanCause::kFirstOwn),  // code: of register 0x00F
   kTimeout,
-  kLeftPosition,   // code: the mode it is in
-  kNotStarted,     // code: the mode it is in
-  kUnaskedTorque,  // code: mN m
-  kIncomplete,     // replies that lack what was asked for
-  kLowSupply,      // waited for, before any force; code: of register 0x00F
+  kLeftPosition,  // code: the mode it is in
+  kNotStarted,    // code: the mode it is in
+  kExcessTorque,  // code: mN m
+  kIncomplete,    // replies that lack what was asked for
+  kLowSupply,     // waited for, before any force; code: of register 0x00F
 };
 
 class Moteuses final : public can::CanFdDrives {
  public:
   Moteuses(const can::CanSettings& can, double largest_torque_Nm)
-      : nodes_(can.node), idle_torque_Nm_(kIdleTorque * largest_torque_Nm) {}
+      : nodes_(can.node), max_excess_Nm_(can::kMaxExcess_ratio * largest_torque_Nm) {}
 
   int node_of(const can::CanFdFrame& frame) const RT_SAFE override {
     return moteus_address(frame).source;
@@ -76,9 +74,9 @@ class Moteuses final : public can::CanFdDrives {
     axis.torque_Nm = *reply->torque_Nm;
     limited_ += is_moteus_limit(axis.fault) ? 1 : 0;
     const bool idle =
-        axis.is_in(MoteusMode::kPosition) && std::abs(axis.torque_Nm) <= idle_torque_Nm_;
+        axis.is_in(MoteusMode::kPosition) && std::abs(axis.torque_Nm) <= max_excess_Nm_;
     axis.settled = loop.power == CanPower::kStarting && idle ? axis.settled + 1 : 0;
-    axis.compare(loop.power == CanPower::kReady);
+    axis.excess.measure(axis.torque_Nm, loop.power == CanPower::kReady);
     return true;
   }
 
@@ -106,8 +104,7 @@ class Moteuses final : public can::CanFdDrives {
     if (powered && loop.asked_ns == 0) loop.asked_ns = loop.now_ns;
     const bool clears = powered && loop.asks_again();  // the fault of one without power
     for (std::size_t i = 0; i < 3; ++i) {
-      axes_[i].asked_before_Nm = axes_[i].asked_Nm;
-      axes_[i].asked_Nm = powered ? torque_Nm[i] : 0.0;
+      axes_[i].excess.command(powered ? torque_Nm[i] : 0.0);
       const bool stops = !powered || (clears && axes_[i].has_low_supply());
       loop.bus.push(stops ? moteus_stop_and_ask(nodes_[i])
                           : moteus_torque(nodes_[i], torque_Nm[i], kWatchdog_s));
@@ -140,7 +137,7 @@ class Moteuses final : public can::CanFdDrives {
             "the drive does not enter position mode and is {}: calibrate it with moteus_tool, and "
             "check its supply",
             moteus_mode_name(static_cast<int>(cause.code)));
-      case MoteusCause::kUnaskedTorque:
+      case MoteusCause::kExcessTorque:
         return fmt::format(
             "the drive gives {:.2f} N m that was not commanded: set servo.pid_position.ki and "
             "ilimit to 0, and calibrate it with moteus_tool",
@@ -158,25 +155,14 @@ class Moteuses final : public can::CanFdDrives {
 
  private:
   struct Axis {
-    int mode = 0, fault = 0;                       // of the last reply
-    double torque_Nm = 0.0;                        // measured
-    double asked_Nm = 0.0, asked_before_Nm = 0.0;  // by the last command, and by the one before it
-    double unasked_Nm = 0.0;                       // mean of what is measured beyond what was asked
-    int settled = 0;                               // replies in a row, while starting
-    int incomplete = 0;                            // the same, of those that are not whole
+    int mode = 0, fault = 0;   // of the last reply
+    double torque_Nm = 0.0;    // measured
+    can::ExcessTorque excess;  // an integral term winds up towards position 0
+    int settled = 0;           // replies in a row, while starting
+    int incomplete = 0;        // the same, of those that are not whole
     bool is_in(MoteusMode one) const RT_SAFE { return mode == static_cast<int>(one); }
     bool has_low_supply() const RT_SAFE {
       return is_in(MoteusMode::kFault) && fault == kLowSupplyFault;
-    }
-
-    /// A reply holds the state before its command (MO-2), so the torque commanded before that.
-    /// Less than that is a limit of the drive's own; more, or another way, is an integral term that
-    /// winds up towards position 0, or a wrong calibration.
-    void compare(bool ready) RT_SAFE {
-      const double asked = asked_before_Nm;
-      const bool cut = torque_Nm * asked >= 0.0 && std::abs(torque_Nm) <= std::abs(asked);
-      const double more_Nm = cut ? 0.0 : torque_Nm - asked;
-      unasked_Nm = ready ? unasked_Nm + kUnaskedShare * (more_Nm - unasked_Nm) : 0.0;
     }
   };
 
@@ -199,15 +185,15 @@ class Moteuses final : public can::CanFdDrives {
     if (asked && axis.is_in(MoteusMode::kTimeout)) loop.fail(i, MoteusCause::kTimeout, 0);
     if (before.is_ready && !axis.is_in(MoteusMode::kPosition))
       loop.fail(i, MoteusCause::kLeftPosition, mode);
-    if (std::abs(axis.unasked_Nm) > idle_torque_Nm_) return fail_unasked(loop, i, axis.unasked_Nm);
+    if (axis.excess.exceeds(max_excess_Nm_)) return fail_excess(loop, i, axis.excess.mean_Nm());
     if (!before.is_late || axis.settled >= kSettledTicks) return;
     if (!axis.is_in(MoteusMode::kPosition)) return loop.fail(i, MoteusCause::kNotStarted, mode);
-    fail_unasked(loop, i, axis.torque_Nm);
+    fail_excess(loop, i, axis.torque_Nm);
   }
 
-  static void fail_unasked(Loop& loop, std::size_t i, double torque_Nm) RT_SAFE {
+  static void fail_excess(Loop& loop, std::size_t i, double torque_Nm) RT_SAFE {
     const auto torque_mNm = static_cast<std::int32_t>(std::clamp(1e3 * torque_Nm, -1e6, 1e6));
-    loop.fail(i, MoteusCause::kUnaskedTorque, static_cast<std::uint32_t>(torque_mNm));
+    loop.fail(i, MoteusCause::kExcessTorque, static_cast<std::uint32_t>(torque_mNm));
   }
 
   void push_stops(Loop& loop) const RT_SAFE {
@@ -215,7 +201,7 @@ class Moteuses final : public can::CanFdDrives {
   }
 
   std::array<int, 3> nodes_;
-  double idle_torque_Nm_;
+  double max_excess_Nm_;
   std::array<Axis, 3> axes_{};
   std::uint64_t old_ = 0;         // replies from before the last read
   std::uint64_t extra_ = 0;       // a second reply of a drive in one tick: the newer one is taken

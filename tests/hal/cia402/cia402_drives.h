@@ -31,7 +31,8 @@ struct PlayedCia402 {
   hal::cia402::NmtState nmt = hal::cia402::NmtState::kBoot;
   double turns = 0.0, turns_per_s = 0.0;
   std::uint16_t controlword = 0;
-  std::int16_t permille = 0;
+  std::int16_t permille = 0;                       // commanded
+  std::int16_t extra_permille = 0;                 // that nothing commanded
   std::vector<std::uint16_t> controlwords;         // every change
   std::map<std::uint32_t, std::uint32_t> written;  // index << 8 | sub
   int fault_resets = 0;
@@ -64,6 +65,8 @@ class PlayedCia402s {
     const bool enabled = one.status == 0x27;
     hal::can::put_unsigned(frame.data, 0, 2, one.status | (enabled && one.follows ? 0x1000u : 0u));
     hal::can::put_unsigned(frame.data, 2, 4, counts(one));
+    const int permille = enabled ? one.permille + one.extra_permille : 0;
+    hal::can::put_unsigned(frame.data, 6, 2, static_cast<std::uint16_t>(permille));
     bus.say(frame);
   }
   void say_emergency(const PlayedCia402& one, std::uint16_t code) {

@@ -94,6 +94,29 @@ TEST(Cia402Faults, ADriveThatDoesNotFollowTheTorqueIsNamed) {
   EXPECT_TRUE(bench.says("does not follow the torque")) << bench.device->trouble();
 }
 
+TEST(Cia402Faults, ATorqueThatWasNotCommandedIsNamed) {
+  Bench bench;
+  bench.run();
+  EXPECT_EQ(bench.tick({0.0, 0.0, 1.0}), Fault::kNone);
+  bench.drives.axis[1].extra_permille = 400;
+  EXPECT_GT(bench.ticks_until(Fault::kDriveFault, 200), 0);
+  EXPECT_TRUE(bench.says("arm 2 (node 2 on can0): the drive gives 0.")) << bench.device->trouble();
+  EXPECT_TRUE(bench.says("that was not commanded (object 6077)")) << bench.device->trouble();
+  bench.expect_stopped();
+  bench.expect_latched(Fault::kDriveFault);
+}
+
+TEST(Cia402Faults, LessTorqueThanCommandedIsALimitOfTheDrive) {
+  Bench bench;
+  bench.run();
+  for (int i = 0; i < 400; ++i) {
+    const double force_N = i % 100 < 50 ? 2.0 : -2.0;  // a torque that turns round is late
+    for (auto& one : bench.drives.axis)
+      one.extra_permille = static_cast<std::int16_t>(-one.permille / 2);
+    ASSERT_EQ(bench.tick({0.0, 0.0, force_N}), Fault::kNone) << i << bench.device->trouble();
+  }
+}
+
 TEST(Cia402Faults, ASilentDriveIsFoundWithin36Milliseconds) {
   Bench bench;
   bench.run();
