@@ -62,8 +62,8 @@ void add_records(CLI::App& app, Options& o) {
       ->needs(replay);
   auto* black_box = app.add_option(
       "--black-box", o.black_box_folder,
-      "folder for the last 10 s before each fault, one file each (default: tact/black-box in "
-      "XDG_STATE_HOME, or in ~/.local/state)");
+      "folder for the last 10 s before each fault, one file each, and for the history of this PC, "
+      "year.tacthistory (default: tact/black-box in XDG_STATE_HOME, or in ~/.local/state)");
   app.add_flag("--no-black-box", o.no_black_box, "keep no such files")->excludes(black_box);
 }
 

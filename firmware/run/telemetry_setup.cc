@@ -115,6 +115,12 @@ Result<Sinks> open_sinks(const RunSetup& run) {
   if (!black_box) return black_box.error();
   out.black_box = std::move(*black_box);
   out.sinks.recorder = out.black_box.get();
+  if (run.options.free_run) return out;  // the PC's time is not the run's
+  auto history = telemetry::YearHistory::open(*folder + "/year.tacthistory");
+  if (history)
+    out.sinks.history.emplace(std::move(*history));
+  else
+    out.no_black_box = history.error().message;
   return out;
 }
 

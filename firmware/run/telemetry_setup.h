@@ -27,7 +27,7 @@ struct Sinks {
   protocol::UtcOffset utc;                         // at the start
   std::unique_ptr<black_box::BlackBox> black_box;  // the target of sinks.recorder
   std::unique_ptr<hal::sim::HandSocket> hand;      // of a simulated device
-  std::string no_black_box;                        // the error, if the default folder is unusable
+  std::string no_black_box;  // the error, if the default folder is unusable; or of the history
 };
 
 /// Opens the outputs that the command line asks for; the others stay empty. An unusable folder for

@@ -42,19 +42,22 @@ std::optional<model::Error> Telemetry::stop() {
     sinks_.recorder->report_fault(watch_fault());  // a fault after the loop's last tick
     sinks_.recorder->finish();
   }
-  return sinks_.log ? sinks_.log->close() : std::nullopt;
+  std::optional<model::Error> error = sinks_.log ? sinks_.log->close() : std::nullopt;
+  const auto failed = sinks_.history ? sinks_.history->finish() : std::nullopt;
+  if (!error && failed) error = model::Error{*failed};
+  return error;
 }
 
 void Telemetry::run() {
   loop::MonotonicClock clock;
   const std::int64_t frame_ns = model::period_ns(pace_.frame_rate_Hz);
   // Absolute times, as in the loop: a slow disk delays one frame without shifting later ones.
-  std::int64_t due_ns = clock.now_ns(), utc_due_ns = due_ns + model::kSecond_ns;
+  std::int64_t due_ns = clock.now_ns(), utc_due_ns = due_ns;
   while (!ending_.load(std::memory_order_relaxed)) {
     drain();
     publish();
     if (due_ns >= utc_due_ns) {
-      builder_.set_utc(read_utc_offset());
+      set_utc(due_ns);
       utc_due_ns = due_ns + model::kSecond_ns;
     }
     due_ns += frame_ns;
@@ -64,18 +67,28 @@ void Telemetry::run() {
   }
 }
 
+void Telemetry::set_utc(std::int64_t now_ns) {
+  const protocol::UtcOffset utc = read_utc_offset();
+  builder_.set_utc(utc);
+  if (sinks_.history) report(sinks_.history->work((now_ns + utc.offset_ns) / model::kSecond_ns));
+}
+
 void Telemetry::drain() {
   while (ring_.pop(record_)) {
     // Every record goes to every sink; which ticks become a frame is decided in publish().
     if (record_.input.variant != variant()) change_variant();
     builder_.add(record_);
     force_hash_ = hash_wrench(force_hash_, record_.output.written);
+    if (sinks_.history) sinks_.history->add(record_);
     if (!sinks_.log && sinks_.recorder == nullptr) continue;
     const LoggedTick tick = builder_.log(record_);
     if (sinks_.log) sinks_.log->add(chunk_of(tick, sinks_.tick_fields));
     if (sinks_.recorder) sinks_.recorder->add(tick);
   }
-  auto news = sinks_.log ? sinks_.log->news() : std::nullopt;
+  report(sinks_.log ? sinks_.log->news() : std::nullopt);
+}
+
+void Telemetry::report(std::optional<std::string> news) {
   if (!news) return;
   const std::lock_guard lock(newest_mutex_);
   record_news_ = std::move(news);

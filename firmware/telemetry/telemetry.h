@@ -11,6 +11,7 @@
 #include "firmware/protocol/run_file.h"
 #include "firmware/telemetry/frame_builder.h"
 #include "firmware/telemetry/telemetry_socket.h"
+#include "firmware/telemetry/year_history.h"
 #include "hal/threads/thread.h"
 
 namespace tact::firmware::telemetry {
@@ -37,6 +38,7 @@ struct Sinks {
   protocol::FieldTable tick_fields = LoggedTick::fields();
   std::optional<protocol::RunWriter> log{};
   Recorder* recorder = nullptr;  // outlives the telemetry
+  std::optional<YearHistory> history{};
 };
 
 /// Frame rate, and the period of the loop between whose ticks frames are sent (release_schedule.h).
@@ -57,7 +59,7 @@ class Telemetry {
 
   [[nodiscard]] std::optional<model::Error> start();
   /// Drains the ring, writes the pending file of the black box, and ends the thread. Returns the
-  /// log's error, if any.
+  /// error of the log or the history, if any.
   std::optional<model::Error> stop();
 
   /// Called by hand in runs without real time: drain() empties the ring, publish() sends a frame.
@@ -81,6 +83,8 @@ class Telemetry {
  private:
   void run();
   void change_variant();
+  void set_utc(std::int64_t now_ns);
+  void report(std::optional<std::string> news);
   std::optional<Frame> next_frame();
   model::Fault watch_fault() const {
     return watch_fault_ == nullptr ? model::Fault::kNone : watch_fault_->load();

@@ -159,14 +159,16 @@ int main(int argc, char** argv) {
       "tact-jitter",
       "Is this PC good enough for the rate? Latency and jitter of the loop that a person runs: the "
       "scene's law\non its device, phase by phase; without SCENE an empty loop at 1 kHz. "
-      "`tact-jitter compare A B`\nputs two results side by side.",
+      "`tact-jitter compare A B`\nputs two results side by side, `tact-jitter history` shows days, "
+      "weeks and a year of tactd.",
       "Times are us on screen and ns in files. \"largest\" is that of the run and bounds nothing.");
   Options options;
   CLI::App& app = program.options();
   add_run_options(app, options);
-  // A script, beside this program or in share/tact.
-  const std::string script = tact::model::io::data_file("tact-jitter-compare");
-  if (argc > 1 && std::string_view(argv[1]) == "compare") execv(script.c_str(), argv + 1);
+  // Scripts, beside this program or in share/tact.
+  for (const std::string name : {"compare", "history"})
+    if (argc > 1 && name == argv[1])
+      execv(tact::model::io::data_file("tact-jitter-" + name).c_str(), argv + 1);
   if (const auto status = program.parse(argc, argv)) return *status;
   return measure(program, options);
 }
