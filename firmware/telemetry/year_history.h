@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// year_history.h - how this PC kept its deadlines: a record each 5 minutes, of the last 365 days, in
-// one file of at most 2 MB.
+// year_history.h - how this PC kept its deadlines: a record each 5 minutes, of the last 365
+// days, in one file of at most 2 MB.
 //
 //     head     "tacthist" u32 version 1, u32 interval 300 s, u32 records 105120, u32 bytes 19
 //     record n at 24 + 19 (n mod 105120), n = UTC / 300 s; little endian:
@@ -8,8 +8,8 @@
 //       u16 skipped, late periods  u16 limits: bit of each reason code 1..15 that acted
 //       u8  first fault; 0: none   u16 FNV-1a of the bytes before, folded
 //
-// What is too large for its field is its largest value. A record that a power cut has torn fails its
-// checksum; the others are as they were. Only the telemetry thread calls it.
+// What is too large for its field is its largest value. A record that a power cut has torn fails
+// its checksum; the others are as they were. Only the telemetry thread calls it.
 #pragma once
 
 #include <array>

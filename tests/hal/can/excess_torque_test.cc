@@ -10,7 +10,7 @@
 
 namespace tact::hal::can::excess_torque_test {
 
-constexpr double kLargest_Nm = 0.5, kLimit_Nm = kMaxExcess_ratio * kLargest_Nm;
+constexpr double kMax_Nm = 0.5, kLimit_Nm = kMaxExcess_ratio * kMax_Nm;
 
 /// Random commands, and a drive that is up to two samples late and gives a share of them.
 class RandomDrive {
@@ -20,7 +20,7 @@ class RandomDrive {
   double command_Nm() {
     before_[1] = before_[0], before_[0] = now_;
     const bool jumps = std::bernoulli_distribution(0.2)(random_);
-    if (jumps) now_ = std::uniform_real_distribution(-kLargest_Nm, kLargest_Nm)(random_);
+    if (jumps) now_ = std::uniform_real_distribution(-kMax_Nm, kMax_Nm)(random_);
     return now_;
   }
   double measured_Nm() {
@@ -51,7 +51,7 @@ TEST(ExcessTorque, OfTwiceTheLimitIsFoundIn50SamplesOnAnyPath) {
   for (unsigned seed = 0; seed < 50; ++seed) {
     RandomDrive drive(seed);
     ExcessTorque excess;
-    const double extra_Nm = (seed % 2 == 0 ? 1.0 : -1.0) * (kLargest_Nm + 2.0 * kLimit_Nm);
+    const double extra_Nm = (seed % 2 == 0 ? 1.0 : -1.0) * (kMax_Nm + 2.0 * kLimit_Nm);
     for (int i = 0; i < 50; ++i) {
       excess.command(drive.command_Nm());
       excess.measure(extra_Nm, true);
@@ -62,9 +62,9 @@ TEST(ExcessTorque, OfTwiceTheLimitIsFoundIn50SamplesOnAnyPath) {
 
 TEST(ExcessTorque, BeginsAgainWithPowerAndIsExceededByNoNumber) {
   ExcessTorque excess;
-  for (int i = 0; i < 100; ++i) excess.measure(kLargest_Nm, true);
+  for (int i = 0; i < 100; ++i) excess.measure(kMax_Nm, true);
   EXPECT_TRUE(excess.exceeds(kLimit_Nm));
-  excess.measure(kLargest_Nm, false);
+  excess.measure(kMax_Nm, false);
   EXPECT_FALSE(excess.exceeds(kLimit_Nm));
   excess.measure(std::numeric_limits<double>::quiet_NaN(), true);
   EXPECT_TRUE(excess.exceeds(kLimit_Nm));

@@ -144,6 +144,6 @@ def write(runs, gate, cycles, path, kernel):
     known, old_kernel = read(path)
     fresh = measure(runs, recorded)
     numbers = {"kernel": kernel if fresh else old_kernel, "gate": gate or read_gate(path),
-                "bus_cycles": dict(sorted((read_cycles(path) | cycles).items())),
-                "back_ends": dict(sorted((known | fresh).items()))}
+               "bus_cycles": dict(sorted((read_cycles(path) | cycles).items())),
+               "back_ends": dict(sorted((known | fresh).items()))}
     path.write_text(json.dumps(numbers, indent=2) + "\n")
