@@ -55,7 +55,7 @@ std::optional<Error> RecordingWriter::open(const std::string& path, const RunHea
 
 /// The error is returned once; from then on there is no file.
 std::optional<Error> RecordingWriter::check() {
-  const std::optional<Error> error = file_->trouble();
+  const std::optional<Error> error = file_->error();
   if (!error) return std::nullopt;
   file_.reset();
   return Error{error->message + "; recording stopped"};

@@ -212,14 +212,14 @@ async function check_second_browser(browser, url) {
 }
 
 /** Another scene from its first touch; the picture is BUILD_DIR/page_NAME.png. */
-async function check_scene(browser, name, sentence, condition) {
+async function check_scene(browser, name, message, condition) {
   const own_socket = join(folder, `${name}.sock`);
   const { viewer, url } = await start_view(["--socket", own_socket]);
   const tactd = start_tactd(name, own_socket);
   const page = await browser.newPage({ viewport: size });
   await page.goto(sharp(url));
   check(
-    sentence,
+    message,
     await waits(page, condition, null, 60000),
     JSON.stringify(
       await page.evaluate(() => ({

@@ -20,9 +20,9 @@ const children = new Set();
 let passed = 0;
 let failed = 0;
 
-export function check(sentence, holds, seen = "") {
+export function check(message, holds, seen = "") {
   holds ? ++passed : ++failed;
-  console.log(`${holds ? "ok    " : "FAILED"} ${sentence}${seen === "" ? "" : ` (${seen})`}`);
+  console.log(`${holds ? "ok    " : "FAILED"} ${message}${seen === "" ? "" : ` (${seen})`}`);
 }
 
 /** A program of BUILD_DIR; its standard output is first_line's, or unread. */

@@ -222,6 +222,8 @@ def main():
             if "node_modules" in path.parts or not is_judged(path):
                 continue
             text = path.read_text()
+            if path.suffix == ".css" and text.count("\n") > MAX_LINES:
+                breaches.append(f"{name}:1: longer than {MAX_LINES} lines: split it by panel")
             if path.suffix in CONFIGURATION:
                 breaches += [] if name.startswith(UNSIGNED) else unlicensed(name, text)
                 continue

@@ -10,9 +10,9 @@
 //   2 there are no more edges of arm than requests
 //   3 an edge of reset rises only when a stop is what was shown last
 //
-// Wrong desks: AT_ONCE does a request that came with the words (breaks 1), KEEPS does not forget
-// what waits while the words are told (1), LEVEL asks the loop again and again (2), BLIND resets
-// whatever was shown (3).
+// Wrong handlers: UNREAD does a request that came with the words (breaks 1), KEEPS does not forget
+// what waits while the words are shown (1), LEVEL asks the loop again and again (2), BLIND resets
+// in any state (3).
 
 #define OFF 0
 #define READY 1
@@ -21,7 +21,7 @@
 
 byte loop_state = OFF;   // the truth
 byte shown = OFF;        // what the handler was shown last
-bool told = false;       // the words stand
+bool ready_shown = false;  // the words are shown
 bit asks_arm = 0;        // a request that waits
 bit arm_is_news = 0;     // made after the words
 bit asks_reset = 0;
@@ -38,7 +38,7 @@ inline check(number, holds) {
 active proctype Person() {
   do
   :: atomic { asked < 3 && !asks_arm ->
-       asks_arm = 1; arm_is_news = told; asked++ }
+       asks_arm = 1; arm_is_news = ready_shown; asked++ }
   :: atomic { !asks_reset -> asks_reset = 1 }
   od
 }
@@ -62,26 +62,26 @@ inline edge_of_arm(is_news) {
   fi
 }
 
-active proctype Desk() {
-  bit takes_arm, takes_reset, takes_news, just_told;
+active proctype Handler() {
+  bit takes_arm, takes_reset, takes_news, just_shown;
   do
   :: atomic {  // wait() and next(): what is there is taken
        takes_arm = asks_arm; takes_news = arm_is_news; takes_reset = asks_reset;
        asks_arm = 0; asks_reset = 0
      };
-     just_told = 0;
+     just_shown = 0;
      atomic {  // show(): the newest frame, which may be any moment's
        shown = loop_state;
        if
-       :: shown != READY -> told = false
-       :: shown == READY && !told -> told = true; just_told = 1
+       :: shown != READY -> ready_shown = false
+       :: shown == READY && !ready_shown -> ready_shown = true; just_shown = 1
        :: else
        fi
      };
 #ifndef KEEPS
      atomic {
        if
-       :: just_told && asks_arm && !arm_is_news -> asks_arm = 0
+       :: just_shown && asks_arm && !arm_is_news -> asks_arm = 0
        :: else
        fi
      };
@@ -103,10 +103,10 @@ active proctype Desk() {
      };
      atomic {
        if
-#ifdef AT_ONCE
-       :: takes_arm && told && shown == READY ->
+#ifdef UNREAD
+       :: takes_arm && ready_shown && shown == READY ->
 #else
-       :: takes_arm && told && shown == READY && !just_told ->
+       :: takes_arm && ready_shown && shown == READY && !just_shown ->
 #endif
           edge_of_arm(takes_news)
 #ifdef LEVEL

@@ -64,7 +64,7 @@ inline supervise() {
 }
 
 /* A missed sample is held, the second begins the fade; not armed, the device may take its time. */
-inline judge() {
+inline limit() {
   d_step {
     if
     :: sample_good || state != ARMED -> missed = 0
@@ -101,7 +101,7 @@ inline judge() {
   }
 }
 
-/* The number is in the words of Spin's complaint, so `run` can tell which property broke. */
+/* The number is in the text of Spin's error, so `run` can report which property broke. */
 #define MUST(number, property) assert((property) || number == 0)
 
 inline check() {
@@ -115,17 +115,17 @@ inline check() {
   /* 3: a stop request, a fault and lost power stop in their own tick */
   MUST(3, !(stop || fault_found) || state == STOPPED);
   MUST(3, !(before == ARMED && !ready && state == ARMED));
-  /* 4: faults latch: whatever comes, a kept fault is a stop */
+  /* 4: faults latch: a kept fault is a stop, with any input */
   MUST(4, !latched || state == STOPPED);
   /* 5: only a reset edge with all inputs good leaves a stop */
   MUST(5, !(before == STOPPED && state != STOPPED) ||
           (reset_edge && sample_good && !arm && !stop && !fault_found));
-  /* 6: reset never arms: neither at once nor through a request that stands */
+  /* 6: reset never arms: neither at once nor through a request that is still set */
   MUST(6, !(before == STOPPED && state == ARMED));
   MUST(6, !(before != ARMED && state == ARMED) || (arm && released && sample_good && ready));
   /* 7: a request arms in its own tick, of a state that was ready, or never */
   MUST(7, !(before != ARMED && state == ARMED) || (arm_edge && before == READY));
-  /* 8: a request to disarm takes the force in its own tick, and nothing arms while it stands */
+  /* 8: a request to disarm takes the force in its own tick, and nothing arms while it is set */
   MUST(8, !(before == ARMED && disarm_edge && state == ARMED));
   MUST(8, !(before != ARMED && state == ARMED && disarm))
 }
@@ -155,7 +155,7 @@ active proctype tick() {
        draw(fault_found); draw(gate_fault);
        before = state;
        supervise();
-       judge();
+       limit();
 #ifdef WITNESS
        remember();
        assert(history < WITNESS)

@@ -47,7 +47,7 @@ def tick_size(load):
     lines = {name: size[device]["lines"] for name, device in
              (("simulated delta", "sim"), ("ODrives", "odrive"), ("Falcon", "falcon"))}
     counts = ", ".join(judged(count, goal, f"{count} ({name})") for name, count in lines.items())
-    yield f"Lines between read and write: {counts}; goal {goal} (`tools/tick_size`)."
+    yield f"Lines of code between read and write: {counts}; goal {goal}."
 
 
 RMS_GOAL_PERCENT, OWN_GOAL_PERCENT = {"compliance": 3.0}, {"compliance": 7.0}  # of others 5 and 10
@@ -61,8 +61,8 @@ SCENE_GOAL_PERCENT = {"rms": 3.0, "own": 7.0}  # of the law that a scene ships
 # Why a scene misses its goal; said only where it does.
 REASONS = {
     "liver": "[rim](tools/chart/README.md)",
-    "liver_source": "530 N/m, not 13 to 28",
-    "gum": "a hollow, taken as flat",
+    "liver_source": "published: 530 N/m",
+    "gum": "a hollow place, computed as flat",
 }
 SAME_PRESSES = {"liver_twist": "liver"}  # in the row of the other, if its values are the same
 
@@ -92,12 +92,12 @@ def rows_of_scenes(load):
 
 def scenes(load):
     """Each scene with the law that it ships: the whole tool against its solid."""
-    yield from ("| scene | law | RMS of the peak | worst force from 1 mm on | tick | missed because |",
+    yield from ("| scene | law | RMS error, of the peak | largest error from 1 mm on | tick | missed because |",
                 "|---|---|---|---|---|---|")
     for names, value in rows_of_scenes(load):
         rms, own = value["rms_percent"], value["own_percent"]
         missed = rms > SCENE_GOAL_PERCENT["rms"] or abs(own) > SCENE_GOAL_PERCENT["own"]
-        at = "the hand's site" if value["place"] == "hand's" else value["place"]
+        at = "the hand's site" if value["place"] == "hand's" else f"vertex {value['place']}"
         yield (f"| {', '.join(f'`{name}`' for name in names)} | `{value['law']}` | "
                f"{judged(rms, SCENE_GOAL_PERCENT['rms'], off(rms)[1:])} | "
                f"{judged(abs(own), SCENE_GOAL_PERCENT['own'], off(own))} at {at}, {value['depth_mm']:.2g} mm | "
@@ -141,7 +141,7 @@ def known_errors(load):
         text = f"`{names[0]}` {off(own)}".replace(" ", "\N{NO-BREAK SPACE}")
         (met if abs(own) <= SCENE_GOAL_PERCENT["own"] else missed).append(text)
     parts = [f"{', '.join(names)} {verdict}" for names, verdict in ((met, "met"), (missed, "**missed**")) if names]
-    text = ("* **Known errors** of the whole tool's force from 1 mm on ([laws](#the-laws)), goal "
+    text = ("* **Known errors**: largest error of the force at depths from 1 mm on ([laws](#the-laws)), goal "
             f"{SCENE_GOAL_PERCENT['own']:.0f} %: {'; '.join(parts)}.")
     for line in textwrap.wrap(text, 130, break_long_words=False, break_on_hyphens=False, subsequent_indent="  "):
         yield line.replace("\N{NO-BREAK SPACE}", " ")

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // main.ts - puts the parts together: connection -> stage, panels, plots; mouse and keys -> hand.
 
-import "./style.css";
+import "./style/index.css";
 import { Connection } from "./link/connection";
 import { describe_past_state, describe_state } from "./panels/faults";
 import { dated_name, save } from "./controls/file_names";

@@ -10,7 +10,7 @@ const kSpeeds = [0.1, 0.25, 0.5, 1, 2, 4, 8];
 const kBack_s = 1;
 const kNear_s = 0.02; // a stop that is shown is not the next one
 const kArrived_s = 0.5; // a frame so near to where it shall go comes from there
-const kPatience_ms = 1000; // then frames count again, wherever they are from
+const kTimeout_ms = 1000; // then frames count again, wherever they are from
 
 /** The next speed of the list; at its end the same again. */
 export function next_speed(ratio: number, faster: boolean): number {
@@ -106,7 +106,7 @@ export class Timeline {
   private go(at_s: number): void {
     if (!this.replay) return;
     this.at_s = this.wanted_s = Math.min(Math.max(at_s, 0), this.replay.length_s);
-    this.gone_to = { at_s: this.at_s, until_ms: performance.now() + kPatience_ms };
+    this.gone_to = { at_s: this.at_s, until_ms: performance.now() + kTimeout_ms };
     this.write();
   }
 

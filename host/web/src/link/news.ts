@@ -20,7 +20,7 @@ export class News {
   silence_s(now_ms: number, frame_rate_Hz: number): number {
     this.listened_ms += Math.min(now_ms - this.looked_ms, kLongestNap_ms);
     this.looked_ms = now_ms;
-    const patience_ms = Math.max(kSilence_ms, 2500 / frame_rate_Hz);
-    return this.any && this.listened_ms > patience_ms ? (now_ms - this.came_ms) / 1000 : 0;
+    const timeout_ms = Math.max(kSilence_ms, 2500 / frame_rate_Hz);
+    return this.any && this.listened_ms > timeout_ms ? (now_ms - this.came_ms) / 1000 : 0;
   }
 }

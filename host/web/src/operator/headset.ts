@@ -16,8 +16,8 @@ const kBack_m = 0.45;
 const kUp_m = 0.35;
 const kDark = new THREE.Color("#131920");
 const kAlarm = new THREE.Color("#4a1512"); // behind everything: seen wherever the wearer looks
-const kPatience_ms = 250; // a headset that lies on the desk asks for no pictures: then the page on the desk updates by itself
-const kTold_ms = 8000;
+const kNoFrame_ms = 250; // a headset that lies on the desk asks for no pictures: then the page on the desk updates by itself
+const kMessage_ms = 8000;
 
 function words_of(error: unknown): string {
   return error instanceof Error ? error.message : String(error);
@@ -100,7 +100,7 @@ export class Headset {
       await session?.end().catch(() => undefined);
       xr.enabled = false;
       this.say(`no picture in the headset: ${words_of(error)}`);
-      setTimeout(() => this.on || this.say(""), kTold_ms);
+      setTimeout(() => this.on || this.say(""), kMessage_ms);
     }
   }
 
@@ -118,7 +118,7 @@ export class Headset {
     this.stage.scene.background = this.background;
     this.watch = window.setInterval(() => {
       const now_ms = performance.now();
-      if (now_ms - this.drawn_ms > kPatience_ms) this.draw(now_ms);
+      if (now_ms - this.drawn_ms > kNoFrame_ms) this.draw(now_ms);
     }, 100);
     this.show("Leave VR");
     this.say("the picture is in the headset; the one here is paused");
