@@ -66,7 +66,7 @@ BUILD_PACKAGES=(g++ cmake ninja-build ca-certificates libfmt-dev libcli11-dev
   nlohmann-json3-dev libtomlplusplus-dev libboost-dev libssl-dev libusb-1.0-0-dev libgpiod-dev libseccomp-dev
   libeigen3-dev libopencv-core-dev libopencv-calib3d-dev libgtest-dev)
 # What the measuring tools call or link besides: those that judge a PC and a device, and all of them.
-LIGHT_TOOL_PACKAGES=(gnuplot-nox libkainjow-mustache-dev rt-tests=cyclictest stress-ng=stress-ng)
+LIGHT_TOOL_PACKAGES=(gnuplot-nox rt-tests=cyclictest stress-ng=stress-ng)
 TOOL_PACKAGES=("${LIGHT_TOOL_PACKAGES[@]}" gmsh optional:calculix-ccx libopenblas0 libbenchmark-dev
   python3-vtk9 python3-numpy python3-scipy)
 # What the tests link or call besides.

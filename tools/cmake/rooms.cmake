@@ -46,8 +46,8 @@ function(tact_target variable room)  # the room firmware/black_box is the target
   set(${variable} tact_${name} PARENT_SCOPE)
 endfunction()
 
-# tact_room_text(tools/limits report/limits.html [NAME PATH]): the file of that room, or that of a path, as kText, or
-# NAME, of "tools/limits/report/limits.html.h", in the room's namespace
+# tact_room_text(tools/limits evidence/hazards.toml [NAME PATH]): the file of that room, or that of a path, as kText, or
+# NAME, of "tools/limits/evidence/hazards.toml.h", in the room's namespace
 function(tact_room_text folder file)
   string(REPLACE "/" "::" namespace ${folder})
   set(source ${PROJECT_SOURCE_DIR}/${folder}/${file})

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "model/io/file_writer.h"
-#include "model/io/input_file.h"
 #include "model/io/json.h"
 #include "model/io/program/installed.h"
 #include "model/io/program/within.h"
@@ -17,6 +16,7 @@
 #include "tools/jitter/run/load.h"
 #include "tools/jitter/trace/tick_trace.h"
 #include "tools/program/run_program.h"
+#include "tools/program/script.h"
 #include "tools/report/head.h"
 
 namespace {
@@ -94,22 +94,12 @@ std::optional<Error> write_json(const json& result, const std::string& path) {
   return tact::model::io::write_file(path, text);
 }
 
-std::optional<Error> write_folder(const JitterResult& result, const Options& o,
+std::optional<Error> write_folder(const JitterResult& result, const std::string& folder,
                                   const std::string& command) {
-  if (auto error = write_json(to_json(result, command), o.out + "/jitter.json")) return error;
-  std::string svg;
-  if (!o.no_plots && !result.interrupted) {  // after Ctrl-C no program is started any more
-    if (auto drawn = draw_histogram(result, o.out); !drawn)
-      fmt::print(stderr, "tact-jitter: no picture: {}\n", drawn.error().message);
-    else if (auto plot = tact::model::io::read_file(o.out + "/histogram.svg"))
-      svg = std::move(*plot);
-  }
-  const std::pair<const char*, std::string> files[] = {
-      {"report.html", make_page(result, command, svg)},
-      {"ticks.trace.json", make_tick_trace(result.sink->kept_ticks(), boottime_offset_ns())}};
-  for (const auto& [name, content] : files)
-    if (auto error = tact::model::io::write_file(o.out + "/" + name, content)) return error;
-  return std::nullopt;
+  if (auto error = write_json(to_json(result, command), folder + "/jitter.json")) return error;
+  return tact::model::io::write_file(
+      folder + "/ticks.trace.json",
+      make_tick_trace(result.sink->kept_ticks(), boottime_offset_ns()));
 }
 
 int measure(const program::Program& program, Options& o) {
@@ -142,14 +132,23 @@ int measure(const program::Program& program, Options& o) {
     if (auto error = tact::model::io::write_file(o.submit, make_submission(*result)))
       return program.fail(*error);
   if (!o.out.empty())
-    if (auto error = write_folder(*result, o, program.command()))
+    if (auto error = write_folder(*result, o.out, program.command()))
       return program.fail(*error, "its files are not complete");
-  if (result->interrupted)
-    return program.fail(program::interruption(),
-                        "what was measured until then is reported, without a picture");
   const auto verdict = check_peer(*result);
-  if (verdict && !verdict->passed()) fmt::print(stderr, "tact-jitter: {}\n", verdict->message());
-  return exit_status(*result);
+  if (!result->interrupted && verdict && !verdict->passed())
+    fmt::print(stderr, "tact-jitter: {}\n", verdict->message());
+  const int status =
+      result->interrupted
+          ? program.fail(program::interruption(),
+                         "what was measured until then is reported, without a picture")
+          : exit_status(*result);
+  if (o.out.empty()) return status;
+  std::vector<std::string> arguments{"--status", std::to_string(status)};
+  if (o.no_plots || result->interrupted) arguments.emplace_back("--no-pictures");
+  arguments.insert(arguments.end(), {"--", o.out});
+  return program.fail(
+      program::become_script("report/jitter_page.py", std::move(arguments), "tact-tools"),
+      "the page is not written");
 }
 
 }  // namespace

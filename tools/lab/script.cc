@@ -8,8 +8,8 @@
 #include <filesystem>
 
 #include "model/io/json.h"
-#include "model/io/program/installed.h"
 #include "tools/program/run_program.h"
+#include "tools/program/script.h"
 
 namespace tact::tools::lab {
 
@@ -46,9 +46,6 @@ json organ_of(const model::scene::Scene& scene) {
 }
 
 Result<int> become(const char* script, const json& job) {
-  const std::string path = model::io::data_file(script).string();
-  if (path.empty())
-    return Error{fmt::format("{} is missing; apt install --reinstall tact-lab", script)};
   const std::string text = model::io::text_of(job);
   // In memory, open in the program that takes our place: gone however that ends.
   const int fd = memfd_create("tact-job", 0);
@@ -58,10 +55,7 @@ Result<int> become(const char* script, const json& job) {
     rest.remove_prefix(static_cast<std::size_t>(n));
   }
   if (program::is_interrupted()) return program::interruption();
-  const std::string job_path = fmt::format("/proc/self/fd/{}", fd);
-  // Debian's own, which finds Debian's numpy and scipy; -I: independent of PYTHONPATH.
-  execl("/usr/bin/python3", "python3", "-I", path.c_str(), job_path.c_str(), nullptr);
-  return Error{"python3 is not installed; apt install python3 python3-numpy python3-scipy"};
+  return program::become_script(script, {fmt::format("/proc/self/fd/{}", fd)}, "tact-lab");
 }
 
 }  // namespace tact::tools::lab

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "hal/lines_settings.h"
 #include "hal/registry/open_device.h"
@@ -13,6 +14,7 @@
 #include "tools/limits/real_device/consent.h"
 #include "tools/limits/run_plan.h"
 #include "tools/program/program.h"
+#include "tools/program/script.h"
 
 namespace {
 
@@ -102,14 +104,19 @@ int test_limits(const program::Program& program, const Options& o) {
   close_evidence(*evidence, report->limits);
   report->evidence = std::move(*evidence);
   // Reported below even if it could not be written: a run on a device is not repeated lightly.
-  const auto files = write_report(*report, o.out, !o.no_plots);
+  const auto failed = write_report(*report, o.out);
   if (o.json)
     fmt::print("{}\n", tact::model::io::text_of(to_json(*report), 2));
   else
     fmt::print("{}", to_text(*report));
-  if (!files) return program.fail(files.error(), "the report is not complete");
+  if (failed) return program.fail(*failed, "the report is not complete");
   if (!o.json) fmt::print("{}: {}/limits.html\n", report->result_text(), o.out);
-  return report->passed() ? 0 : 1;
+  std::vector<std::string> arguments{"--status", report->passed() ? "0" : "1"};
+  if (o.no_plots) arguments.emplace_back("--no-pictures");
+  arguments.insert(arguments.end(), {"--", o.out});
+  return program.fail(
+      program::become_script("report/limits_page.py", std::move(arguments), "tact-tools"),
+      "the page is not written");
 }
 
 }  // namespace

@@ -18,7 +18,6 @@
 #include "tests/support/program.h"
 #include "tests/support/test_scene.h"
 #include "tools/limits/evidence/hazards.h"
-#include "tools/limits/report/hazard_page.h"
 #include "tools/limits/run_plan.h"
 
 namespace tact::tools::limits::evidence_test {
@@ -117,16 +116,11 @@ TEST(HazardMatrix, EachTestHasAResultWithDateAndRevisionWhereOneIsKnown) {
   std::map<std::string, json> of;
   const json table = hazards_json(*report);
   for (const json& row : table.at("tests")) of[row.at("id")] = row;
-  const std::string page = page_html(*report, {});
   std::filesystem::remove(path);
   EXPECT_EQ(of.at("TEST-01").at("result"), "pass");
   EXPECT_EQ(of.at("TEST-01").at("date"), "2026-11-30");
   EXPECT_EQ(of.at("TEST-01").at("revision"), "1a2b3c");
   EXPECT_EQ(of.at("TEST-02").at("result"), "not known here");
-  EXPECT_NE(
-      page.find(
-          "<td class=keep><span class=ok>pass</span></td><td class=keep>2026-11-30<br>1a2b3c"),
-      std::string::npos);
   std::set<std::string> own;
   for (const auto& [id, row] : of) {
     EXPECT_EQ(row.at("by").get<std::string>().find("build/"), std::string::npos) << id;

@@ -218,8 +218,11 @@ std::string make_summary(const JitterResult& result) {
 }
 
 json to_json(const JitterResult& result, const std::string& command) {
-  json series, late = json::array(), shortfalls = json::array();
-  for (const NamedSeries& named : series_of(result)) series[named.key] = series_json(result, named);
+  json series, order = json::array(), late = json::array(), shortfalls = json::array();
+  for (const NamedSeries& named : series_of(result)) {
+    series[named.key] = series_json(result, named);
+    order.push_back(named.key);
+  }
   for (const LateTick& tick : result.sink->late_ticks()) late.push_back(late_json(result, tick));
   for (const firmware::pc::Shortfall& s : result.shortfalls) shortfalls.push_back(s.message);
   const auto ratio = ratio_to_peer(result);
@@ -228,6 +231,8 @@ json to_json(const JitterResult& result, const std::string& command) {
           {"began", result.began_utc},
           {"host", result.host},
           {"outcome", outcome_of(result).message},
+          {"outcome_verdict", outcome_of(result).verdict},
+          {"headline", make_headline(result)},
           {"command", command},
           {"subject", result.subject},
           {"rate_Hz", result.rate_Hz},
@@ -246,9 +251,11 @@ json to_json(const JitterResult& result, const std::string& command) {
           {"threshold_ns", result.sink->threshold_ns()},
           {"over_threshold", result.sink->over_threshold()},
           {"series", series},
+          {"series_order", order},
           {"pin_edges_unpaired", result.pin ? json(result.pin->unpaired()) : json(nullptr)},
           {"wake_p99.9_over_peer", ratio ? json(*ratio) : json(nullptr)},
           {"wake_p99.9_over_peer_by_turn", to_json(middle_of(result.turn_ratios))},
+          {"compared_with_peer", result.peer ? json(compare_with_peer(result)) : json(nullptr)},
           {"peer_gate", to_json(check_peer(result))},
           {"thread", firmware::run::to_json(result.thread)},
           {"kernel", to_json(result.costs)},

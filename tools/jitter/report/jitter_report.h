@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// jitter_report.h - a measurement as text for people, as JSON for machines and for `compare`, as a
-// picture, a page and a row of tools/deploy/PCS.md.
+// jitter_report.h - a measurement as text for people, as JSON for machines, for `compare` and for
+// jitter_page.py, which makes picture and page of it, and as a row of tools/deploy/PCS.md.
 //
 // A percentile is reported where at least one sample lies beyond it, else it is "-" or null: of 10
 // 000 samples p99.99 is the last. The largest of a run is reported with its tick and its time, and
@@ -13,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include "model/result.h"
 #include "tools/jitter/run/jitter_run.h"
 #include "tools/jitter/run/peer.h"
 
@@ -47,7 +46,7 @@ std::string compare_with_peer(const JitterResult& result);
 std::optional<PeerVerdict> check_peer(const JitterResult& result);
 /// The run in one message that begins with its outcome, for the top of a report.
 struct Outcome {
-  const char* style;  // of page.css: pass, fail, part
+  const char* verdict;  // pass, fail, part
   std::string message;
 };
 Outcome outcome_of(const JitterResult& result);
@@ -65,20 +64,6 @@ std::string in_us(std::optional<std::uint64_t> duration_ns);
 
 std::string make_summary(const JitterResult& result);
 nlohmann::json to_json(const JitterResult& result, const std::string& command);
-/// One HTML file that needs nothing else: no network, no script.
-/// `histogram_svg`: the picture itself; empty where none was drawn.
-std::string make_page(const JitterResult& result, const std::string& command,
-                      const std::string& histogram_svg);
-
-// The histograms of a run as a picture: both axes logarithmic, so that the one tick in a million is
-// as visible as the median.
-
-/// Buckets of the picture, 20 in a decade from 0.1 us on: from_us, then the samples of each series.
-std::string make_histogram_csv(const JitterResult& result);
-
-/// histogram.csv and histogram.svg, .png, .gp in a folder. Returns the picture's paths.
-model::Result<std::vector<std::string>> draw_histogram(const JitterResult& result,
-                                                       const std::string& directory);
 
 inline constexpr const char* kSubmissionHead =
     "| CPU, cores | kernel | settings | wake-up p99.9, us | deadline to force p99.9, us | largest, "

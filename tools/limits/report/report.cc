@@ -8,16 +8,13 @@
 #include <nlohmann/json.hpp>
 
 #include "model/io/file_writer.h"
-#include "model/io/input_file.h"
 #include "model/io/json.h"
-#include "tools/program/interrupt.h"
 #include "tools/report/table.h"
 
 namespace tact::tools::limits {
 namespace {
 
 namespace fs = std::filesystem;
-using model::Result;
 
 /// Length of a vector, with the sign of its z, along which most cases act: what the curves show.
 double along_z(const Vec3& v) { return v.z < 0.0 ? -norm(v) : norm(v); }
@@ -146,12 +143,9 @@ std::string to_text(const LimitsReport& report) {
   return out;
 }
 
-Result<std::vector<std::string>> write_report(const LimitsReport& report,
-                                              const std::string& directory, bool draw_plots) {
-  std::vector<std::string> files;
+std::optional<model::Error> write_report(const LimitsReport& report, const std::string& directory) {
   const auto write = [&](const std::string& name, const std::string& content) {
-    files.push_back((fs::path(directory) / name).string());
-    return model::io::write_file(files.back(), content);
+    return model::io::write_file((fs::path(directory) / name).string(), content);
   };
   const auto write_table = [&](const report::Table& table) {
     return write(table.name() + ".csv", table.to_csv());
@@ -159,30 +153,13 @@ Result<std::vector<std::string>> write_report(const LimitsReport& report,
   report::Table cases("cases");
   for (const CaseResult& result : report.cases) cases.add(case_row(result.verdict));
   if (!report.cases.empty())
-    if (auto error = write_table(cases)) return *error;
+    if (auto error = write_table(cases)) return error;
   // Every tick: the verdict can be checked without this program.
   for (const CaseResult& result : report.cases)
-    if (auto error = write_table(trace_table(result))) return *error;
+    if (auto error = write_table(trace_table(result))) return error;
   if (report.wall)
-    if (auto error = write_table(wall_table(*report.wall))) return *error;
-  if (auto error = write("limits.json", model::io::text_of(to_json(report), 2) + "\n"))
-    return *error;
-  std::vector<std::string> drawings;
-  // Tables first: without gnuplot the numbers are there all the same.
-  if (draw_plots) {
-    const auto drawn = draw_curves(report, directory);
-    if (!drawn && program::is_interrupted()) return drawn.error();
-    if (!drawn) fmt::print(stderr, "tact-limits: no pictures: {}\n", drawn.error().message);
-    for (const std::string& path : drawn ? *drawn : std::vector<std::string>()) {
-      files.push_back(path);
-      if (fs::path(path).extension() != ".svg") continue;
-      auto svg = model::io::read_file(path);
-      if (!svg) return svg.error();
-      drawings.push_back(std::move(*svg));
-    }
-  }
-  if (auto error = write("limits.html", page_html(report, drawings))) return *error;
-  return files;
+    if (auto error = write_table(wall_table(*report.wall))) return error;
+  return write("limits.json", model::io::text_of(to_json(report), 2) + "\n");
 }
 
 }  // namespace tact::tools::limits

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// report.h - what a test of the limits leaves behind: JSON for machines, CSV of every tick, curves
-// by gnuplot, and one page that a safety officer can read.
+// report.h - what a test of the limits leaves behind: JSON for machines and CSV of every tick. Of
+// these limits_page.py makes the curves, and one page that a safety officer can read.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -55,17 +55,11 @@ struct LimitsReport {
 /// Of cases.csv, and the numbers of limits.json.
 report::Row case_row(const CaseVerdict& v);
 nlohmann::json to_json(const LimitsReport& report);
+/// Of it: the hazards, their requirements, what shows these, and what this run has shown.
+nlohmann::json hazards_json(const LimitsReport& report);
 /// A line for each case, on a terminal.
 std::string to_text(const LimitsReport& report);
-/// limits.json, cases.csv, a trace_NAME.csv for each case, wall.csv, curves.* and wall.*,
-/// limits.html. Returns the paths.
-model::Result<std::vector<std::string>> write_report(const LimitsReport& report,
-                                                     const std::string& directory, bool draw_plots);
-
-/// The pictures beside the tables: paths without ending of the folder.
-model::Result<std::vector<std::string>> draw_curves(const LimitsReport& report,
-                                                    const std::string& directory);
-/// `svg`: the drawings, in their order; empty: without.
-std::string page_html(const LimitsReport& report, const std::vector<std::string>& svg);
+/// limits.json, cases.csv, a trace_NAME.csv for each case, wall.csv.
+std::optional<model::Error> write_report(const LimitsReport& report, const std::string& directory);
 
 }  // namespace tact::tools::limits
