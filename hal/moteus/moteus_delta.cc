@@ -25,11 +25,12 @@ using Loop = can::CanFdLoop;
 constexpr double kWatchdog_s = 0.010;
 constexpr double kMinRate_Hz = 500.0;  // then the watchdog spans five periods
 constexpr std::int64_t kSilence_ns = 100'000'000;
-constexpr int kSettledTicks = 10;    // in position mode and without torque, before a force may pass
-constexpr int kMaxIncomplete = 10;   // replies in a row
-constexpr double kIdleTorque = 0.1;  // of the largest: measured at rest, when 0 is asked for
+constexpr int kSettledTicks = 10;   // in position mode and without torque, before a force may pass
+constexpr int kMaxIncomplete = 10;  // replies in a row
+constexpr double kMaxIdleTorqueRatio =
+    0.1;  // of the largest: measured at rest, when 0 is asked for
 // Weight of one reply in the mean of the torque that was not commanded: 50 ms at 1 kHz.
-constexpr double kUnaskedShare = 0.02;
+constexpr double kUnaskedWeightPerReply = 0.02;
 
 constexpr int kLowSupplyFault = 40;
 
@@ -47,7 +48,7 @@ enum class MoteusCause : std::uint8_t {
 class Moteuses final : public can::CanFdDrives {
  public:
   Moteuses(const can::CanSettings& can, double largest_torque_Nm)
-      : nodes_(can.node), idle_torque_Nm_(kIdleTorque * largest_torque_Nm) {}
+      : nodes_(can.node), idle_torque_Nm_(kMaxIdleTorqueRatio * largest_torque_Nm) {}
 
   int node_of(const can::CanFdFrame& frame) const RT_SAFE override {
     return moteus_address(frame).source;
@@ -176,7 +177,7 @@ class Moteuses final : public can::CanFdDrives {
       const double asked = asked_before_Nm;
       const bool cut = torque_Nm * asked >= 0.0 && std::abs(torque_Nm) <= std::abs(asked);
       const double more_Nm = cut ? 0.0 : torque_Nm - asked;
-      unasked_Nm = ready ? unasked_Nm + kUnaskedShare * (more_Nm - unasked_Nm) : 0.0;
+      unasked_Nm = ready ? unasked_Nm + kUnaskedWeightPerReply * (more_Nm - unasked_Nm) : 0.0;
     }
   };
 
