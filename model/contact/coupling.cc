@@ -14,7 +14,7 @@ constexpr int kMaxSteps = 16;
 constexpr double kTolerance_m = 1e-10;  // 1e-7 N on a tissue of 1 kN/m
 // Below this pivot the matrix is nearly singular, and a Newton step would be too long.
 constexpr double kMinPivot = 1e-6;
-constexpr double kMargin = 0.95;  // of the largest coupling that is positive definite
+constexpr double kMaxCouplingRatio = 0.95;  // of the largest coupling that is positive definite
 
 using Vector = std::array<double, kMaxSpheres>;
 
@@ -130,7 +130,7 @@ double definite_share(const Coupling& c,
   const auto is_definite = [&](double factor) RT_SAFE {
     SmallLu<kMaxSpheres> lu;
     for (std::size_t i = 0; i < n; ++i) {
-      lu.at(i, i) = kMargin;
+      lu.at(i, i) = kMaxCouplingRatio;
       for (std::size_t j = 0; j < i; ++j) {
         const double stiffness_N_per_m = std::sqrt(stiffest_N_per_m[i] * stiffest_N_per_m[j]);
         lu.at(i, j) = lu.at(j, i) = factor * c[i][j] * stiffness_N_per_m;

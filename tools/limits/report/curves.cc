@@ -20,7 +20,8 @@ constexpr int kPanelHeight_px = 190, kWidth_px = 900, kHead_px = 30;
 
 /// Has it a moment to mark?
 bool has_cause(const Case& c) {
-  return c.trouble != Trouble::kNone || c.shape == Shape::kNan || c.shape == Shape::kInfinity;
+  return c.injected != InjectedFault::kNone || c.shape == Shape::kNan ||
+         c.shape == Shape::kInfinity;
 }
 
 /// Of up to kPanels cases from `first` on.

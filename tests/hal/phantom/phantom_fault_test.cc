@@ -8,18 +8,18 @@
 #include "tests/support/device_loop.h"
 #include "tests/support/stub_hd/hd_client.h"
 
-namespace tact::hal::phantom::phantom_trouble_test {
+namespace tact::hal::phantom::phantom_fault_test {
 
 constexpr Wrench kUp{.force_N = {0, 0, 2}, .torque_Nm = {}};
 
-class PhantomTrouble : public tests::DeviceLoop {
+class PhantomFault : public tests::DeviceLoop {
  protected:
   void SetUp() override {
     device.reset();
     stub.reset();
     open(tests::phantom_scene());
     for (int i = 0; i < 300; ++i) tick(kUp);  // armed in earnest, forces known to be on
-    ASSERT_EQ(fault, Fault::kNone) << device->trouble();
+    ASSERT_EQ(fault, Fault::kNone) << device->fault_detail();
     ASSERT_GT(stub.strongest_N(), 1.9);
   }
   /// The fault that comes within two seconds, and stays when its cause is gone.
@@ -30,7 +30,7 @@ class PhantomTrouble : public tests::DeviceLoop {
     EXPECT_TRUE(comes([&] { return stub.last_force(force) == 0 && force[1] == 0.0; }))
         << "the last thing that is asked for";
     sleep_ms(20);
-    EXPECT_EQ(stub.unsafe_calls(), 0) << "the frame of the trouble carries zero, then off";
+    EXPECT_EQ(stub.unsafe_calls(), 0) << "the frame of the fault carries zero, then off";
     stub.reset();
     for (int i = 0; i < 100; ++i) tick(kUp);
     EXPECT_EQ(fault, found) << "a fault stays until the device is opened again";
@@ -42,12 +42,12 @@ class PhantomTrouble : public tests::DeviceLoop {
   tests::StubHd stub;
 };
 
-TEST_F(PhantomTrouble, NothingIsWrongAtFirst) {
+TEST_F(PhantomFault, NothingIsWrongAtFirst) {
   EXPECT_EQ(fault, Fault::kNone);
-  EXPECT_EQ(device->trouble(), "");
+  EXPECT_EQ(device->fault_detail(), "");
 }
 
-TEST_F(PhantomTrouble, EveryErrorOfTheLibraryEndsTheForceAndIsReportedAsText) {
+TEST_F(PhantomFault, EveryErrorOfTheLibraryEndsTheForceAndIsReportedAsText) {
   const struct {
     const char* function;
     unsigned code;
@@ -64,24 +64,24 @@ TEST_F(PhantomTrouble, EveryErrorOfTheLibraryEndsTheForceAndIsReportedAsText) {
     SetUp();
     stub.fail(c.function, c.code);
     EXPECT_EQ(lasting_fault(), c.fault) << c.words;
-    EXPECT_TRUE(reported("the PHANTOM failed: ") && reported(c.words)) << device->trouble();
+    EXPECT_TRUE(reported("the PHANTOM failed: ") && reported(c.words)) << device->fault_detail();
   }
 }
 
-TEST_F(PhantomTrouble, AForceOutputThatAnotherProgramSwitchedOffIsAFault) {
+TEST_F(PhantomFault, AForceOutputThatAnotherProgramSwitchedOffIsAFault) {
   stub.lose_force_output();
   EXPECT_EQ(lasting_fault(), Fault::kForceOff);
-  EXPECT_TRUE(reported("force output is off; end other programs")) << device->trouble();
+  EXPECT_TRUE(reported("force output is off; end other programs")) << device->fault_detail();
 }
 
-TEST_F(PhantomTrouble, ALostCalibrationIsAFaultAndSaysWhatToDo) {
+TEST_F(PhantomFault, ALostCalibrationIsAFaultAndSaysWhatToDo) {
   stub.set_calibration(kHdNeedsHand);
   EXPECT_EQ(lasting_fault(), Fault::kHomingLost);
   EXPECT_TRUE(reported("put its stylus into the inkwell, then start tactd again"))
-      << device->trouble();
+      << device->fault_detail();
 }
 
-TEST_F(PhantomTrouble, AnAnswerThatIsNoCalibrationIsAFault) {
+TEST_F(PhantomFault, AnAnswerThatIsNoCalibrationIsAFault) {
   for (const unsigned status : {0u, 0x5003u}) {
     SetUp();
     stub.set_calibration(status);
@@ -89,22 +89,22 @@ TEST_F(PhantomTrouble, AnAnswerThatIsNoCalibrationIsAFault) {
   }
 }
 
-TEST_F(PhantomTrouble, APoseThatIsNoNumberIsAFault) {
+TEST_F(PhantomFault, APoseThatIsNoNumberIsAFault) {
   stub.hold(std::nan(""), 0, 0);
   EXPECT_EQ(lasting_fault(), Fault::kSampleNotFinite);
-  EXPECT_TRUE(reported("a pose that is no number; check its cable")) << device->trouble();
+  EXPECT_TRUE(reported("a pose that is no number; check its cable")) << device->fault_detail();
 }
 
-TEST_F(PhantomTrouble, AnUpdateOfTheCalibrationWaitsForTheNextStart) {
+TEST_F(PhantomFault, AnUpdateOfTheCalibrationWaitsForTheNextStart) {
   const long updates = stub.calls("hdUpdateCalibration");
   stub.set_calibration(kHdNeedsUpdate);  // the stylus rests in the inkwell
   for (int i = 0; i < 100; ++i) tick(kUp);
-  EXPECT_EQ(fault, Fault::kNone) << device->trouble();
+  EXPECT_EQ(fault, Fault::kNone) << device->fault_detail();
   EXPECT_EQ(stub.calls("hdUpdateCalibration"), updates)
       << "the position would jump under the force";
 }
 
-TEST_F(PhantomTrouble, ASilentSchedulerLeavesNoFreshSampleAndIsReported) {
+TEST_F(PhantomFault, ASilentSchedulerLeavesNoFreshSampleAndIsReported) {
   stub.silence(1);
   sleep_ms(10);
   tick(kUp);  // takes what came before
@@ -114,16 +114,16 @@ TEST_F(PhantomTrouble, ASilentSchedulerLeavesNoFreshSampleAndIsReported) {
   }
   EXPECT_TRUE(
       reported("no call for more than 20 ms: the device may still push; switch its supply off"))
-      << device->trouble();
+      << device->fault_detail();
   stub.silence(0);
-  EXPECT_TRUE(comes([&] { return device->trouble().empty(); }));
+  EXPECT_TRUE(comes([&] { return device->fault_detail().empty(); }));
 }
 
-TEST_F(PhantomTrouble, AStopThatTheLibraryDoesNotAnswerIsReported) {
+TEST_F(PhantomFault, AStopThatTheLibraryDoesNotAnswerIsReported) {
   stub.silence(1);
   device->stop();
   EXPECT_EQ(device->why_not_off(), "the library does not return: switch the device's supply off");
-  EXPECT_TRUE(reported("the library does not return")) << device->trouble();
+  EXPECT_TRUE(reported("the library does not return")) << device->fault_detail();
   EXPECT_TRUE(stub.is_open()) << "what it still runs is not closed";
   stub.silence(0);  // it lets go after all, before the next test
   EXPECT_TRUE(comes([&] { return !reported("no call for more than"); }));
@@ -134,4 +134,4 @@ TEST(HdWords, NoCodeIsBlankOrWithoutARemedy) {
     EXPECT_NE(text_of_hd_error(code).find("; "), std::string::npos) << text_of_hd_error(code);
 }
 
-}  // namespace tact::hal::phantom::phantom_trouble_test
+}  // namespace tact::hal::phantom::phantom_fault_test

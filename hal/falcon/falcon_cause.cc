@@ -28,7 +28,7 @@ std::string line_text(std::uint32_t errors) {
          "again";
 }
 
-// What and remedy, by FalconTrouble; {} is the text of part_of.
+// What and remedy, by FalconCause; {} is the text of part_of.
 constexpr std::array kTexts{
     "",
     "the Falcon is not homed (axis {}): pull the grip all the way out, then push it in until the "
@@ -48,18 +48,18 @@ constexpr std::array kTexts{
     "the "
     "loop's core of other work, then start again",
 };
-static_assert(kTexts.size() == static_cast<std::size_t>(FalconTrouble::kStoodIn) + 1);
+static_assert(kTexts.size() == static_cast<std::size_t>(FalconCause::kStoodIn) + 1);
 
-std::string part_of(FalconTrouble trouble, std::uint32_t code) {
-  if (trouble == FalconTrouble::kBroken) return std::strerror(static_cast<int>(code));
-  return trouble == FalconTrouble::kGarbled ? line_text(code) : missing_axes(code);
+std::string part_of(FalconCause cause, std::uint32_t code) {
+  if (cause == FalconCause::kBroken) return std::strerror(static_cast<int>(code));
+  return cause == FalconCause::kGarbled ? line_text(code) : missing_axes(code);
 }
 
 }  // namespace
 
-std::string text_of(FalconTrouble trouble, std::uint32_t code) {
-  const char* const text = kTexts.at(static_cast<std::size_t>(trouble));
-  return fmt::format(fmt::runtime(text), part_of(trouble, code));
+std::string text_of(FalconCause cause, std::uint32_t code) {
+  const char* const text = kTexts.at(static_cast<std::size_t>(cause));
+  return fmt::format(fmt::runtime(text), part_of(cause, code));
 }
 
 }  // namespace tact::hal::falcon

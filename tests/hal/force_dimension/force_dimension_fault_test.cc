@@ -6,11 +6,11 @@
 #include "tests/support/device_loop.h"
 #include "tests/support/stub_dhd/stub_client.h"
 
-namespace tact::hal::force_dimension::force_dimension_trouble_test {
+namespace tact::hal::force_dimension::force_dimension_fault_test {
 
 constexpr Wrench kUp{.force_N = {0, 0, 2}, .torque_Nm = {}};
 
-class ForceDimensionTrouble : public tests::DeviceLoop {
+class ForceDimensionFault : public tests::DeviceLoop {
  protected:
   void SetUp() override {
     open(tests::stub_scene());
@@ -38,12 +38,12 @@ class ForceDimensionTrouble : public tests::DeviceLoop {
   tests::StubDhd stub;
 };
 
-TEST_F(ForceDimensionTrouble, NothingIsWrongAtFirst) {
+TEST_F(ForceDimensionFault, NothingIsWrongAtFirst) {
   EXPECT_EQ(fault, Fault::kNone);
-  EXPECT_EQ(device->trouble(), "");
+  EXPECT_EQ(device->fault_detail(), "");
 }
 
-TEST_F(ForceDimensionTrouble, APoseThatFailsEndsTheForceAtOnce) {
+TEST_F(ForceDimensionFault, APoseThatFailsEndsTheForceAtOnce) {
   stub.fail("dhdGetPositionAndOrientationFrame", 8);
   for (int i = 0; i < 100; ++i) tick(kUp);
   double force[6];
@@ -51,23 +51,23 @@ TEST_F(ForceDimensionTrouble, APoseThatFailsEndsTheForceAtOnce) {
   EXPECT_EQ(force[2], 0.0);
   EXPECT_EQ(lasting_fault(), Fault::kDeviceFailed);
   EXPECT_TRUE(reported("does not report its pose: the pose cannot be computed"))
-      << device->trouble();
+      << device->fault_detail();
 }
 
-TEST_F(ForceDimensionTrouble, ADeviceThatIsGoneIsUnplugged) {
+TEST_F(ForceDimensionFault, ADeviceThatIsGoneIsUnplugged) {
   stub.fail("dhdSetForceAndTorqueAndGripperForce", 5);
   EXPECT_EQ(lasting_fault(), Fault::kDeviceUnplugged);
-  EXPECT_TRUE(reported("does not take a force: the device is gone")) << device->trouble();
+  EXPECT_TRUE(reported("does not take a force: the device is gone")) << device->fault_detail();
 }
 
-TEST_F(ForceDimensionTrouble, AStatusThatFailsIsReported) {
+TEST_F(ForceDimensionFault, AStatusThatFailsIsReported) {
   stub.fail("dhdGetStatus", 7);
   EXPECT_EQ(lasting_fault(), Fault::kDeviceFailed);
   EXPECT_TRUE(reported("does not report its status: the device did not answer"))
-      << device->trouble();
+      << device->fault_detail();
 }
 
-TEST_F(ForceDimensionTrouble, ForcesThatTheDeviceSwitchedOffAreReportedByCause) {
+TEST_F(ForceDimensionFault, ForcesThatTheDeviceSwitchedOffAreReportedByCause) {
   const char* const words[] = {"does not say why", "button",     "too fast", "watchdog_s",
                                "a program",        "USB failed", "dead-man"};
   for (int cause = 0; cause <= 6; ++cause) {
@@ -78,11 +78,11 @@ TEST_F(ForceDimensionTrouble, ForcesThatTheDeviceSwitchedOffAreReportedByCause) 
     stub.set_status(kSdkForceOffCause, cause);
     stub.set_status(kSdkForce, 0);
     EXPECT_EQ(lasting_fault(), Fault::kForceOff);
-    EXPECT_TRUE(reported(words[cause])) << device->trouble();
+    EXPECT_TRUE(reported(words[cause])) << device->fault_detail();
   }
 }
 
-TEST_F(ForceDimensionTrouble, TheDevicesOwnWatchdogEndsWhatALibraryThatHangsLeftBehind) {
+TEST_F(ForceDimensionFault, TheDevicesOwnWatchdogEndsWhatALibraryThatHangsLeftBehind) {
   // A busy PC is a silent loop: forces are off before the watchdog looks. One of ten tries has it.
   for (int tries = 0; tries < 10 && fault == Fault::kNone && (tries == 0 || silences > 0);
        ++tries) {
@@ -97,11 +97,11 @@ TEST_F(ForceDimensionTrouble, TheDevicesOwnWatchdogEndsWhatALibraryThatHangsLeft
     for (int i = 0; i < 1000 && fault == Fault::kNone; ++i) tick(kUp);
   }
   EXPECT_EQ(fault, Fault::kForceOff);
-  EXPECT_TRUE(reported("watchdog_s")) << device->trouble();
+  EXPECT_TRUE(reported("watchdog_s")) << device->fault_detail();
   stub.set_delay_us(0);
 }
 
-TEST_F(ForceDimensionTrouble, LostSupplyCableAndCalibrationAreDistinguished) {
+TEST_F(ForceDimensionFault, LostSupplyCableAndCalibrationAreDistinguished) {
   const struct {
     int word, value;
     Fault fault;
@@ -115,8 +115,8 @@ TEST_F(ForceDimensionTrouble, LostSupplyCableAndCalibrationAreDistinguished) {
     SetUp();
     stub.set_status(c.word, c.value);
     EXPECT_EQ(lasting_fault(), c.fault) << c.words;
-    EXPECT_TRUE(reported(c.words)) << device->trouble();
+    EXPECT_TRUE(reported(c.words)) << device->fault_detail();
   }
 }
 
-}  // namespace tact::hal::force_dimension::force_dimension_trouble_test
+}  // namespace tact::hal::force_dimension::force_dimension_fault_test
