@@ -3,7 +3,7 @@
 // an integral term of its own, a wrong calibration, another controller in it.
 //
 //     e    = T - nearest of [min, max] of 0 and the last three commands     N m
-//     mean = mean + kWeightPerSample (e - mean)                                      one step a sample
+//     mean = mean + kShare_ratio (e - mean)                                      one step a sample
 //
 // Less than commanded is a limit of the drive. Three commands: a sample is up to two periods old.
 #pragma once
@@ -17,7 +17,7 @@
 namespace tact::hal::can {
 
 /// Of the largest torque of a motor; chosen: above friction and ripple, below what moves a hand.
-inline constexpr double kMaxExcessRatio = 0.1;
+inline constexpr double kMaxExcess_ratio = 0.1;
 
 class ExcessTorque {
  public:
@@ -33,14 +33,14 @@ class ExcessTorque {
       most_Nm = std::max(most_Nm, each_Nm);
     }
     const double near_Nm = std::clamp(torque_Nm, least_Nm, most_Nm);
-    mean_Nm_ = powered ? mean_Nm_ + kWeightPerSample * (torque_Nm - near_Nm - mean_Nm_) : 0.0;
+    mean_Nm_ = powered ? mean_Nm_ + kShare_ratio * (torque_Nm - near_Nm - mean_Nm_) : 0.0;
   }
   double mean_Nm() const RT_SAFE { return mean_Nm_; }
   /// Also when it is not a number.
   bool exceeds(double limit_Nm) const RT_SAFE { return !(std::abs(mean_Nm_) <= limit_Nm); }
 
  private:
-  static constexpr double kWeightPerSample = 0.02;  // 50 ms at 1 kHz
+  static constexpr double kShare_ratio = 0.02;  // 50 ms at 1 kHz
 
   std::array<double, 3> commanded_Nm_{};
   double mean_Nm_ = 0.0;

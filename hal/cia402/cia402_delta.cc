@@ -36,7 +36,7 @@ class Cia402s final : public can::CanDrives {
                                  ? static_cast<std::uint64_t>(rate_Hz / kHostHeartbeat_Hz)
                                  : 1) {
     const auto& delta = settings.of<can::DeltaSettings>();
-    max_excess_Nm_ = can::kMaxExcessRatio * delta.max_joint_torque_Nm / delta.gear_ratio;
+    max_excess_Nm_ = can::kMaxExcess_ratio * delta.max_joint_torque_Nm / delta.gear_ratio;
     for (std::size_t i = 0; i < 3; ++i) {
       axes_[i].node = settings.of<can::CanSettings>().node[i];
       axes_[i].rated_torque_Nm = start.rated_torque_Nm[i];

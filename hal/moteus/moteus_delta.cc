@@ -45,7 +45,7 @@ enum class MoteusCause : std::uint8_t {
 class Moteuses final : public can::CanFdDrives {
  public:
   Moteuses(const can::CanSettings& can, double largest_torque_Nm)
-      : nodes_(can.node), max_excess_Nm_(can::kMaxExcessRatio * largest_torque_Nm) {}
+      : nodes_(can.node), max_excess_Nm_(can::kMaxExcess_ratio * largest_torque_Nm) {}
 
   int node_of(const can::CanFdFrame& frame) const RT_SAFE override {
     return moteus_address(frame).source;

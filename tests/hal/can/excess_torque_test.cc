@@ -10,7 +10,7 @@
 
 namespace tact::hal::can::excess_torque_test {
 
-constexpr double kMax_Nm = 0.5, kLimit_Nm = kMaxExcessRatio * kMax_Nm;
+constexpr double kMax_Nm = 0.5, kLimit_Nm = kMaxExcess_ratio * kMax_Nm;
 
 /// Random commands, and a drive that is up to two samples late and gives a share of them.
 class RandomDrive {
