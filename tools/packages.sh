@@ -68,7 +68,7 @@ BUILD_PACKAGES=(g++ cmake ninja-build ca-certificates libfmt-dev libcli11-dev
 # What the measuring tools call or link besides: those that judge a PC and a device, and all of them.
 LIGHT_TOOL_PACKAGES=(gnuplot-nox libkainjow-mustache-dev rt-tests=cyclictest stress-ng=stress-ng)
 TOOL_PACKAGES=("${LIGHT_TOOL_PACKAGES[@]}" gmsh optional:calculix-ccx libopenblas0 libbenchmark-dev
-  python3-vtk9 python3-numpy python3-scipy)
+  python3-matplotlib python3-vtk9 python3-numpy python3-scipy)
 # What the tests link or call besides.
 TEST_PACKAGES=(libopenigtlink-dev python3-jsonschema python3-numpy python3-matplotlib strace
   pybind11-dev python3-dev systemd=systemd-analyze)

@@ -75,8 +75,8 @@ SettledForce settle(bool is_stepped, const std::function<double()>& tick_force_N
   return {.force_N = 0.5 * (low_N + high_N), .ticks = kMaxSettleTicks};
 }
 
-Accuracy measure_accuracy(Subject& subject, const std::vector<ProbeCase>& cases, double pitch_m) {
-  Accuracy out;
+Answers measure_answers(Subject& subject, const std::vector<ProbeCase>& cases, double pitch_m) {
+  Answers out;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const ProbeCase& c = cases[i];
     const bool elsewhere =
@@ -96,7 +96,6 @@ Accuracy measure_accuracy(Subject& subject, const std::vector<ProbeCase>& cases,
     out.samples.push_back(std::move(sample));
   }
   subject.release();
-  out.errors = summarize(out.samples);
   return out;
 }
 
