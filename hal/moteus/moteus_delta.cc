@@ -27,8 +27,8 @@ constexpr double kMinRate_Hz = 500.0;  // then the watchdog spans five periods
 constexpr std::int64_t kSilence_ns = 100'000'000;
 constexpr int kSettledTicks = 10;   // in position mode and without torque, before a force may pass
 constexpr int kMaxIncomplete = 10;  // replies in a row
-constexpr double kMaxIdleTorqueRatio =
-    0.1;  // of the largest: measured at rest, when 0 is asked for
+// Of the largest torque: measured at rest, when 0 is asked for.
+constexpr double kMaxIdleTorqueRatio = 0.1;
 // Weight of one reply in the mean of the torque that was not commanded: 50 ms at 1 kHz.
 constexpr double kUnaskedWeightPerReply = 0.02;
 
