@@ -73,21 +73,20 @@ std::string hash_of_files(std::initializer_list<std::string> paths) {
 }
 
 json job_of(const program::Program& program, const Options& o, const Scene& scene) {
-  {"version", kChartVersion},
-  {"out", o.out},
-  {"json", o.json},
-  {"draw", !o.no_plots},
-  {"accuracy", o.accuracy},
-  {"scenes", o.scenes},
-  {"command", program.command()},
-  {"scene", {{"name", scene.name}, {"path", scene.path}, {"law", scene.law}}},
-  {"noticeable_ratio", report::kJustNoticeable_ratio},
-  {"provenance",
-   {{"scene", scene.hash},
-    {"reference", hash_of_files({o.reference, o.tool_reference})},
-    {"revision", firmware::pc::read_environment({}).git_revision},
-    {"machine", model::scene::machine_name()}}}
-};
+  return {{"version", kChartVersion},
+          {"out", o.out},
+          {"json", o.json},
+          {"draw", !o.no_plots},
+          {"accuracy", o.accuracy},
+          {"scenes", o.scenes},
+          {"command", program.command()},
+          {"scene", {{"name", scene.name}, {"path", scene.path}, {"law", scene.law}}},
+          {"noticeable_ratio", report::kJustNoticeable_ratio},
+          {"provenance",
+           {{"scene", scene.hash},
+            {"reference", hash_of_files({o.reference, o.tool_reference})},
+            {"revision", firmware::pc::read_environment({}).git_revision},
+            {"machine", model::scene::machine_name()}}}};
 }
 
 /// What tactd knows a law by again: its forces, not the file.
