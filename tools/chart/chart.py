@@ -3,7 +3,7 @@
 
     /usr/bin/python3 -I chart.py JOB.json
 
-Exit status: 0 good, 1 a peer is ahead or Ctrl-C, 2 bad input. tools/lab/chart.cc makes JOB.json: the options, the forces and
+Exit status: 0 good, 1 a peer is ahead or Ctrl-C, 2 bad input. tact-lab makes JOB.json: the options, the forces and
 times of each law and size, the places and forces of the reference.
 """
 import pathlib

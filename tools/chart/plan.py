@@ -9,7 +9,7 @@
 
 If none is enough, the nearest: the one whose worst excess over a limit, as a ratio, is smallest, then by time and memory; that
 is said. Times of two within 10 % count as equal: a clock resolves no less, and the next measurement would turn them round.
-Exit status: 0 good, 1 no law was measured or Ctrl-C, 2 bad input. tools/lab/plan.cc makes JOB.json.
+Exit status: 0 good, 1 no law was measured or Ctrl-C, 2 bad input. tact-lab makes JOB.json.
 """
 import hashlib
 import json

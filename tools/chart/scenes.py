@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """How far the force of each shipped scene's tool is off at its largest local error, under each law, and by which reference.
 
-It is finite strain where tools/results/finite_strain.json has the scene and law, else the linear reference of the whole
+It is finite strain where finite_strain.json has the scene and law, else the linear reference of the whole
 tool: of SCENE.accuracy for every law, of scenes.json for the law that a scene ships. The picture and the READMEs read it here.
 """
 import collections
