@@ -2,7 +2,7 @@
 """How far the force of each shipped scene's tool is off at its largest local error, under each law, and by which reference.
 
 It is finite strain where finite_strain.json has the scene and law, else the linear reference of the whole
-tool: of SCENE.accuracy for every law, of scenes.json for the law that a scene ships. The picture and the READMEs read it here.
+tool: of SCENE.accuracy for every law, of scenes.json for the law that a scene ships. The picture and the documents read it here.
 """
 import collections
 import tomllib
