@@ -6,6 +6,7 @@ usage: tests/proof/bound/bound_test.py [tactd]
 """
 import json
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -52,6 +53,7 @@ int main(void) { int all = 0; for (int n = 0; n <= 8; ++n) all += entry(n); retu
 PAIRS = {"rows": 8, "pairs": 36}
 
 
+@unittest.skipUnless(shutil.which("valgrind"), "needs valgrind")
 class Small(unittest.TestCase):
     """A program of which each path can be counted."""
 
@@ -114,8 +116,9 @@ class Small(unittest.TestCase):
         self.assertIn("rows", self.refused(SMALL, {"pairs": 36}))
 
     def test_recursion_is_refused(self):
-        self.assertIn("recursion", self.refused(SMALL.replace("return a[x & 63] * x;", "return x ? leaf(x / 2) * a[x & 63] + 1 : 0;")
-                                                .replace("int leaf(int x) {", "int leaf(int x) { asm volatile(\"\");")))
+        self.assertIn("recursion", self.refused(SMALL.replace(
+            "return a[x & 63] * x;", "return x ? leaf(x / 2) * a[x & 63] + 1 : 0;")
+            .replace("int leaf(int x) {", "int leaf(int x) { asm volatile(\"\");")))
 
     def test_call_through_a_pointer_is_refused(self):
         text = SMALL.replace("int main", "int (*volatile any)(int) = leaf;\nint main").replace(
@@ -131,6 +134,10 @@ class Committed(unittest.TestCase):
         for bench, phases in json.loads((ROOT / "tests/data/tick_bounds.json").read_text()).items():
             for phase, bound in phases.items():
                 self.assertGreaterEqual(bound, seen[bench][phase]["longest_ns"], f"{bench}: {phase}")
+
+    @unittest.skipUnless(TACTD, "needs a tactd")
+    def test_tactd_keeps_its_bounds(self):
+        subprocess.run([sys.executable, HERE / "run", "--program", TACTD, "--check"], check=True)
 
 
 if __name__ == "__main__":

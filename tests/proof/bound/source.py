@@ -5,7 +5,7 @@
     // bound: count; pairs in all (i < j)    and at most `pairs` each time that the loop around it is entered
     // bound: 1 a call (by the state)        the calls in this statement: each at most once in a call of its function
 
-The comment stands above the loop or at its end of line; above a statement it is about the loops that the compiler
+The comment is above the loop or at its end of line; above a statement it is about the loops that the compiler
 makes of that statement, such as those of std::copy. A bound is a number or an expression in constants of the source
 and in what the case gives, such as the number of spheres.
 """

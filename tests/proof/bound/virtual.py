@@ -93,4 +93,3 @@ def demangled(tables):
     mangled = sorted(tables)
     plain = demangle([f"_ZTV{name}" for name in mangled])
     return dict(zip(mangled, (text.removeprefix("vtable for ") for text in plain)))
-
