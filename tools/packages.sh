@@ -70,7 +70,7 @@ LIGHT_TOOL_PACKAGES=(gnuplot-nox libkainjow-mustache-dev rt-tests=cyclictest str
 TOOL_PACKAGES=("${LIGHT_TOOL_PACKAGES[@]}" gmsh optional:calculix-ccx libopenblas0 libbenchmark-dev
   python3-matplotlib python3-vtk9 python3-numpy python3-scipy)
 # What the tests link or call besides.
-TEST_PACKAGES=(libopenigtlink-dev python3-jsonschema python3-numpy python3-matplotlib strace
+TEST_PACKAGES=(libopenigtlink-dev python3-jsonschema python3-numpy python3-matplotlib python3-scipy strace valgrind
   pybind11-dev python3-dev systemd=systemd-analyze)
 # What the virtual bench needs on this side (tests/rig).
 RIG_PACKAGES=(qemu-system-x86=qemu-system-x86_64 cpio kmod zstd xz-utils mmdebstrap make g++
