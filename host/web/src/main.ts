@@ -179,6 +179,7 @@ function draw(now_ms: number): void {
 function show(frame: Frame): void {
   organ?.show(frame.contacts, frame.patch);
   tool?.show(frame);
+  stage.keep_in_view(frame.tool_position_m);
 }
 
 /** After the first picture, so that it waits for nothing. */
@@ -283,7 +284,7 @@ const numbers = {
   get tracking_words() { return operator.shown?.words ?? ""; },
   get largest_figure_bytes() { return connection.largest_figure_bytes; },
   get camera_m() { return stage.camera.position.toArray(); },
-  get camera() { return { projection: stage.camera.projectionMatrix.toArray(), view: stage.camera.matrixWorldInverse.toArray() }; },
+  get camera() { stage.camera.updateMatrixWorld(); return { projection: stage.camera.projectionMatrix.toArray(), view: stage.camera.matrixWorldInverse.toArray() }; },
   get organ_m() { return organ?.drawn_m ?? null; },
   get headset() { return headset?.numbers ?? null; },
 };

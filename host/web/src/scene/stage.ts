@@ -8,11 +8,16 @@ import { follow_share, type Eyes } from "./eyes";
 import { make_ground } from "./ground";
 import { kSteel, look_material, paint } from "./look";
 import { snapshot } from "./snapshot";
+import type { Vec } from "../link/protocol";
 
 const kSlow_fps = 40; // below this the picture gets coarser, because smooth matters more than sharp
 const kCoarsest = 0.6;
 const kSight_deg = 32;
 const kHome_aspect = 0.95; // in a narrower picture the first view is from farther off, and shows the same
+const kNarrow_aspect = 1.2; // of a phone
+const kInside_ratio = 0.8; // of the way from the middle of the picture to its edge
+const kStepBack_ratio = 1.04;
+const kMaxStepsBack = 60; // to ten times the distance
 const kPole_rad = 0.02; // as near as the view comes to straight down
 const kEyes_deg = 48; // a person sees more at once
 const kEyes_s = 0.15; // in which the eyes' camera goes two thirds of the way to the head
@@ -49,6 +54,7 @@ export class Stage {
   private home = new THREE.Sphere(new THREE.Vector3(), 0.1);
   private ground: THREE.Object3D | null = null;
   private with_operator = false;
+  private kept_m: Vec | null = null;
   private at_home = true; // the view was not turned yet
   private eyes: Eyes | null = null;
   private readonly looks_at = new THREE.Vector3();
@@ -166,6 +172,20 @@ export class Stage {
     }
     this.camera.position.sub(this.controls.target).multiplyScalar(farther).add(this.controls.target);
     this.controls.update();
+    this.keep_in_view(this.kept_m);
+  }
+
+  /** In the first view of a narrow picture: goes so far off that this place is in it. */
+  keep_in_view(place_m: Vec | null): void {
+    this.kept_m = place_m;
+    if (!place_m || !this.at_home || this.eyes || this.wearer || this.camera.aspect > kNarrow_aspect) return;
+    const { position } = this.camera;
+    for (let i = 0; i < kMaxStepsBack; ++i) {
+      this.camera.updateMatrixWorld();
+      const { x, y, z } = new THREE.Vector3(...place_m).project(this.camera);
+      if (z < 1 && Math.max(Math.abs(x), Math.abs(y)) < kInside_ratio) return;
+      position.sub(this.controls.target).multiplyScalar(kStepBack_ratio).add(this.controls.target);
+    }
   }
 
   /** As a drag to the right and up, and so many times the distance. False while the view is not the desk's own. */
