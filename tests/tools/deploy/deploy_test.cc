@@ -82,7 +82,7 @@ TEST_F(Deploy, AnOlderDebianIsRefusedWithTheReleasesThatDo) {
 }
 
 TEST_F(Deploy, NoUnitArms) {
-  for (const char* unit : {"tactd@.service", "tact-view.service"}) {
+  for (const char* unit : {"tactd@.service", "tact-view.service", "tact-metrics.service"}) {
     std::istringstream lines(content(kDeploy + unit));
     int starts = 0;
     for (std::string line; std::getline(lines, line);) {
@@ -133,7 +133,7 @@ TEST_F(Deploy, TheUnitLetsTheLoopBeHardRealTime) {
 
 TEST_F(Deploy, AUnitIsExposedToNoMoreThanTwoOfTen) {
   if (std::system("command -v systemd-analyze >/dev/null") != 0) GTEST_SKIP() << "no systemd";
-  for (const char* unit : {"tactd@.service", "tact-view.service"}) {
+  for (const char* unit : {"tactd@.service", "tact-view.service", "tact-metrics.service"}) {
     const std::string command =
         "systemd-analyze security --offline=true --no-pager --threshold=20 " + kDeploy + unit +
         " >" + said + " 2>&1";
