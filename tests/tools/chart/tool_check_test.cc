@@ -20,6 +20,7 @@ constexpr TimingSettings kShort{.ticks = 100, .rounds = 1, .limit_s = 0.05, .ins
 /// A plate under a linear disc stack, one sphere.
 model::scene::Scene make_scene() {
   model::scene::Scene scene = tests::make_plate_scene();
+  scene.law = "disc_stack";
   scene.described = {"disc_stack"};
   scene.laws.of<model::indent::DiscStackParameters>() = tests::make_linear_discs();
   scene.hand_inward = {0, 0, -1};
@@ -58,7 +59,8 @@ TEST(PressTool, FindsTheForceOfOneSphereAsWorkedByHand) {
   const auto force_N = press_tool(scene, linear_truth(scene, k));
   ASSERT_TRUE(force_N) << force_N.error().message;
   ASSERT_EQ(force_N->size(), 4U) << "two places, two depths";
-  for (const std::size_t i : {0, 1, 2, 3}) EXPECT_NEAR((*force_N)[i], k * (i % 2 + 1) * 1e-3, 1e-9);
+  for (const std::size_t i : {0, 1, 2, 3})
+    EXPECT_NEAR((*force_N)[i], k * static_cast<double>(i % 2 + 1) * 1e-3, 1e-9);
 }
 
 TEST(PressTool, RendersEverySphereOfTheTool) {
@@ -68,8 +70,8 @@ TEST(PressTool, RendersEverySphereOfTheTool) {
   const auto force_N = press_tool(scene, linear_truth(scene, k));
   ASSERT_TRUE(force_N) << force_N.error().message;
   for (const std::size_t i : {0, 1, 2, 3}) {
-    EXPECT_GT((*force_N)[i], 1.5 * k * (i % 2 + 1) * 1e-3);
-    EXPECT_LT((*force_N)[i], 2.0 * k * (i % 2 + 1) * 1e-3 + 1e-9);
+    EXPECT_GT((*force_N)[i], 1.5 * k * static_cast<double>(i % 2 + 1) * 1e-3);
+    EXPECT_LT((*force_N)[i], 2.0 * k * static_cast<double>(i % 2 + 1) * 1e-3 + 1e-9);
   }
 }
 
