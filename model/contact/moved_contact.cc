@@ -46,7 +46,7 @@ void MovedContact::reset() RT_SAFE {
 }
 
 OrganSphere* MovedContact::at(std::size_t sphere) RT_SAFE {  // bound: spheres (as find())
-  for (std::size_t i = 0; i < organ_.count; ++i)  // bound: spheres
+  for (std::size_t i = 0; i < organ_.count; ++i)             // bound: spheres
     if (organ_.sphere[i].index == sphere) return &organ_.sphere[i];
   return nullptr;
 }
