@@ -1,15 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
-"""chart.svg and chart.png: local error over time of laws, shipped scenes and peers; below, the laws of every scene."""
+"""chart.svg and chart.png: local error over time of laws, shipped scenes and peers; below, the laws of every scene.
+
+    /usr/bin/python3 picture.py FOLDER     the picture of the README, of committed results alone
+"""
 import collections
 import json
 import math
 import os
 import pathlib
+import sys
 import textwrap
 
-import run
-import scenes as of_scenes
-import tables
+sys.dont_write_bytecode = True
+TOOLS = pathlib.Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(TOOLS / "chart"), str(TOOLS / "reference")]
+
+import run  # noqa: E402
+import scenes as of_scenes  # noqa: E402
+import tables  # noqa: E402
 
 LAW_INKS = ("#0072B2", "#009E73", "#56B4E9", "#6A3D9A", "#8C564B", "#332288", "#666666")
 PEER_INKS = ("#D55E00", "#CC3311", "#882255", "#E69F00")
@@ -203,3 +211,21 @@ def draw(rows, job):
         figure.savefig(path, metadata={"Date": None} if path.suffix == ".svg" else {})
     plot.close(figure)
     return paths
+
+
+def committed():
+    """(rows, job) of tools/results: the liver's laws as the scene has them, peers, scenes."""
+    results = TOOLS / "results"
+    found, peers = (json.loads((results / f"{name}.json").read_text()) for name in ("tool", "peers"))
+    laws = [{"kind": "tact", "family": law, "size": "as the scene says", "form": "-", "tick_median_us": value["median_us"],
+             "tool_own_worst_ratio": max(map(abs, value["own_percent_at_mm"].values())) / 100, "own_worst_ratio": math.nan}
+            for law, value in found["values"].items()]
+    scene = {"name": "liver", "path": str(TOOLS.parent / "model/scenes/liver.toml")}
+    return laws + tables.read_rows(peers["rows"], "peers.json"), {
+        "scene": scene, "scenes": str(results / "scenes.json"),
+        "provenance": {"machine": found["machine"], "revision": found["revision"]}}
+
+
+if __name__ == "__main__":
+    drawn, asked = committed()
+    print(*draw(drawn, {**asked, "out": sys.argv[1]}), sep="\n")
