@@ -77,7 +77,8 @@ TEST_PACKAGES=(libopenigtlink-dev python3-jsonschema python3-numpy python3-matpl
 RIG_PACKAGES=(qemu-system-x86=qemu-system-x86_64 cpio kmod zstd xz-utils mmdebstrap make g++
   linux-headers-rt-amd64 linux-source)
 # The programs of others that tact works with, as its tests ask them (stage ecosystem): some 0.9 GB.
-ECOSYSTEM_PACKAGES=(prometheus python3-prometheus-client octave octave-psychtoolbox-3)
+ECOSYSTEM_PACKAGES=(prometheus python3-prometheus-client octave octave-psychtoolbox-3 snakemake
+  slurmctld slurmd slurm-client munge parallel iproute2=ip)
 PAGE_PACKAGES=(nodejs=node npm=npm)
 # What makes and judges Debian packages (tools/package).
 DEB_PACKAGES=(cmark-gfm debhelper dpkg-dev fakeroot help2man lintian git=git python3=python3)

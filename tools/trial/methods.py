@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which comparison comes next: constant stimuli, a staircase, QUEST. None knows of tact; levels are ratios above 0.
+"""Which comparison comes next: constant stimuli, a staircase, QUEST. None knows of tact.
 
-A level is the comparison over the reference less 1: 0.07 is 7 % more. Each method has next(), a level or None at the end,
-add(level, correct), and estimate(), of the threshold, or None.
+A level is the comparison over the reference less 1: 0.07 is 7 % more; of constant stimuli it may be below 0. Each method has
+next(), a level or None at the end, add(level, correct), and estimate(), of the threshold, or None.
 """
 import math
 

@@ -84,12 +84,18 @@ def settings_of(table, method, where):
             raise Wrong(f"{where}: {method} needs {key}, {least:g} to {most:g}")
         many = value if key == "levels" and isinstance(value, list) and value else [value]
         for one in many:
-            if not isinstance(one, (int, float)) or isinstance(one, bool) or not least <= one <= most:
-                raise Wrong(f"{where}: {key} = {value!r} must be {'a list of ' if key == 'levels' else ''}{least:g} to {most:g}")
+            if not isinstance(one, (int, float)) or isinstance(one, bool) or not least <= size(key, one) <= most:
+                raise Wrong(f"{where}: {key} = {value!r} must be {'a list of ' if key == 'levels' else ''}{least:g} to {most:g}"
+                            f"{', or -0.9 to -0.001 where the comparison is the smaller' if key == 'levels' else ''}")
             if isinstance(default, int) and not isinstance(one, int):
                 raise Wrong(f"{where}: {key} = {value!r} must be whole")
         out[key] = many if key == "levels" else value
     return out
+
+
+def size(key, value):
+    """A level may be below 0, down to -0.9: then the comparison is the smaller one."""
+    return -value if key == "levels" and -0.9 <= value < 0.0 else value
 
 
 def block_of(table, where):

@@ -156,8 +156,8 @@ class Cluster(unittest.TestCase):
 
     def test_gnu_parallel_gives_the_same_bytes(self):
         whole = self.one_run()
-        run("parallel", "-j2", *self.shard, "--shard", f"{{1}}/{TASKS}", "--out", f"{self.folder}/part{{1}}", "--",
-            "'" + " ".join(self.unit) + "'", ":::", *range(1, TASKS + 1), env=os.environ | {"HOME": str(self.folder)})
+        run("parallel", "-j2", "-I", "@", *self.shard, "--shard", f"@/{TASKS}", "--out", f"{self.folder}/part@", "--",
+            *self.unit, ":::", *range(1, TASKS + 1), env=os.environ | {"HOME": str(self.folder)})
         self.assertEqual(self.merged(), whole)
 
     def snakemake(self, *more):
@@ -185,7 +185,8 @@ class Cluster(unittest.TestCase):
 
 if __name__ == "__main__":
     if os.environ.get("TACT_ALONE") != "yes":
-        os.environ["TACT_ALONE"] = "yes"
-        os.execvp("unshare", ["unshare", "--net", "--pid", "--fork", "--kill-child", "--mount-proc", "bash", "-c",
-                              'ip link set lo up && exec "$@"', "-", sys.executable, *sys.argv[:1], str(BUILD), *sys.argv[1:]])
+        os.environ["TACT_ALONE"] = "yes"  # Slurm asks for an address that is not of loopback, on any device
+        up = 'ip link set lo up && ip address add 192.0.2.1/32 dev lo && exec "$@"'
+        os.execvp("unshare", ["unshare", "--net", "--pid", "--fork", "--kill-child", "--mount-proc", "bash", "-c", up, "-",
+                              sys.executable, sys.argv[0], str(BUILD), *sys.argv[1:]])
     unittest.main()

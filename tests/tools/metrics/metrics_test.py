@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""tact-metrics of BUILD_DIR by itself: a stuck scraper costs no tick, the text file is whole, bad usage is a sentence.
+"""tact-metrics of BUILD_DIR by itself: a stuck scraper costs no tick, the text file is whole, bad usage has a message.
 
     python3 tests/tools/metrics/metrics_test.py BUILD_DIR
 
@@ -24,7 +24,7 @@ FREE_RUN_TICKS = 200000
 
 
 class Stuck(Case):
-    """In simulated time telemetry runs in the thread of the loop: a client that could delay it would do so here."""
+    """In simulated time telemetry runs in the thread of the loop: what could delay it would do so here."""
 
     def free_run(self, *arguments):
         report = self.folder / "report.json"
