@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """chart.svg and chart.png: local error over time of laws, shipped scenes and peers; below, the laws of every scene.
 
-    /usr/bin/python3 picture.py FOLDER     the picture of the README, of committed results alone
+    /usr/bin/python3 picture.py FOLDER     of committed results alone
 """
 import collections
 import json
@@ -214,7 +214,7 @@ def draw(rows, job):
 
 
 def committed():
-    """(rows, job) of tools/results: the liver's laws as the scene has them, peers, scenes."""
+    """(rows, job) of the committed results: the liver's laws as the scene has them, peers, scenes."""
     results = TOOLS / "results"
     found, peers = (json.loads((results / f"{name}.json").read_text()) for name in ("tool", "peers"))
     laws = [{"kind": "tact", "family": law, "size": "as the scene says", "form": "-", "tick_median_us": value["median_us"],
