@@ -67,7 +67,7 @@ TEST(UtcClock, EachTickOfALogHasTheNewestPairAndItsContacts) {
   ring->push(record);
   // Each frame has the newest pair; the thread reads it again once a second.
   for (int i = 0; i < 30'000 && telemetry.newest_frame().utc.offset_ns <= 5; ++i) {
-    record.tick = 1 + i;
+    record.tick = static_cast<std::uint64_t>(1 + i);
     ring->push(record);
     usleep(1000);
   }
