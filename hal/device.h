@@ -75,15 +75,55 @@ struct DeviceCount {
 };
 
 /// An open device gives no force before the first write. The destructor does the same as stop().
+///
+/// Errors: opening returns a Result with a message (what, where, the value to write). In the loop
+/// read and write return a Fault, which latches; fault_detail() has the part and the cause.
 class Device {
  public:
+  // Types: DeviceInfo, Sample and DeviceCount, above.
+  // Construction: by the back end's open function (hal/registry). Not copied, not moved.
+
   Device() = default;
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
   virtual ~Device() = default;
 
-  // Set-up, before the loop.
+  // The tick: each once per period, in this order, by the loop's thread. None blocks, allocates or
+  // throws. catch_up comes before the first of them.
 
+  /// Once: reads the backlog since opening, so that the first tick is not longer. `now_ns`, as in
+  /// read: CLOCK_MONOTONIC.
+  virtual void catch_up(std::int64_t now_ns) RT_SAFE { (void)now_ns; }
+
+  /// The newest sample: m, m/s, rad/s in W; not fresh until the device knows its position. Returns
+  /// the device's fault, or Fault::kNone.
+  [[nodiscard]] virtual Fault read(Sample& sample, std::int64_t now_ns) RT_SAFE = 0;
+
+  /// Offset in m of the tool from the handle by the clutch, in W. Only for a simulated hand, whose
+  /// target is a position of the tool. Called only with a clutch.
+  virtual void shift_tool(const Vec3& shift_m) RT_SAFE { (void)shift_m; }
+
+  /// True if the motors are on. Samples can be fresh with motors off: arming needs ready(), and
+  /// the loop stops if it becomes false while armed.
+  virtual bool ready() const RT_SAFE { return true; }
+
+  /// Permission of the safety lines for power in this tick; without lines true.
+  virtual void permit(bool powered) RT_SAFE { (void)powered; }
+
+  /// Force of the gripper on the fingers in N, opening positive; applies from the next write on.
+  virtual void set_grip_force(double opening_N) RT_SAFE { (void)opening_N; }
+
+  /// Writes this wrench (N and N m, in W, on the tool) to the hardware; the device adds its gravity
+  /// compensation. Returns the device's fault; kForceNotFinite for a NaN, and writes zero then.
+  [[nodiscard]] virtual Fault write(const Wrench& wrench) RT_SAFE = 0;
+
+  /// Simulates one or more periods of a simulated device; no effect on hardware. Not part of the
+  /// tick's measured time.
+  virtual void between_ticks(double elapsed_s) RT_SAFE { (void)elapsed_s; }
+
+  // Outside the loop: before it.
+
+  /// Name and limits; constant from opening on.
   virtual DeviceInfo info() const = 0;
 
   /// Numbers (sys/syscall.h) of all system calls in read, permit and write. Any other system call
@@ -94,43 +134,12 @@ class Device {
   /// one whose handle another process cannot use.
   virtual std::optional<ShutdownFrames> shutdown_frames() { return std::nullopt; }
 
-  /// Called by the loop's thread once, before its first tick: reads the backlog since opening, so
-  /// that the first tick is not longer.
-  virtual void catch_up(std::int64_t now_ns) RT_SAFE { (void)now_ns; }
-
-  // Called by the loop's thread, once per tick: read, with a clutch shift_tool, ready, permit,
-  // set_grip_force, write.
-
-  /// Newest sample; not fresh until the device knows its position. Returns the device's fault.
-  [[nodiscard]] virtual Fault read(Sample& sample, std::int64_t now_ns) RT_SAFE = 0;
-
-  /// True if the motors are on. Samples can be fresh with motors off: arming needs ready(), and
-  /// the loop stops if it becomes false while armed.
-  virtual bool ready() const RT_SAFE { return true; }
-
-  /// Permission of the safety lines for power in this tick; without lines true.
-  virtual void permit(bool powered) RT_SAFE { (void)powered; }
-
-  /// Writes this wrench to the hardware; the device adds its gravity compensation.
-  [[nodiscard]] virtual Fault write(const Wrench& wrench) RT_SAFE = 0;
-
-  /// Force of the gripper on the fingers, opening positive; applies from the next write on.
-  virtual void set_grip_force(double opening_N) RT_SAFE { (void)opening_N; }
-
-  /// Offset of the tool from the handle by the clutch, in W. Only for a simulated hand, whose
-  /// target is a position of the tool.
-  virtual void shift_tool(const Vec3& shift_m) RT_SAFE { (void)shift_m; }
-
-  /// Simulates one or more periods of a simulated device; no effect on hardware. Not part of the
-  /// tick's measured time.
-  virtual void between_ticks(double elapsed_s) RT_SAFE { (void)elapsed_s; }
-
-  // Callable from any thread at any time.
+  // Outside the loop: any thread, any time.
 
   /// Details of the latched fault: part, cause, remedy. Empty if the fault's message says all.
-  virtual std::string trouble() const { return {}; }
+  virtual std::string fault_detail() const { return {}; }
 
-  // Called after the loop.
+  // Outside the loop: after it.
 
   /// Counters since opening, such as unknown frames.
   virtual std::vector<DeviceCount> counters() const { return {}; }

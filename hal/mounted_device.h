@@ -32,7 +32,7 @@ class MountedDevice final : public Device {
   [[nodiscard]] Fault write(const Wrench& wrench) RT_SAFE override;
   void shift_tool(const Vec3& shift_m) RT_SAFE override { device_->shift_tool(shift_m); }
   void between_ticks(double elapsed_s) RT_SAFE override { device_->between_ticks(elapsed_s); }
-  std::string trouble() const override { return device_->trouble(); }
+  std::string fault_detail() const override { return device_->fault_detail(); }
   std::vector<DeviceCount> counters() const override { return device_->counters(); }
   void stop() override { device_->stop(); }
   std::string why_not_off() const override { return device_->why_not_off(); }

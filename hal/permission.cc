@@ -8,8 +8,8 @@
 
 #include <algorithm>
 
+#include "hal/rights_remedy.h"
 #include "model/io/input_file.h"
-#include "model/io/program/remedy.h"
 
 namespace tact::hal {
 
@@ -39,9 +39,8 @@ Refusal why_refused(const std::string& node, const char* rule, std::optional<gid
                      (facts.st_mode & kOfGroup) == kOfGroup;
   if (!given)
     return {fmt::format("{} may not be opened; its udev rule is missing: {}", node, rule),
-            model::io::container_of() == nullptr
-                ? model::io::group_remedy() +
-                      " installs it; then sudo adduser $USER haptics, and log in again"
+            container_of() == nullptr
+                ? group_remedy() + " installs it; then sudo adduser $USER haptics, and log in again"
                 : fmt::format("start the container with --device {}", node)};
   return {fmt::format("{} may not be opened: it is of the group haptics, and its user is not in it",
                       node),

@@ -55,7 +55,7 @@ class SafetyLines {
   virtual std::span<const int> loop_calls() const { return {}; }
   /// What lies behind the fault of the lines, for a person: which channel, why, the remedy. Empty
   /// when there is no more to say than the fault's own words. Any thread, at any time.
-  virtual std::string trouble() const { return {}; }
+  virtual std::string fault_detail() const { return {}; }
   /// What is wrong with a line without being a fault, and takes the force all the same; empty when
   /// nothing is. Any thread, at any time.
   virtual std::string notice() const { return {}; }

@@ -17,13 +17,13 @@ namespace tact::firmware::console {
 
 using model::Fault;
 
-std::string trouble_behind(Fault fault, const hal::Device& device, const hal::SafetyLines& lines) {
+std::string fault_detail_of(Fault fault, const hal::Device& device, const hal::SafetyLines& lines) {
   if (fault == Fault::kNone) return {};
   if (fault == Fault::kForbiddenCall) return watch::refused_call();
   // By number, 107 to 110 (model/fault.h), and the fault of the grip line.
   const bool of_lines = (fault >= Fault::kEmergencyStop && fault <= Fault::kDeadManReleased) ||
                         fault == Fault::kGripFlaps;
-  return of_lines ? lines.trouble() : device.trouble();
+  return of_lines ? lines.fault_detail() : device.fault_detail();
 }
 
 OperatorView::OperatorView(const hal::Device& device, const hal::SafetyLines& lines,
@@ -45,11 +45,11 @@ bool OperatorView::show(const protocol::Frame& newest) {
   if (newest.fault != before_.fault && newest.fault != 0) {
     const auto number = static_cast<Fault>(newest.fault);
     const model::FaultEntry& fault = model::describe(number);
-    const std::string trouble = trouble_behind(number, device_, lines_);
+    const std::string detail = fault_detail_of(number, device_, lines_);
     report(fmt::format("fault {}, {}: {}{}{}; {}", newest.fault, fault.name, fault.cause,
-                       trouble.empty() ? "" : ": ", trouble, fault.remedy));
+                       detail.empty() ? "" : ": ", detail, fault.remedy));
   } else if (newest.fault == 0 && waits(newest.state)) {
-    const std::string now = device_.trouble();
+    const std::string now = device_.fault_detail();
     if (!now.empty() && now != waits_for_) report(now);
     waits_for_ = now;
   } else if (newest.state == loop::State::kReady && !reported_ready_ && !arms_itself_) {
@@ -71,7 +71,7 @@ bool OperatorView::show(const protocol::Frame& newest) {
 // A device may send positions before its motors have power: it is not ready then.
 bool OperatorView::waits(loop::State state) {
   if (state == loop::State::kOff) return true;
-  const bool without_power = state == loop::State::kReady && !device_.trouble().empty();
+  const bool without_power = state == loop::State::kReady && !device_.fault_detail().empty();
   if (without_power) reported_ready_ = false;
   return without_power;
 }

@@ -48,8 +48,8 @@ class OperatorView {
 };
 
 /// The detail of a fault as device or safety lines report it.
-std::string trouble_behind(model::Fault fault, const hal::Device& device,
-                           const hal::SafetyLines& lines);
+std::string fault_detail_of(model::Fault fault, const hal::Device& device,
+                            const hal::SafetyLines& lines);
 
 /// One run in one line, for a terminal: time, rate, late ticks, force, state, the fault or limit
 /// that acts, and how often contact was lost. The rate is ticks over time since `before`; 0 when no

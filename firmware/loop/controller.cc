@@ -113,7 +113,7 @@ Fault Controller::find_limit(Fault acting, bool is_coupled) const RT_SAFE {
 gate::LimitedGrip Controller::limit_grip(const TickInput& input) RT_SAFE {
   if (!grip_gate_) return {};
   const hal::Sample& sample = input.sample;
-  return grip_gate_->limit(
+  return grip_gate_->limit(  // bound: grips a call (1 with a gripper that has a motor, else 0)
       {.wanted_N = lets_go(acting_) || input.clutch != ClutchState::kCoupled ? 0.0 : jaw_force_N_,
        .gap_m = sample.grip_gap_m,
        .speed_mps = sample.grip_speed_mps,

@@ -19,7 +19,7 @@ inline double jaw_force_N(std::span<const model::contact::SphereContact> jaws,
                           double grip_ratio) RT_SAFE {
   if (jaws.size() != 2 || !(grip_ratio > 0.0)) return 0.0;
   double sum_N = 0.0;
-  for (const model::contact::SphereContact& jaw : jaws) {
+  for (const model::contact::SphereContact& jaw : jaws) {  // bound: 2 (jaws)
     const double normal_N = dot(jaw.force_N, jaw.normal);
     if (std::isnan(normal_N)) return normal_N;  // latches in the gate
     sum_N += std::fmax(normal_N, 0.0);

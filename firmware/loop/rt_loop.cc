@@ -117,6 +117,7 @@ Fault RtLoop::read(std::int64_t now_ns) RT_SAFE {
   if (const auto pressed = lines_.clutch()) use_clutch(*pressed);
   progress_.enter(Callee::kOwn);
   const Fault watch_fault = requests_.fault.load(std::memory_order_relaxed);
+  // bound: 4 (faults)
   for (const Fault fault : {watch_fault, lines_fault, read_fault, write_fault_})
     if (fault != Fault::kNone) return fault;
   return Fault::kNone;

@@ -41,7 +41,7 @@ class SphereContacts {
   /// Takes at most kMaxSpheres.
   void assign(std::span<const SphereContact> contacts) RT_SAFE {
     count_ = std::min(contacts.size(), model::contact::kMaxSpheres);
-    std::copy_n(contacts.begin(), count_, contact_.begin());
+    std::copy_n(contacts.begin(), count_, contact_.begin());  // bound: spheres
   }
   std::span<const SphereContact> all() const RT_SAFE { return {contact_.data(), count_}; }
 

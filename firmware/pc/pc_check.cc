@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "model/io/program/remedy.h"
+#include "hal/rights_remedy.h"
 
 namespace tact::firmware::pc {
 
@@ -31,7 +31,7 @@ std::vector<PcRow> check_pc(const PcQuestion& question) {
   check_permissions(settled, rows);
   check_core(settled, rows);
   check_others(settled, rows);
-  const bool contained = model::io::container_of(question.files.root()) != nullptr;
+  const bool contained = hal::container_of(question.files.root()) != nullptr;
   for (PcRow& row : rows) {
     // Each row is built with its remedy; a green one does not need it.
     if (row.verdict == Verdict::kGreen) row.remedy.clear();

@@ -6,7 +6,7 @@
 #include <cstdlib>
 
 #include "firmware/pc/pc_check.h"
-#include "model/io/program/remedy.h"
+#include "hal/rights_remedy.h"
 
 namespace tact::firmware::pc {
 namespace {
@@ -36,7 +36,7 @@ std::string boot_parameters(const PcQuestion& q) {
   return fmt::format(
       "{1} and boot, or: add isolcpus=domain,managed_irq,{0} nohz_full={0} rcu_nocbs={0} "
       "irqaffinity={2} to GRUB_CMDLINE_LINUX in /etc/default/grub, sudo update-grub, boot",
-      q.core, model::io::packages_remedy(), others);
+      q.core, hal::packages_remedy(), others);
 }
 
 /// RT-6: a core of its own.
@@ -110,7 +110,7 @@ PcRow interrupt_row(const PcQuestion& q) {
                    : fmt::format(
                          "{}, or until the next boot: for i in {}; do echo {} | sudo tee "
                          "/proc/irq/$i/smp_affinity_list; done",
-                         model::io::packages_remedy(), numbers, others);
+                         hal::packages_remedy(), numbers, others);
   return row;
 }
 
@@ -126,7 +126,7 @@ PcRow governor_row(const PcQuestion& q) {
           .remedy = governor
                         ? fmt::format("{}, or until the next boot: echo performance | sudo tee "
                                       "{}/cpu*/cpufreq/scaling_governor",
-                                      model::io::packages_remedy(), kCpus)
+                                      hal::packages_remedy(), kCpus)
                         : "set the highest speed in the firmware (BIOS) or on the host"};
 }
 
@@ -150,7 +150,7 @@ PcRow sleep_row(const PcQuestion& q) {
                                            "state wakes in {} us",
                                            slowest_us),
           .why = kPowerReason,
-          .remedy = model::io::rights_remedy(q.files.root())};
+          .remedy = hal::rights_remedy(q.files.root())};
 }
 
 /// RT-7: nothing else runs on the other hardware thread of the core.

@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "firmware/pc/pc_check.h"
-#include "model/io/program/remedy.h"
+#include "hal/rights_remedy.h"
 
 namespace tact::firmware::pc {
 namespace {
@@ -60,7 +60,7 @@ PcRow machine_row(const PcFiles& files) {
   const auto maker = files.line("/sys/class/dmi/id/sys_vendor");
   const bool wsl =
       files.line("/proc/sys/kernel/osrelease").value_or("").find("microsoft") != std::string::npos;
-  const auto* const container = model::io::container_of(files.root());
+  const auto* const container = hal::container_of(files.root());
   return {.name = "machine",
           .verdict = verdict_of(cpu.has_value(), !guest),
           .found = !cpu ? "unknown"
@@ -130,7 +130,7 @@ PcRow priority_row(const PcFiles& files) {
                    : limit.empty() ? "unknown"
                                    : fmt::format("up to {} of {}", limit, kHighestPriority),
           .why = kPriorityReason,
-          .remedy = model::io::rights_remedy(files.root())};
+          .remedy = hal::rights_remedy(files.root())};
 }
 
 /// RT-2. Any limit in bytes is red, because MCL_FUTURE also counts all later memory.
@@ -144,7 +144,7 @@ PcRow memory_row(const PcFiles& files) {
                    : limit == "unlimited" ? limit
                                           : fmt::format("at most {} bytes", limit),
           .why = kMemoryReason,
-          .remedy = model::io::rights_remedy(files.root())};
+          .remedy = hal::rights_remedy(files.root())};
 }
 
 /// RT-12: an inherited limit kills the thread without a message.

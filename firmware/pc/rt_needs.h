@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // rt_needs.h - the requirements of hard real time, each with its reason, for the doctor's rows
-// (pc_check.h) and for a start that lacks them (rt_setup.h). Remedies: model/io/program/remedy.h.
+// (pc_check.h) and for a start that lacks them (rt_setup.h). Remedies: hal/rights_remedy.h.
 #pragma once
 
 namespace tact::firmware::pc {

@@ -15,8 +15,8 @@
 #include <cstring>
 
 #include "firmware/pc/pc_files.h"
+#include "hal/rights_remedy.h"
 #include "hal/threads/thread.h"
-#include "model/io/program/remedy.h"
 
 #if defined(__x86_64__)
 #include <xmmintrin.h>
@@ -36,7 +36,7 @@ void lock_memory(std::vector<Shortfall>& shortfalls) {
   mallopt(M_ARENA_MAX, 1);        // one heap, not one per thread
   if (mlockall(MCL_CURRENT | MCL_FUTURE) == 0) return;
   shortfalls.push_back({fmt::format("memory is not locked ({}): {}; {}", std::strerror(errno),
-                                    kMemoryReason, model::io::rights_remedy())});
+                                    kMemoryReason, hal::rights_remedy())});
 }
 
 // RT-5. The kernel holds the latency while the file stays open.
@@ -45,7 +45,7 @@ int hold_power_latency(std::vector<Shortfall>& shortfalls) {
   const std::int32_t latency_us = 0;
   if (fd >= 0 && write(fd, &latency_us, sizeof latency_us) == sizeof latency_us) return fd;
   shortfalls.push_back({fmt::format("/dev/cpu_dma_latency: {}: {}; {}", std::strerror(errno),
-                                    kPowerReason, model::io::rights_remedy())});
+                                    kPowerReason, hal::rights_remedy())});
   if (fd >= 0) close(fd);
   return -1;
 }
@@ -77,9 +77,8 @@ int choose_core(const RtSettings& settings) {
 
 ProcessSetup::ProcessSetup(std::vector<Shortfall>& shortfalls) {
   if (!is_realtime_kernel(PcFiles{}))
-    shortfalls.push_back(
-        {fmt::format("the kernel is not PREEMPT_RT: {}; {}{}", kKernelReason,
-                     model::io::container_of() ? "on the host: " : "", kKernelRemedy)});
+    shortfalls.push_back({fmt::format("the kernel is not PREEMPT_RT: {}; {}{}", kKernelReason,
+                                      hal::container_of() ? "on the host: " : "", kKernelRemedy)});
   prctl(PR_SET_THP_DISABLE, 1, 0, 0,
         0);  // merging pages into huge ones unmaps them for a moment
   lock_memory(shortfalls);
@@ -121,7 +120,7 @@ void enter_rt_thread(const RtSettings& settings, std::vector<Shortfall>& shortfa
   if (refused != 0)
     shortfalls.push_back(
         {fmt::format("SCHED_FIFO priority {} is refused ({}): {}; {}", settings.priority,
-                     std::strerror(refused), kPriorityReason, model::io::rights_remedy())});
+                     std::strerror(refused), kPriorityReason, hal::rights_remedy())});
   touch_stack();
 }
 

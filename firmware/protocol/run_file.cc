@@ -54,9 +54,9 @@ Result<RunWriter> RunWriter::create(const std::string& path, const std::string& 
 }
 
 void RunWriter::add(const std::string& bytes) {
-  if (!trouble_ && bytes_ + bytes.size() > most_bytes_) begin_again();
+  if (!error_ && bytes_ + bytes.size() > most_bytes_) begin_again();
   bytes_ += bytes.size();
-  if (!trouble_) keep(file_->put(bytes));
+  if (!error_) keep(file_->put(bytes));
 }
 
 void RunWriter::begin_again() {
@@ -75,19 +75,19 @@ void RunWriter::begin_again() {
 }
 
 void RunWriter::flush() {
-  if (!trouble_) keep(file_->flush());
+  if (!error_) keep(file_->flush());
 }
 
 void RunWriter::keep(const std::optional<Error>& error) {
   if (!error) return;
-  trouble_ = Error{error->message + "; what was written before is kept"};
-  news_ = trouble_->message + "; the run goes on without its record";
+  error_ = Error{error->message + "; what was written before is kept"};
+  news_ = error_->message + "; the run goes on without its record";
 }
 
 std::optional<Error> RunWriter::close() {
-  if (file_ && !trouble_) trouble_ = file_->finish();
+  if (file_ && !error_) error_ = file_->finish();
   file_.reset();
-  return trouble_;
+  return error_;
 }
 
 Result<RunReader> RunReader::open(const std::string& path, std::string_view remedy) {
@@ -146,7 +146,7 @@ Result<Unpacker> RunReader::make_unpacker(const RecordSchema& type) const {
 std::string RunReader::damage() {
   std::string out = chunks_.damage();
   if (file_ == nullptr) return out;
-  if (const std::string trouble = file_->trouble(); !trouble.empty()) out += trouble + "; ";
+  if (const std::string damage = file_->damage(); !damage.empty()) out += damage + "; ";
   return out;
 }
 

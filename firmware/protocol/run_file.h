@@ -69,7 +69,7 @@ class RunWriter {
   void add(const std::string& bytes);
   void flush();
   /// The error after which nothing more is written, if any.
-  const std::optional<model::Error>& trouble() const { return trouble_; }
+  const std::optional<model::Error>& error() const { return error_; }
   /// What has been lost or dropped, once each, in words for a person.
   std::optional<std::string> news() { return std::exchange(news_, std::nullopt); }
   /// Closes the file. After a loss it is not sealed, so readers report it as unfinished.
@@ -89,7 +89,7 @@ class RunWriter {
   std::uint64_t most_bytes_, bytes_ = 0;  // of this file, without its start
   std::optional<std::string> news_;
   std::optional<model::io::SealedWriter> file_;
-  std::optional<model::Error> trouble_;
+  std::optional<model::Error> error_;
 };
 
 /// Reads a file, or the bytes of the memory file.

@@ -42,7 +42,7 @@ json fault_entry(const RunFacts& facts) {
   return {{"number", static_cast<int>(facts.fault)},
           {"name", fault.name},
           {"cause", fault.cause},
-          {"trouble", facts.trouble},
+          {"trouble", facts.fault_detail},
           {"remedy", fault.remedy}};
 }
 
@@ -176,7 +176,8 @@ std::string make_summary(const RunFacts& facts, const loop::LoopStatistics& loop
   if (facts.fault != model::Fault::kNone) {
     const model::FaultEntry& fault = model::describe(facts.fault);
     out += fmt::format("\n  fault {}: {}: {}{}{}; {}", static_cast<int>(facts.fault), fault.name,
-                       fault.cause, facts.trouble.empty() ? "" : ": ", facts.trouble, fault.remedy);
+                       fault.cause, facts.fault_detail.empty() ? "" : ": ", facts.fault_detail,
+                       fault.remedy);
   }
   return out;
 }

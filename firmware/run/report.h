@@ -29,7 +29,7 @@ struct RunFacts {
   std::uint64_t dropped_records = 0, dropped_frames = 0;
   loop::State state = loop::State::kOff;
   model::Fault fault = model::Fault::kNone;
-  std::string trouble;                 // detail of the fault, from the device or the lines
+  std::string fault_detail;            // detail of the fault, from the device or the lines
   std::uint32_t refused_requests = 0;  // requests to arm or reset
   std::uint32_t variants = 0;          // changes of the law's numbers, by tactctl set
   std::uint64_t force_hash = 0;        // equal for equal runs; 0 when not computed

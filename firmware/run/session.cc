@@ -58,7 +58,7 @@ class Session {
     return requests_.stop.load() ? loop::State::kStopped : parts_.controller->newest().state;
   }
   int report();
-  RunFacts collect_facts(model::Fault fault, const std::string& trouble) const;
+  RunFacts collect_facts(model::Fault fault, const std::string& detail) const;
   PartsSetup parts_setup() const {
     return {.simulated_time = options_.free_run, .non_rt = non_rt_, .rt = rt_};
   }
@@ -218,14 +218,14 @@ std::optional<model::Error> Session::run_real_time() {
 // Collects the final state of device, lines and threads, prints the report, and returns the status.
 int Session::report() {
   const model::Fault fault = last_fault();
-  const std::string trouble = console::trouble_behind(fault, *parts_.device, *parts_.lines);
+  const std::string detail = console::fault_detail_of(fault, *parts_.device, *parts_.lines);
   parts_.lines->stop();
   parts_.device->stop();
   if (hand_socket_) hand_socket_->stop();
   const auto log_error = telemetry_->stop();
   for (const std::string& message : black_box_ ? black_box_->news() : std::vector<std::string>{})
     say(stderr, "tactd: {}\n", message);
-  const RunFacts facts = collect_facts(fault, trouble);
+  const RunFacts facts = collect_facts(fault, detail);
   const std::string report = make_report(facts, loop_->statistics(), parts_.controller->gate(),
                                          pc::read_environment(scene_.hash));
   say(stdout, "{}\n",
@@ -238,7 +238,7 @@ int Session::report() {
   return fault == model::Fault::kNone ? 0 : 1;
 }
 
-RunFacts Session::collect_facts(model::Fault fault, const std::string& trouble) const {
+RunFacts Session::collect_facts(model::Fault fault, const std::string& detail) const {
   rusage process{};
   getrusage(RUSAGE_SELF, &process);
   const loop::LoopStatistics& statistics = loop_->statistics();
@@ -259,7 +259,7 @@ RunFacts Session::collect_facts(model::Fault fault, const std::string& trouble) 
           .dropped_frames = telemetry_->dropped_frames(),
           .state = last_state(),
           .fault = fault,
-          .trouble = trouble,
+          .fault_detail = detail,
           .refused_requests = requests_.refused.load(),
           .variants = law_updater_ ? law_updater_->count() : 0,
           .force_hash = telemetry_->force_hash(),

@@ -104,8 +104,8 @@ void BasicCanBus<Frame>::miss() RT_SAFE {
   latch_.set({.fault = Fault::kBusDown, .kind = kind_of(CanCause::kNoRoom)});
 }
 
-std::string can_bus_trouble(const FaultCause& cause, const std::string& interface,
-                            const char* link_type) {
+std::string can_bus_fault_detail(const FaultCause& cause, const std::string& interface,
+                                 const char* link_type) {
   switch (static_cast<CanCause>(cause.kind)) {
     case CanCause::kCall:
       return fmt::format(
@@ -127,7 +127,7 @@ std::string can_bus_trouble(const FaultCause& cause, const std::string& interfac
 }
 
 template <class Frame>
-std::string silent_bus_trouble(const BasicCanBus<Frame>& bus, const std::string& interface) {
+std::string silent_bus_detail(const BasicCanBus<Frame>& bus, const std::string& interface) {
   using enum CanErrorClass;
   using enum CanControllerState;
   const CanError& seen = bus.errors_seen();
@@ -148,7 +148,8 @@ std::string silent_bus_trouble(const BasicCanBus<Frame>& bus, const std::string&
         "set {0} down; sudo ip link set {0} up {1}) and check both 120 ohm terminators",
         interface, Frame::kLinkType);
   }
-  if (bus.fault() != Fault::kNone) return can_bus_trouble(bus.cause(), interface, Frame::kLinkType);
+  if (bus.fault() != Fault::kNone)
+    return can_bus_fault_detail(bus.cause(), interface, Frame::kLinkType);
   return fmt::format(
       "no drive is heard on {}: are they on, at its bit rate and at the nodes of device.can.node?",
       interface);
@@ -156,7 +157,7 @@ std::string silent_bus_trouble(const BasicCanBus<Frame>& bus, const std::string&
 
 template class BasicCanBus<CanFrame>;
 template class BasicCanBus<CanFdFrame>;
-template std::string silent_bus_trouble(const CanBus&, const std::string&);
-template std::string silent_bus_trouble(const CanFdBus&, const std::string&);
+template std::string silent_bus_detail(const CanBus&, const std::string&);
+template std::string silent_bus_detail(const CanFdBus&, const std::string&);
 
 }  // namespace tact::hal::can

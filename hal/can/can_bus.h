@@ -93,11 +93,11 @@ using CanFdReceived = BasicCanReceived<CanFdFrame>;
 using CanFdBus = BasicCanBus<CanFdFrame>;
 
 /// What a cause of the bus means, with the remedy; empty for causes that are not the bus's.
-std::string can_bus_trouble(const FaultCause& cause, const std::string& interface,
-                            const char* link_type = CanFrame::kLinkType);
+std::string can_bus_fault_detail(const FaultCause& cause, const std::string& interface,
+                                 const char* link_type = CanFrame::kLinkType);
 
 /// Set-up: why no drive was heard at all, as far as the bus itself says.
 template <class Frame>
-std::string silent_bus_trouble(const BasicCanBus<Frame>& bus, const std::string& interface);
+std::string silent_bus_detail(const BasicCanBus<Frame>& bus, const std::string& interface);
 
 }  // namespace tact::hal::can

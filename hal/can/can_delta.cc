@@ -73,7 +73,7 @@ std::optional<model::Error> CanDelta::check_home(const delta::Joints& motor_turn
   const delta::Joints theta = theta_rad(motor_turns);
   const auto cause = doubt(theta, delta_.forward(theta));
   if (!cause) return std::nullopt;
-  return model::Error{"the delta is not homed: " + homing_trouble(*cause, settings_)};
+  return model::Error{"the delta is not homed: " + homing_fault_detail(*cause, settings_)};
 }
 
 std::optional<FaultCause> CanDelta::measure(const delta::Joints& motor_turns, std::int64_t stamp_ns,
@@ -127,7 +127,7 @@ std::string can_arm_name(std::size_t axis, const CanSettings& can) {
   return fmt::format("arm {} (node {} on {})", axis + 1, can.node[axis], can.interface);
 }
 
-std::string homing_trouble(const FaultCause& cause, const DeltaSettings& delta) {
+std::string homing_fault_detail(const FaultCause& cause, const DeltaSettings& delta) {
   switch (static_cast<CanCause>(cause.kind)) {
     case CanCause::kBeyondStop:
       return fmt::format(
@@ -144,7 +144,7 @@ std::string homing_trouble(const FaultCause& cause, const DeltaSettings& delta) 
   }
 }
 
-std::string silence_trouble(const FaultCause& cause, const char* position) {
+std::string silence_fault_detail(const FaultCause& cause, const char* position) {
   switch (static_cast<CanCause>(cause.kind)) {
     case CanCause::kSilent:
       return fmt::format(

@@ -63,9 +63,9 @@ class CanDelta {
 std::string can_arm_name(std::size_t axis, const CanSettings& can);
 
 /// What a cause of a lost homing means, with the remedy; empty for other causes.
-std::string homing_trouble(const FaultCause& cause, const DeltaSettings& delta);
+std::string homing_fault_detail(const FaultCause& cause, const DeltaSettings& delta);
 /// What a silent or jumping drive means, with the remedy; `position`: what is missed. Empty for
 /// other causes.
-std::string silence_trouble(const FaultCause& cause, const char* position);
+std::string silence_fault_detail(const FaultCause& cause, const char* position);
 
 }  // namespace tact::hal::can

@@ -117,13 +117,13 @@ class CanDevice final : public Device {
     return words;
   }
 
-  std::string trouble() const override {
+  std::string fault_detail() const override {
     const FaultCause cause = loop_.latch.cause();
     if (cause.fault == Fault::kNone) return wait_text();
     if (cause.axis > 2) return {};
-    if (auto words = can_bus_trouble(cause, can_.interface, Frame::kLinkType); !words.empty())
+    if (auto words = can_bus_fault_detail(cause, can_.interface, Frame::kLinkType); !words.empty())
       return words;
-    if (auto words = homing_trouble(cause, delta_settings_); !words.empty()) return words;
+    if (auto words = homing_fault_detail(cause, delta_settings_); !words.empty()) return words;
     if (cause.kind == static_cast<std::uint8_t>(CanCause::kForeign))
       return foreign_commands_.text(cause.code, can_.interface);
     return fmt::format("{}: {}", can_arm_name(cause.axis, can_), words(cause));
@@ -249,7 +249,7 @@ class CanDevice final : public Device {
   }
 
   std::string words(const FaultCause& cause) const {
-    auto text = silence_trouble(cause, start_.position);
+    auto text = silence_fault_detail(cause, start_.position);
     return text.empty() ? drives_.words(cause) : text;
   }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // can_error.h - what error frames say about the bus, and in words.
 //
-// The CAN driver reports trouble as frames with bit 29 of the identifier set (linux/can/error.h):
+// The CAN driver reports faults as frames with bit 29 of the identifier set (linux/can/error.h):
 // the low identifier bits name classes, data[1] is the controller's state if class 0x004 is set.
 //
 // A controller with too many errors is passive, then leaves the bus (CB-3). A passive or absent

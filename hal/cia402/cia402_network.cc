@@ -21,7 +21,7 @@ constexpr int kOperational_ms = 500, kBoot_ms = 3000, kLook_ms = 10;
 Error Cia402Network::wrong(std::size_t i, const std::string& words) const {
   // A bus that failed makes every drive look silent: it is reported, not the drive.
   if (bus_.fault() != Fault::kNone)
-    return Error{can::can_bus_trouble(bus_.cause(), can_.interface)};
+    return Error{can::can_bus_fault_detail(bus_.cause(), can_.interface)};
   return Error{fmt::format("{} {}", can::can_arm_name(i, can_), words)};
 }
 
@@ -36,7 +36,7 @@ std::optional<Error> Cia402Network::find_all() {
     answers[i] = sdo_.read(can_.node[i], {0x1000, 0, 4}, failure).has_value() || !failure.silent;
   }
   if (std::none_of(answers.begin(), answers.end(), [](bool yes) { return yes; }))
-    return Error{silent_bus_trouble(bus_, can_.interface)};
+    return Error{silent_bus_detail(bus_, can_.interface)};
   for (std::size_t i = 0; i < 3; ++i)
     if (!answers[i]) return wrong(i, "does not answer: is it on, and does it have this node?");
   return std::nullopt;

@@ -90,7 +90,7 @@ bool FalconDevice::take(const FalconReply& reply, std::int64_t now_ns) RT_SAFE {
 
 bool FalconDevice::follow_homing(const FalconReport& report) RT_SAFE {
   const bool homed = report.all_homed();
-  if (homed_ && !homed) latch(Fault::kHomingLost, FalconTrouble::kHomingLost, report.homed);
+  if (homed_ && !homed) latch(Fault::kHomingLost, FalconCause::kHomingLost, report.homed);
   if (homed_ || fault() != Fault::kNone) return homed;
   if (!homed) return wait_for_homing(report.homed), false;
   waits_.clear();
@@ -129,25 +129,25 @@ void FalconDevice::check_silence(std::int64_t now_ns) RT_SAFE {
   // Who sends rubbish is named as garbled, before the longer silence would name it mute.
   const bool babbles = misfits_ > 0 || health.dropped_bytes != dropped_before_;
   if (babbles && silence_ns >= kGarbled_ns)
-    latch(Fault::kDeviceGarbled, FalconTrouble::kGarbled, health.line_errors);
+    latch(Fault::kDeviceGarbled, FalconCause::kGarbled, health.line_errors);
   if (silence_ns >= kMute_ns && misses_ >= kMuteTicks)
-    latch(Fault::kDeviceLost, FalconTrouble::kSilent);
+    latch(Fault::kDeviceLost, FalconCause::kSilent);
 }
 
 void FalconDevice::check_pipe() RT_SAFE {
   const FalconPipeHealth health = pipe_->health();
   const auto error = static_cast<std::uint32_t>(health.error);
   // The hand has had zero force since; what the gate would go on with is the force from before.
-  if (health.stood_in) return latch(Fault::kLoopStalled, FalconTrouble::kStoodIn);
+  if (health.stood_in) return latch(Fault::kLoopStalled, FalconCause::kStoodIn);
   switch (health.end) {
     case FalconPipeEnd::kOpen:
       return;
     case FalconPipeEnd::kUnplugged:
-      return latch(Fault::kDeviceUnplugged, FalconTrouble::kUnplugged, error);
+      return latch(Fault::kDeviceUnplugged, FalconCause::kUnplugged, error);
     case FalconPipeEnd::kStalled:
-      return latch(Fault::kDeviceFailed, FalconTrouble::kStalled, error);
+      return latch(Fault::kDeviceFailed, FalconCause::kStalled, error);
     case FalconPipeEnd::kBroken:
-      return latch(Fault::kDeviceFailed, FalconTrouble::kBroken, error);
+      return latch(Fault::kDeviceFailed, FalconCause::kBroken, error);
   }
 }
 
@@ -203,9 +203,9 @@ FalconCommand FalconDevice::command(const FalconWords& words) const RT_SAFE {
   return {.motor = words, .lights = light, .homing = !homed_ || settings_.keep_homing};
 }
 
-std::string FalconDevice::trouble() const {
+std::string FalconDevice::fault_detail() const {
   const FaultCause cause = fault() != Fault::kNone ? latch_.cause() : waits_.cause();
-  return text_of(static_cast<FalconTrouble>(cause.kind), cause.code);
+  return text_of(static_cast<FalconCause>(cause.kind), cause.code);
 }
 
 std::optional<ShutdownFrames> FalconDevice::shutdown_frames() {

@@ -113,7 +113,7 @@ struct FalconSettings {
 };
 
 /// What keeps a Falcon from making force: kinds of FaultCause.
-enum class FalconTrouble : std::uint8_t {
+enum class FalconCause : std::uint8_t {
   kNone,
   kNotHomed,   // code: homed axes, three bits, axis 1 first
   kUnplugged,  // code: errno, as of the next two
@@ -126,7 +126,7 @@ enum class FalconTrouble : std::uint8_t {
 };
 
 /// One message: which part, why, the remedy; empty for kNone.
-std::string text_of(FalconTrouble trouble, std::uint32_t code);
+std::string text_of(FalconCause cause, std::uint32_t code);
 
 class FalconDevice final : public Device {
  public:
@@ -143,7 +143,7 @@ class FalconDevice final : public Device {
   void permit(bool powered) RT_SAFE override { powered_ = powered; }
   [[nodiscard]] Fault write(const Wrench& wrench) RT_SAFE override;
   std::span<const int> loop_calls() const override { return pipe_->loop_calls(); }
-  std::string trouble() const override;
+  std::string fault_detail() const override;
   std::optional<ShutdownFrames> shutdown_frames() override;
   void stop() override;
 
@@ -158,11 +158,11 @@ class FalconDevice final : public Device {
   void check_silence(std::int64_t now_ns) RT_SAFE;
   void check_pipe() RT_SAFE;
   Fault fault() const RT_SAFE { return latch_.fault(); }
-  void latch(Fault fault, FalconTrouble trouble, std::uint32_t code = 0) RT_SAFE {
-    latch_.set({.fault = fault, .kind = static_cast<std::uint8_t>(trouble), .code = code});
+  void latch(Fault fault, FalconCause cause, std::uint32_t code = 0) RT_SAFE {
+    latch_.set({.fault = fault, .kind = static_cast<std::uint8_t>(cause), .code = code});
   }
   void wait_for_homing(std::uint8_t homed) RT_SAFE {
-    waits_.set({.kind = static_cast<std::uint8_t>(FalconTrouble::kNotHomed), .code = homed});
+    waits_.set({.kind = static_cast<std::uint8_t>(FalconCause::kNotHomed), .code = homed});
   }
   FalconWords words_for(const Vec3& force_W_N) const RT_SAFE;
   FalconCommand command(const FalconWords& words) const RT_SAFE;

@@ -40,20 +40,20 @@ void sleep_until_ns(std::int64_t deadline_ns) {
 
 }  // namespace
 
-std::string text_of_sdk_trouble(const FaultCause& t) {
+std::string text_of_sdk_cause(const FaultCause& t) {
   constexpr std::array kDoesNot{"",
                                 "report its pose",
                                 "report its gripper",
                                 "take a force",
                                 "switch its forces",
                                 "report its status"};
-  static_assert(kDoesNot.size() == static_cast<std::size_t>(SdkTroubleSource::kWatch) + 1);
-  const auto source = static_cast<SdkTroubleSource>(t.kind);
+  static_assert(kDoesNot.size() == static_cast<std::size_t>(SdkCause::kWatch) + 1);
+  const auto source = static_cast<SdkCause>(t.kind);
   const int code = static_cast<int>(t.code);
-  if (source == SdkTroubleSource::kNone) return {};
-  if (source == SdkTroubleSource::kForceOff)
+  if (source == SdkCause::kNone) return {};
+  if (source == SdkCause::kForceOff)
     return fmt::format("the device switched its forces off: {}", force_off_text(code));
-  if (source != SdkTroubleSource::kStatus)
+  if (source != SdkCause::kStatus)
     return fmt::format("the device does not {}: {}", kDoesNot.at(t.kind), text_of_sdk_error(code));
   if (t.fault == Fault::kHomingLost)
     return "the device has lost its calibration; calibrate it, then start tactd again";
@@ -111,14 +111,14 @@ void SdkWorker::run() {
   cycles_ended();
 }
 
-/// One pose, one force. False after a trouble.
+/// One pose, one force. False after a fault.
 bool SdkWorker::cycle() {
-  if (first_trouble().fault != Fault::kNone) return false;
+  if (first_cause().fault != Fault::kNone) return false;
   if (!read_pose(monotonic_ns())) return false;
   // The time once more: the library may have waited for the pose, and the command has aged.
   const auto force = next_force(monotonic_ns());
   if (!force) return false;
-  if (!send(*force)) return fail(SdkTroubleSource::kForce);
+  if (!send(*force)) return fail(SdkCause::kForce);
   cycle_ended(monotonic_ns());
   return true;
 }
@@ -128,7 +128,7 @@ bool SdkWorker::read_pose(std::int64_t now_ns) {
   double rotation[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   Vec3& p_m = pose.position_m;
   const int answer = session_.sdk.pose(&p_m.x, &p_m.y, &p_m.z, rotation, session_.id);
-  if (answer < 0) return fail(SdkTroubleSource::kPose);
+  if (answer < 0) return fail(SdkCause::kPose);
   // No sample: the loop counts the gap by the stamp of the last one.
   if (answer == kTimeGuard) return true;
   pose.orientation = session_.type.wrist ? vendor_sdk::quat_from_rotation(rotation) : Quat{};
@@ -145,19 +145,19 @@ bool SdkWorker::read_grip(LibraryPose& pose) {
     return true;
   }
   double angle_rad = 0.0;
-  if (session_.sdk.gripper_angle(&angle_rad, session_.id) < 0) return fail(SdkTroubleSource::kGrip);
+  if (session_.sdk.gripper_angle(&angle_rad, session_.id) < 0) return fail(SdkCause::kGrip);
   // Not std::clamp: an angle that is no number stays one, and the loop reports it.
   const double open = std::abs(angle_rad) / session_.gripper_open_rad;
   pose.grip_ratio = open < 1.0 ? 1.0 - open : 0.0 * open;
   if (grip_ == GripKind::kForce && session_.sdk.gripper_gap(&pose.grip_gap_m, session_.id) < 0)
-    return fail(SdkTroubleSource::kGrip);
+    return fail(SdkCause::kGrip);
   return true;
 }
 
 bool SdkWorker::switch_forces(bool on) {
   // Zero first: what the device would hold when it next switches on.
-  if (!send({})) return fail(SdkTroubleSource::kForce);
-  return session_.sdk.enable_force(on ? 1 : 0, session_.id) >= 0 || fail(SdkTroubleSource::kEnable);
+  if (!send({})) return fail(SdkCause::kForce);
+  return session_.sdk.enable_force(on ? 1 : 0, session_.id) >= 0 || fail(SdkCause::kEnable);
 }
 
 bool SdkWorker::send(const LibraryForce& force) {
@@ -167,7 +167,7 @@ bool SdkWorker::send(const LibraryForce& force) {
 }
 
 void SdkWorker::watch() {
-  while (!quits() && first_trouble().fault == Fault::kNone) {
+  while (!quits() && first_cause().fault == Fault::kNone) {
     check_status();
     std::this_thread::sleep_for(kStatusPeriod);
   }
@@ -178,31 +178,31 @@ void SdkWorker::check_status() {
   const bool on_before = powered_for_sure();
   SdkStatusText status{};
   if (session_.sdk.status(status.data(), session_.id) < 0) {
-    fail(SdkTroubleSource::kWatch);
+    fail(SdkCause::kWatch);
     return;
   }
   const bool on_after = powered_for_sure();
   // From cause to consequence: an unplugged device has no power either.
   if (status[kSdkConnected] == 0)
-    keep_trouble(Fault::kDeviceUnplugged, SdkTroubleSource::kStatus, kSdkConnected);
+    keep_cause(Fault::kDeviceUnplugged, SdkCause::kStatus, kSdkConnected);
   else if (status[kSdkPower] == 0)
-    keep_trouble(Fault::kDeviceFailed, SdkTroubleSource::kStatus, kSdkPower);
+    keep_cause(Fault::kDeviceFailed, SdkCause::kStatus, kSdkPower);
   else if (status[kSdkError] != 0)
-    keep_trouble(Fault::kDeviceFailed, SdkTroubleSource::kStatus, kSdkError);
+    keep_cause(Fault::kDeviceFailed, SdkCause::kStatus, kSdkError);
   else if (status[kSdkReset] != 0)
-    keep_trouble(Fault::kHomingLost, SdkTroubleSource::kStatus, kSdkReset);
+    keep_cause(Fault::kHomingLost, SdkCause::kStatus, kSdkReset);
   else if (on_before && on_after && status[kSdkForce] == 0)
-    keep_trouble(Fault::kForceOff, SdkTroubleSource::kForceOff, status[kSdkForceOffCause]);
+    keep_cause(Fault::kForceOff, SdkCause::kForceOff, status[kSdkForceOffCause]);
 }
 
 /// Keeps what the library says of this thread's last error. False, for the caller to pass on.
-bool SdkWorker::fail(SdkTroubleSource source) {
+bool SdkWorker::fail(SdkCause source) {
   const int code = session_.sdk.error_get_last();
-  keep_trouble(fault_of_sdk_error(code), source, code);
+  keep_cause(fault_of_sdk_error(code), source, code);
   return false;
 }
 
-void SdkWorker::keep_trouble(Fault fault, SdkTroubleSource source, int code) {
+void SdkWorker::keep_cause(Fault fault, SdkCause source, int code) {
   keep({.fault = fault,
         .kind = static_cast<std::uint8_t>(source),
         .code = static_cast<std::uint32_t>(code)});

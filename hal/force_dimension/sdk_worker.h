@@ -4,9 +4,9 @@
 //   "tact-fd", SCHED_FIFO 78 (below the loop): one pose and one force every 250 us, every period of
 //   a faster loop; that also feeds the watchdog and balances the device's weight.
 //   "tact-fd-status", an ordinary thread: 20 times a second the status words. Forces that the
-//   device has switched off by itself, lost supply or calibration become a trouble that stays.
+//   device has switched off by itself, lost supply or calibration become a fault that stays.
 //
-// What the loop and these threads share, and what follows from a trouble: library_worker.h. The
+// What the loop and these threads share, and what follows from a fault: library_worker.h. The
 // device's own watchdog does the rest.
 #pragma once
 
@@ -19,8 +19,8 @@
 
 namespace tact::hal::force_dimension {
 
-/// Which call or watch found the trouble.
-enum class SdkTroubleSource : std::uint8_t {
+/// Which call or watch found the fault.
+enum class SdkCause : std::uint8_t {
   kNone,
   kPose,
   kGrip,
@@ -31,7 +31,7 @@ enum class SdkTroubleSource : std::uint8_t {
   kStatus
 };
 
-std::string text_of_sdk_trouble(const FaultCause& trouble);
+std::string text_of_sdk_cause(const FaultCause& cause);
 
 /// From one pose and force to the next.
 std::int64_t sdk_cycle_ns(double rate_Hz);
@@ -44,7 +44,7 @@ class SdkWorker final : public vendor_sdk::LibraryWorker {
  private:
   SdkWorker(const SdkSession& session, double rate_Hz)
       : LibraryWorker(sdk_cycle_ns(rate_Hz), rate_Hz), session_(session) {}
-  std::string trouble_text() const override { return text_of_sdk_trouble(first_trouble()); }
+  std::string cause_text() const override { return text_of_sdk_cause(first_cause()); }
   void run();
   bool cycle();
   bool read_pose(std::int64_t now_ns);
@@ -54,8 +54,8 @@ class SdkWorker final : public vendor_sdk::LibraryWorker {
   bool send(const vendor_sdk::LibraryForce& force);
   void watch();
   void check_status();
-  bool fail(SdkTroubleSource source);
-  void keep_trouble(model::Fault fault, SdkTroubleSource source, int code);
+  bool fail(SdkCause source);
+  void keep_cause(model::Fault fault, SdkCause source, int code);
 
   SdkSession session_;
   GripKind grip_ = grip_of(session_);

@@ -97,7 +97,7 @@ class GpioLines final : public SafetyLines {
   }
 
   std::string notice() const override { return logic_.notice(); }
-  std::string trouble() const override {
+  std::string fault_detail() const override {
     return words(is_lost() ? LinesCause::kChipLost : logic_.cause());
   }
 

@@ -17,8 +17,8 @@ using model::Result;
 
 constexpr int kAsk_ms = 5;
 constexpr int kHear_ms = 1000, kKind_ms = 300, kStop_ms = 500, kRest_ms = 200;
-constexpr double kRest_turns = 0.02;  // of a motor while the arms shall rest
-constexpr double kAnswered = 0.8;     // of the questions
+constexpr double kRest_turns = 0.02;       // of a motor while the arms shall rest
+constexpr double kMinAnsweredRatio = 0.8;  // of the questions
 constexpr std::uint8_t kReplyBytes = 24;
 
 /// One axis, as its frames report it.
@@ -49,7 +49,7 @@ class BringUp {
       if (auto error = (this->*step)()) return *error;
       if (bus_.fault() != Fault::kNone)
         return Error{
-            can::can_bus_trouble(bus_.cause(), can_.interface, can::CanFdFrame::kLinkType)};
+            can::can_bus_fault_detail(bus_.cause(), can_.interface, can::CanFdFrame::kLinkType)};
     }
     for (std::size_t i = 0; i < 3; ++i) start_.motor_turns[i] = *axes_[i].last.position_turns;
     return start_;
@@ -59,7 +59,7 @@ class BringUp {
   std::optional<Error> hear_all() {
     const auto heard = [](const Heard& a) { return a.replies > 0; };
     if (run_until(moteus_ask, heard, kHear_ms)) return {};
-    if (std::ranges::none_of(axes_, heard)) return Error{silent_bus_trouble(bus_, can_.interface)};
+    if (std::ranges::none_of(axes_, heard)) return Error{silent_bus_detail(bus_, can_.interface)};
     return wrong([](const Heard& a) { return a.replies == 0; },
                  "does not answer: is it on, and is this its id.id?");
   }
@@ -123,7 +123,7 @@ class BringUp {
     run_until(moteus_stop_and_ask, [](const Heard&) { return false; }, kRest_ms);
     for (std::size_t i = 0; i < 3; ++i) {
       const Heard& axis = axes_[i];
-      if (axis.replies >= kAnswered * axis.asked) continue;
+      if (axis.replies >= kMinAnsweredRatio * axis.asked) continue;
       return Error{
           fmt::format("{} answers {} of {} questions: check the CAN cable and both 120 "
                       "ohm terminators, and that no other program asks it",

@@ -40,7 +40,7 @@ class BringUp {
                             &BringUp::wake_estimates, &BringUp::count_positions}) {
       if (auto error = (this->*step)()) return *error;
       if (bus_.fault() != Fault::kNone)
-        return Error{can::can_bus_trouble(bus_.cause(), can_.interface)};
+        return Error{can::can_bus_fault_detail(bus_.cause(), can_.interface)};
     }
     OdriveStart start{.generation = drives_.generation, .motor_turns = {}};
     for (std::size_t i = 0; i < 3; ++i) start.motor_turns[i] = drives_.axes[i].at_turns;
@@ -53,7 +53,7 @@ class BringUp {
       return {};
     const auto unheard = [](const Axis& a) { return a.heartbeats == 0; };
     if (std::all_of(drives_.axes.begin(), drives_.axes.end(), unheard))
-      return Error{silent_bus_trouble(bus_, can_.interface)};
+      return Error{silent_bus_detail(bus_, can_.interface)};
     return drives_.wrong([&](const Axis& a) { return unheard(a); },
                          "sends no heartbeat: is it on, and does it have this node?");
   }

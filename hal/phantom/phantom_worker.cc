@@ -67,9 +67,9 @@ model::Result<std::shared_ptr<PhantomWorker>> PhantomWorker::start(const Phantom
 }
 
 std::optional<Error> PhantomWorker::wait_until_calibrated() {
-  for (int i = 0; i < kTimeout_ms && !calibrated_ && first_trouble().fault == Fault::kNone; ++i)
+  for (int i = 0; i < kTimeout_ms && !calibrated_ && first_cause().fault == Fault::kNone; ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  if (calibrated_ && first_trouble().fault == Fault::kNone) return std::nullopt;
+  if (calibrated_ && first_cause().fault == Fault::kNone) return std::nullopt;
   // False: the library hangs, with its forces off, and the device stays open until tactd ends.
   static_cast<void>(stop());
   if (const std::string why = words(monotonic_ns()); !why.empty()) return Error{why};
@@ -83,7 +83,7 @@ std::optional<Error> PhantomWorker::wait_until_calibrated() {
                            calibration_remedy(session_))};
 }
 
-std::string PhantomWorker::trouble_text() const {
+std::string PhantomWorker::cause_text() const {
   // What and remedy, by Source; {} is what the library or its model returns.
   constexpr std::array kTexts{
       "", "the PHANTOM failed: {}",
@@ -93,7 +93,7 @@ std::string PhantomWorker::trouble_text() const {
       "the PHANTOM reports a pose that is no number; check its cable, calibrate it, then start "
       "tactd "
       "again"};
-  const FaultCause reported = first_trouble();
+  const FaultCause reported = first_cause();
   const bool failed = static_cast<Source>(reported.kind) == Source::kError;
   return fmt::format(fmt::runtime(kTexts.at(reported.kind)),
                      failed ? text_of_hd_error(reported.code) : calibration_remedy(session_));
@@ -108,12 +108,12 @@ bool PhantomWorker::cycle() {
   if (!entered_) enter_fifo("tact-phantom");
   entered_ = true;
   session_.hd.make_current(session_.id);
-  if (!quits() && first_trouble().fault == Fault::kNone) {
+  if (!quits() && first_cause().fault == Fault::kNone) {
     exchange();
     cycle_ended(monotonic_ns());
     return true;
   }
-  // In a cycle of its own after a trouble, as the library takes one frame in each.
+  // In a cycle of its own after a fault, as the library takes one frame in each.
   let_go();
   cycles_ended();
   // If no thread waits for so long, this one is the last to use the worker.

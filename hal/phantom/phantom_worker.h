@@ -4,11 +4,11 @@
 // The library drives its device from a thread of its own, its scheduler (HD-3), and calls
 // `on_cycle` there: take the device's state, evaluate it, set the newest force, send it, pass the
 // pose on. The thread becomes "tact-phantom", SCHED_FIFO 78, below the loop. What it shares with
-// the loop, and what follows from a trouble: library_worker.h. Any error of the library is a
-// trouble, and so are forces that are off, a calibration that is lost, and a pose that is no
+// the loop, and what follows from a fault: library_worker.h. Any error of the library is a
+// fault, and so are forces that are off, a calibration that is lost, and a pose that is no
 // number.
 //
-// A frame with a trouble carries zero force. The force output is switched only after a frame that
+// A frame with a fault carries zero force. The force output is switched only after a frame that
 // carried zero.
 #pragma once
 
@@ -48,7 +48,7 @@ class PhantomWorker final : public vendor_sdk::LibraryWorker {
   void let_go();
   bool switch_forces(bool on) override;
   void switch_output();
-  std::string trouble_text() const override;
+  std::string cause_text() const override;
   void close() override;
   bool fail(model::Fault fault, Source source, unsigned code);
 

@@ -45,7 +45,7 @@ class SimLines final : public SafetyLines {
   void drop() RT_SAFE override { dropped_ = true; }
   void scope(bool) RT_SAFE override {}
   std::string notice() const override { return logic_.notice(); }
-  std::string trouble() const override {
+  std::string fault_detail() const override {
     return words(lost_ ? gpio::LinesCause::kChipLost : logic_.cause());
   }
   void stop() override { outputs_ = {}, lost_ = true; }

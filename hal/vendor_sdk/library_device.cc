@@ -36,7 +36,7 @@ LibraryDevice::~LibraryDevice() { stop(); }
 Fault LibraryDevice::read(Sample& sample, std::int64_t now_ns) RT_SAFE {
   now_ns_ = now_ns;
   sample.fresh = false;
-  if (const Fault fault = worker_->first_trouble().fault; fault != Fault::kNone) return fault;
+  if (const Fault fault = worker_->first_cause().fault; fault != Fault::kNone) return fault;
   LibraryPose pose;
   if (!worker_->poses().read(pose)) return Fault::kNone;
   follows_ = pose.follows_commands;
@@ -75,10 +75,10 @@ Fault LibraryDevice::write(const Wrench& wrench) RT_SAFE {
       .grip_N = std::clamp(grip_N_, -most_N, most_N)};
   worker_->commands().write(
       {.force = sound ? within : LibraryForce{}, .stamp_ns = now_ns_, .powered = permitted_});
-  return sound ? worker_->first_trouble().fault : Fault::kForceNotFinite;
+  return sound ? worker_->first_cause().fault : Fault::kForceNotFinite;
 }
 
-std::string LibraryDevice::trouble() const {
+std::string LibraryDevice::fault_detail() const {
   const std::string said = worker_->words(monotonic_ns()), left = why_not_off();
   return said.empty() || left.empty() ? said + left : said + "; " + left;
 }

@@ -39,7 +39,7 @@ class LibraryDevice final : public Device {
   void permit(bool powered) RT_SAFE override { permitted_ = powered; }
   void set_grip_force(double opening_N) RT_SAFE override { grip_N_ = opening_N; }
   [[nodiscard]] Fault write(const Wrench& wrench) RT_SAFE override;
-  std::string trouble() const override;
+  std::string fault_detail() const override;
   void stop() override;
   std::string why_not_off() const override;
 

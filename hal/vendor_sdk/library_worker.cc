@@ -78,7 +78,7 @@ bool LibraryWorker::powered_for_sure() const {
 }
 
 std::string LibraryWorker::words(std::int64_t now_ns) const {
-  std::string said = trouble_text();
+  std::string said = cause_text();
   const std::int64_t cycle_ns = last_cycle_ns_;
   // Always the same message, as a reader reports each one that is new.
   if (cycle_ns != 0 && now_ns - cycle_ns > kLibrarySilence_ns)

@@ -9,7 +9,7 @@
 //   without one for 100 ms, or without power, the forces are switched off;
 //   they come back through 2 ms of zero force, so that no step goes into the hand.
 //
-// The first trouble is kept. After it: zero force, then forces off, then not one call more. A
+// The first fault is kept. After it: zero force, then forces off, then not one call more. A
 // library that does not return cannot be ended from here: the last force may stay in the motors,
 // and all that is left is to say so.
 #pragma once
@@ -61,8 +61,8 @@ class LibraryWorker {
   threads::LatestSlot<LibraryPose>& poses() RT_SAFE { return poses_; }
   threads::LatestSlot<LibraryCommand>& commands() RT_SAFE { return commands_; }
   /// Its kind is that of the device's folder, its code the library's.
-  FaultCause first_trouble() const RT_SAFE { return trouble_.cause(); }
-  /// For a person: the first trouble, and a library that has fallen silent; empty without either.
+  FaultCause first_cause() const RT_SAFE { return cause_.cause(); }
+  /// For a person: the first fault, and a library that has fallen silent; empty without either.
   std::string words(std::int64_t now_ns) const;
 
   /// Ends the threads, zeroes the force and closes the device; false when the library did not
@@ -94,13 +94,13 @@ class LibraryWorker {
   void cycles_ended() { last_cycle_ns_ = 0; }
 
   // Any thread.
-  /// The first trouble for a person; empty without one.
-  virtual std::string trouble_text() const = 0;
+  /// The first fault for a person; empty without one.
+  virtual std::string cause_text() const = 0;
   std::int64_t cycle_ns() const { return cycle_ns_; }
   bool quits() const { return quit_.load(std::memory_order_relaxed); }
   /// The forces are on for so long that "off" is news.
   bool powered_for_sure() const;
-  void keep(const FaultCause& trouble) { trouble_.set(trouble); }
+  void keep(const FaultCause& cause) { cause_.set(cause); }
   /// So many threads will call the library: said before the first begins, as stop() waits for them.
   void expect_threads(int threads) { running_ = threads; }
   void thread_ends();
@@ -118,7 +118,7 @@ class LibraryWorker {
   Power power_ = Power::kOff;
   std::atomic<std::int64_t> powered_cycles_{0};  // since the forces were switched on
   std::atomic<std::int64_t> last_cycle_ns_{0};   // CLOCK_MONOTONIC; 0: none is due
-  FaultLatch trouble_;
+  FaultLatch cause_;
   std::atomic<bool> quit_{false}, given_up_{false};
   std::atomic<int> running_{0};
 };

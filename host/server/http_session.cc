@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/server/http_session.h"
 
+#include <fmt/format.h>
+
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/write.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
@@ -9,6 +11,7 @@
 
 #include "host/server/download.h"
 #include "host/server/frame_json.h"
+#include "model/io/one_line.h"
 
 namespace tact::host::server {
 namespace {
@@ -107,11 +110,9 @@ void HttpSession::handle(const Request& request) {
   const std::string_view query =
       mark == std::string_view::npos ? std::string_view() : target.substr(mark + 1);
   // Host before token: a page under a foreign name learns nothing.
-  if (!site_.access.host_allowed(view_of(request[http::field::host]))) {
-    return write(
-        sorry(http::status::forbidden, "403: open this page by its address, not by another name"),
-        request);
-  }
+  if (!site_.access.host_allowed(view_of(request[http::field::host])))
+    return turn_away(http::status::forbidden,
+                     "403: open this page by its address, not by another name", request);
   // The page's own files are public: they are in the repository.
   const bool is_public = site_.page.find(path) != nullptr;
   if (!is_public &&
@@ -128,7 +129,9 @@ void HttpSession::handle(const Request& request) {
     return write(sorry(http::status::service_unavailable,
                        "503: too many pages and downloads are open; close some now"),
                  request);
-  if (beast::websocket::is_upgrade(request) && path == "/live") return upgrade(request);
+  if (path == "/live") return upgrade(request);
+  const std::string_view origin = view_of(request["Tact-Origin"]);
+  if (!origin.empty() && !from_own_page(request, origin)) return;
   if (request.method() == http::verb::get && site_.view.has_scene() &&
       (path == "/recording.csv" || path == "/recording.tactview")) {
     return download(request, path, query);
@@ -136,12 +139,35 @@ void HttpSession::handle(const Request& request) {
   write(answer(request, path), request);
 }
 
+/// Any page can open a WebSocket to this server; the Origin identifies it. A browser sends none
+/// with an ordinary request of its own site, so the page names it as "Tact-Origin". False: refused.
+bool HttpSession::from_own_page(const Request& request, std::string_view origin) {
+  const std::string_view host = view_of(request[http::field::host]);
+  if (origin_matches(origin, host)) return true;
+  turn_away(http::status::forbidden,
+            fmt::format("403: this WebSocket is for tact's own page only: the request came with "
+                        "Host {} and Origin {}; a proxy must pass the Host header on (nginx: "
+                        "proxy_set_header Host $http_host)",
+                        model::io::on_one_line(host), model::io::on_one_line(origin)),
+            request);
+  return false;
+}
+
+/// The reason also goes to the terminal: a page does not see why its WebSocket was refused.
+void HttpSession::turn_away(http::status status, const std::string& reason,
+                            const Request& request) {
+  site_.warn_once(reason);
+  write(sorry(status, reason.c_str()), request);
+}
+
 void HttpSession::upgrade(const Request& request) {
-  // Any page can open a WebSocket to this server; the Origin identifies it.
-  if (!origin_matches(view_of(request[http::field::origin]), view_of(request[http::field::host]))) {
-    return write(sorry(http::status::forbidden, "403: this WebSocket is for tact's own page only"),
-                 request);
-  }
+  if (!beast::websocket::is_upgrade(request))
+    return turn_away(http::status::upgrade_required,
+                     "426: a request for the WebSocket came without its Upgrade header; a proxy "
+                     "must pass it on (nginx: proxy_http_version 1.1, proxy_set_header Upgrade "
+                     "$http_upgrade, proxy_set_header Connection upgrade)",
+                     request);
+  if (!from_own_page(request, view_of(request[http::field::origin]))) return;
   std::make_shared<LiveSession>(std::move(stream_), std::move(slot_), site_.view, site_.move_hand,
                                 site_.steer, site_.ask_scene)
       ->start(request);
@@ -166,7 +192,11 @@ void HttpSession::download(const Request& request, std::string_view path, std::s
 HttpSession::Response HttpSession::answer(const Request& request, std::string_view path) const {
   if (request.method() != http::verb::get && request.method() != http::verb::head)
     return sorry(http::status::method_not_allowed, "405: this server can only be read");
-  if (path == "/session") return Response{http::status::no_content, 11};
+  if (path == "/session") {
+    const std::string_view trouble = view_of(request["Tact-Trouble"]);
+    if (!trouble.empty()) site_.warn_once("a page reports: " + model::io::on_one_line(trouble));
+    return Response{http::status::no_content, 11};
+  }
   const bool from_tactd = path == "/scene.json" || path == "/mesh.bin" ||
                           path == "/recording.csv" || path == "/recording.tactview";
   if (from_tactd && !site_.view.has_scene())

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// http_session.h - one HTTP connection: page files, scene, meshes, downloads, and the upgrade to
-// the WebSocket. Read-only: GET and HEAD. A malformed or oversized request gets an error and the
-// connection is closed; one that is too slow is closed without an answer.
+// http_session.h - one HTTP connection: page files, scene, meshes, downloads, the upgrade to the
+// WebSocket, and in a header what a page reports of itself. Read-only: GET and HEAD. A malformed
+// or oversized request gets an error and the connection is closed; one that is too slow is closed
+// without an answer.
 #pragma once
 
 #include <boost/beast/core/flat_buffer.hpp>
@@ -29,9 +30,10 @@ struct Site {
   Access access;
   std::function<ConnectionSlot()> take_slot;  // null: all are taken
   MoveHand move_hand;
-  Steer steer;                                // only of a replay
-  AskScene ask_scene;                         // only of a simulation that offers scenes
-  std::string scenes;                         // the offered scenes, as JSON; or empty
+  Steer steer;         // only of a replay
+  AskScene ask_scene;  // only of a simulation that offers scenes
+  std::function<void(const std::string& text)> warn_once;  // a line on the terminal
+  std::string scenes;                                      // the offered scenes, as JSON; or empty
   std::chrono::milliseconds request_timeout;  // for one whole request, after the last response
 };
 
@@ -51,6 +53,9 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void read_next();
   void refuse(boost::system::error_code wrong);
   void handle(const Request& request);
+  bool from_own_page(const Request& request, std::string_view origin);
+  void turn_away(boost::beast::http::status status, const std::string& reason,
+                 const Request& request);
   void upgrade(const Request& request);
   void download(const Request& request, std::string_view path, std::string_view query);
   Response answer(const Request& request, std::string_view path) const;

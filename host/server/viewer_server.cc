@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -16,6 +17,7 @@ using model::Error;
 using model::Result;
 
 constexpr std::chrono::seconds kReportAgain{10};
+constexpr std::size_t kMaxWarned = 32;  // texts that are not printed again
 
 /// An address as in a URL. The unspecified address becomes the machine's name.
 std::string url_name(const boost::asio::ip::address& address) {
@@ -38,6 +40,7 @@ ViewerServer::ViewerServer(boost::asio::io_context& io, LiveView& view, MoveHand
             .move_hand = std::move(move_hand),
             .steer = {},
             .ask_scene = {},
+            .warn_once = [this](const std::string& text) { warn_once(text); },
             .scenes = {},
             .request_timeout = {}},
       warn_(std::move(warn)),
@@ -112,6 +115,14 @@ ConnectionSlot ViewerServer::take_slot() {
                   "close some",
                   kMaxConnections, turned_away_));
   return nullptr;
+}
+
+/// A page that tries again every second says the same every second.
+void ViewerServer::warn_once(const std::string& text) {
+  if (!warn_ || std::ranges::find(warned_, text) != warned_.end()) return;
+  if (warned_.size() == kMaxWarned) warned_.pop_front();
+  warned_.push_back(text);
+  warn_(text);
 }
 
 void ViewerServer::stop() { acceptor_.stop(); }

@@ -53,12 +53,14 @@ class ViewerServer {
  private:
   std::optional<model::Error> listen(const boost::asio::ip::tcp::endpoint& endpoint);
   ConnectionSlot take_slot();
+  void warn_once(const std::string& text);
 
   net::Acceptor acceptor_;
   Site site_;
   Warn warn_;
   ConnectionSlot slot_;  // its copies are the connections that have shown the token
   std::deque<std::weak_ptr<HttpSession>> strangers_;  // the others, oldest first
+  std::deque<std::string> warned_;                    // the last texts of warn_once
   std::uint64_t turned_away_ = 0;
   std::chrono::steady_clock::time_point reported_;
 };

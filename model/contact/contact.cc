@@ -45,7 +45,7 @@ void Contact::reset() RT_SAFE {
 }
 
 bool Contact::is_clear() const RT_SAFE {
-  return std::all_of(
+  return std::all_of(  // bound: spheres
       sphere_.begin(), sphere_.begin() + static_cast<std::ptrdiff_t>(contacts().size()),
       [](const Sphere& sphere)
           RT_SAFE { return !sphere.is_in_contact() && sphere.reported_N == Vec3{}; });
@@ -63,7 +63,7 @@ void Contact::continue_from(const Contact& before) RT_SAFE {
 
 // Positions of spheres and blade become unknown, so that the blade cuts nothing in between.
 void Contact::forget() RT_SAFE {
-  for (Sphere& sphere : spheres()) {
+  for (Sphere& sphere : spheres()) {  // bound: spheres
     leave(scene_, organ(), sphere, ContactState::kFree);
     sphere = {.index = sphere.index, .radius_m = sphere.radius_m};
     contact_[sphere.index] = {};
@@ -82,7 +82,7 @@ void Contact::detect_contact(const Tool& tool, std::uint32_t periods, double rea
     forget();
   }
   const Tool from = tool_before_.value_or(tool);
-  for (std::uint32_t k = 1; k < periods; ++k) {
+  for (std::uint32_t k = 1; k < periods; ++k) {  // bound: skipped (periods)
     const Tool way = between(from, tool, static_cast<double>(k) / periods);
     place(way);
     detect(way);
@@ -94,14 +94,14 @@ void Contact::detect_contact(const Tool& tool, std::uint32_t periods, double rea
 }
 
 void Contact::place(const Tool& tool) RT_SAFE {
-  for (std::size_t i = 0; i < scene_.spheres.size(); ++i)
+  for (std::size_t i = 0; i < scene_.spheres.size(); ++i)  // bound: spheres
     goal_m_[i] = tool.position_m + rotate(tool.orientation, scene_.spheres[i].offset_m);
 }
 
 // False if the motion since the last pose is too long to follow.
 bool Contact::is_reached(const Tool& tool, double reach_m) const RT_SAFE {
   if (!(norm(tool.position_m - tool_before_->position_m) <= reach_m)) return false;
-  for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {
+  for (std::size_t i = 0; i < scene_.spheres.size(); ++i) {  // bound: spheres
     const double way_m = norm(goal_m_[i] - sphere_[i].centre_m);
     if (!(way_m <= kMaxTickSteps * kWay_ratio * sphere_[i].radius_m)) return false;
   }
@@ -109,7 +109,7 @@ bool Contact::is_reached(const Tool& tool, double reach_m) const RT_SAFE {
 }
 
 void Contact::detect(const Tool& tool) RT_SAFE {
-  for (Sphere& sphere : spheres()) {
+  for (Sphere& sphere : spheres()) {  // bound: spheres
     const Vec3& centre_m = goal_m_[sphere.index];
     sphere.moved_m = sphere.is_known ? centre_m - sphere.centre_m : Vec3{};
     sphere.velocity_mps =
@@ -117,7 +117,7 @@ void Contact::detect(const Tool& tool) RT_SAFE {
     const double way_m = norm(sphere.moved_m);
     const int steps = std::clamp(
         static_cast<int>(std::ceil(way_m / (kWay_ratio * sphere.radius_m))), 1, kMaxTickSteps);
-    for (int left = steps; left > 0; --left) {
+    for (int left = steps; left > 0; --left) {  // bound: steps (of the speed limit)
       const Vec3 to_go_m = sphere.is_known ? centre_m - sphere.centre_m : Vec3{};
       sphere.centre_m = left > 1 ? sphere.centre_m + to_go_m / left : centre_m;
       step(scene_, organ(), sphere, to_go_m / left);
@@ -138,12 +138,13 @@ ContactResponse Contact::render_force(const Tool& tool, bool blade_may_cut) RT_S
 // Held spheres that tear are released before a closing grip bonds spheres.
 ContactResponse Contact::respond(const Tool& tool) RT_SAFE {
   watch_grip(tool.grip_ratio);
-  for (Sphere& sphere : spheres()) let_go(sphere);
+  for (Sphere& sphere : spheres()) let_go(sphere);  // bound: spheres
   organ().respond();
+  // bound: spheres (each once)
   for (std::size_t i = 0; i < scene_.spheres.size() && release_first(); ++i) {
   }
   if (closing_)
-    for (Sphere& sphere : spheres())
+    for (Sphere& sphere : spheres())  // bound: spheres
       if (sphere.state == ContactState::kTouching && organ().hold(sphere.index)) {
         sphere.state = ContactState::kHeld;
         sphere.lets_go = false;
@@ -152,8 +153,9 @@ ContactResponse Contact::respond(const Tool& tool) RT_SAFE {
   ContactResponse rendered;
   // The longest displacement of all spheres, as coupled spheres change each other's force.
   double way_m = 0.0;
+  // bound: spheres
   for (const Sphere& sphere : spheres()) way_m = std::max(way_m, norm(sphere.moved_m));
-  for (Sphere& sphere : spheres())
+  for (Sphere& sphere : spheres())  // bound: spheres
     if (sphere.is_known) report(sphere, tool, way_m, rendered);
   organ().advance();
   scene_.law->advance();
@@ -206,7 +208,7 @@ void Contact::let_go(Sphere& sphere) RT_SAFE {
 
 // Releases only the first sphere that must be released, as that changes the force on the others.
 bool Contact::release_first() RT_SAFE {
-  for (Sphere& sphere : spheres()) {
+  for (Sphere& sphere : spheres()) {  // bound: spheres
     if (sphere.state != ContactState::kHeld) continue;
     // NaN tears, so that it cannot hold the tool.
     if (closed_ && organ().pull_N(sphere.index) <= scene_.parameters.tear_force_N) continue;

@@ -33,6 +33,7 @@ Nearest step_from(const SurfaceView& s, const Nearest& here, const Vec3& p) RT_S
   switch (here.feature) {
     case Feature::kFace:
       if (dot(p - here.point_m, record.normal) < 0.0)
+        // bound: 3 (edges)
         for (const std::uint32_t t : record.neighbour) try_triangle(s, t, p, best);
       break;
     case Feature::kEdge:
@@ -40,6 +41,7 @@ Nearest step_from(const SurfaceView& s, const Nearest& here, const Vec3& p) RT_S
       break;
     case Feature::kCorner: {
       const auto fan = s.fan.subspan(record.fan_start[here.index], record.fan_count[here.index]);
+      // bound: fan (largest of the mesh)
       for (const std::uint32_t t : fan) try_triangle(s, t, p, best);
       break;
     }
@@ -130,7 +132,7 @@ ContactPoint contact_point_of(const SurfaceView& surface, const Nearest& nearest
 
 ContactPoint follow(const SurfaceView& surface, std::uint32_t start, const Vec3& p_m) RT_SAFE {
   Nearest here = nearest_on(surface, start, p_m);
-  for (int i = 0; i < kMaxWalkSteps; ++i) {
+  for (int i = 0; i < kMaxWalkSteps; ++i) {  // bound: kMaxWalkSteps
     const Nearest next = step_from(surface, here, p_m);
     if (next.surface_point.triangle == here.surface_point.triangle) break;
     here = next;

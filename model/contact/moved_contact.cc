@@ -17,7 +17,7 @@ constexpr double kStuckOffset_ratio = 0.1, kFreeOffset_ratio = 0.4;
 void find_foot(const SmoothSurface& surface, OrganSphere& b) RT_SAFE {
   constexpr int kMaxWalk = 100;
   constexpr double kMaxWay_m = 2e-3, kOnFoot_m = 1e-9;
-  for (int i = 0; i < kMaxWalk; ++i) {
+  for (int i = 0; i < kMaxWalk; ++i) {  // bound: kMaxWalk
     fill_geometry(surface, b.at);
     const LocalPosition at = local_position(b.at, b.y_m);
     Vec3 way_m = way_to_foot(b.at, at.height_m, at.tangential_m);
@@ -45,13 +45,13 @@ void MovedContact::reset() RT_SAFE {
   organ_.creep = scene_.organ->creep;
 }
 
-OrganSphere* MovedContact::at(std::size_t sphere) RT_SAFE {
-  for (std::size_t i = 0; i < organ_.count; ++i)
+OrganSphere* MovedContact::at(std::size_t sphere) RT_SAFE {  // bound: spheres (as find())
+  for (std::size_t i = 0; i < organ_.count; ++i)             // bound: spheres
     if (organ_.sphere[i].index == sphere) return &organ_.sphere[i];
   return nullptr;
 }
 const OrganSphere* MovedContact::find(std::size_t sphere) const RT_SAFE {
-  for (std::size_t i = 0; i < organ_.count; ++i)
+  for (std::size_t i = 0; i < organ_.count; ++i)  // bound: spheres
     if (organ_.sphere[i].index == sphere) return &organ_.sphere[i];
   return nullptr;
 }
@@ -72,7 +72,7 @@ void MovedContact::begin(const Sphere& sphere, const ContactPoint& contact_point
   couple();
   fill_matrices(organ_);
   const std::size_t i = organ_.count - 1;
-  for (std::size_t j = 0; j < i; ++j)
+  for (std::size_t j = 0; j < i; ++j)  // bound: spheres - 1 (others)
     b.shift_m +=
         organ_.compliance_m_per_N[i][j] * (organ_.sphere[j].organ_N + organ_.sphere[j].crept_N);
   b.y_m = sphere.centre_m - b.shift_m;
@@ -88,11 +88,12 @@ void MovedContact::leave(std::size_t sphere) RT_SAFE {
   if (gone == nullptr) return;
   const auto slot = static_cast<std::size_t>(gone - organ_.sphere.data());
   // Without its creep the organ moves towards the other spheres: that depth is offset.
-  for (std::size_t i = 0; i < organ_.count; ++i) {
+  for (std::size_t i = 0; i < organ_.count; ++i) {  // bound: spheres
     OrganSphere& b = organ_.sphere[i];
     const Vec3 lifted_m = organ_.compliance_m_per_N[i][slot] * gone->crept_N;
     if (i != slot && !b.is_held) b.depth_offset_m += std::max(0.0, -dot(b.at.normal, lifted_m));
   }
+  // bound: spheres - 1 (others)
   for (std::size_t i = slot; i + 1 < organ_.count; ++i) organ_.sphere[i] = organ_.sphere[i + 1];
   // pair[i][j] with j < i: removes row and column of the sphere that has left.
   const auto old = [slot](std::size_t i) RT_SAFE { return i < slot ? i : i + 1; };
@@ -100,7 +101,8 @@ void MovedContact::leave(std::size_t sphere) RT_SAFE {
   if (organ_.count == 0) tank_J_ = stored_J_ = 0.0;  // the next contact begins at zero
   is_changed_ = true;
   organ_.has_slope = false;
-  for (std::size_t i = 0; i < organ_.count; ++i)
+  for (std::size_t i = 0; i < organ_.count; ++i)  // bound: spheres
+    // bound: spheres - 1; pairs in all
     for (std::size_t j = 0; j < i; ++j) organ_.pair[i][j] = organ_.pair[old(i)][old(j)];
   fill_matrices(organ_);
 }
@@ -165,6 +167,7 @@ bool MovedContact::release(std::size_t sphere) RT_SAFE {
   fill_matrices(organ_);
   const double deepest_m = b->radius_m - local_position(b->at, b->y_m).height_m;
   double share = 1.0;
+  // bound: kHalvings + 1 (and none)
   for (int i = 0; i <= kHalvings; ++i, share = i < kHalvings ? 0.5 * share : 0.0) {
     // Solving changes y: additional indentation is offset, too.
     b->depth_offset_m = std::max(deepest_m - share * held_m, 0.0);
@@ -178,7 +181,7 @@ bool MovedContact::release(std::size_t sphere) RT_SAFE {
 
 // Without a solution: the last state, and the last force without its part along the motion.
 void MovedContact::keep_last_state() RT_SAFE {
-  for (std::size_t i = 0; i < organ_.count; ++i) {
+  for (std::size_t i = 0; i < organ_.count; ++i) {  // bound: spheres
     OrganSphere& b = organ_.sphere[i];
     const Vec3 centre_m = b.centre_m, moved_m = b.moved_m;
     b = before_[i];
@@ -193,9 +196,9 @@ void MovedContact::keep_last_state() RT_SAFE {
 void MovedContact::respond() RT_SAFE {
   status_ = {};
   if (organ_.count == 0) return;
-  std::copy_n(organ_.sphere.begin(), organ_.count, before_.begin());
+  std::copy_n(organ_.sphere.begin(), organ_.count, before_.begin());  // bound: spheres
   couple();
-  for (std::size_t i = 0; i < organ_.count; ++i) stiffen(organ_.sphere[i]);
+  for (std::size_t i = 0; i < organ_.count; ++i) stiffen(organ_.sphere[i]);  // bound: spheres
   fill_matrices(organ_);
   status_.is_solved = solve_sliding() || solve_fixed();
   is_changed_ = !status_.is_solved || is_nearly_ || organ_.creep.terms() > 0;
@@ -221,7 +224,7 @@ OrganForce MovedContact::report(const Sphere& sphere, SphereContact& reported) c
 
 void MovedContact::advance() RT_SAFE {
   if (organ_.creep.terms() == 0) return;
-  for (std::size_t i = 0; i < organ_.count; ++i) {
+  for (std::size_t i = 0; i < organ_.count; ++i) {  // bound: spheres
     OrganSphere& b = organ_.sphere[i];
     organ_.creep.advance(b.creep, b.organ_N);
     b.crept_N = organ_.creep.crept_N(b.creep);

@@ -46,12 +46,13 @@ void turn_load(OrganSphere& b, double chord_ratio) RT_SAFE {
 
 // ML-2 to ML-4 once; returns by how much slopes and shifts have changed, m.
 double pass(MovedOrgan& organ) RT_SAFE {
+  // bound: spheres
   for (std::size_t i = 0; i < organ.count; ++i) turn_load(organ.sphere[i], organ.chord_ratio);
   double change_m = 0.0;
-  for (std::size_t i = 0; i < organ.count; ++i) {
+  for (std::size_t i = 0; i < organ.count; ++i) {  // bound: spheres
     OrganSphere& b = organ.sphere[i];
     Vec3 z, v_m;
-    for (std::size_t j = 0; j < organ.count; ++j) {
+    for (std::size_t j = 0; j < organ.count; ++j) {  // bound: spheres
       const OrganSphere& o = organ.sphere[j];
       const Vec3 load_N = o.organ_N + o.crept_N;
       z += organ.slope_per_N[i][j] * load_N;
@@ -94,7 +95,7 @@ void put(SmallLu<kMaxUnknowns>& a, std::size_t i, std::size_t j, const Mat3& m) 
 // dc_i/dy_j = Q_i delta_ij - (Q_i^k G_ij + A_i T_ij) Q_j^(1-k) dl_j/dy_j, with
 // A dz = (n x dz) x (k Q^k v + Q (y - x)); without the second order of the rotations.
 void fill_slope(MovedOrgan& organ) RT_SAFE {
-  for (std::size_t j = 0; j < organ.count; ++j) {
+  for (std::size_t j = 0; j < organ.count; ++j) {  // bound: spheres
     const OrganSphere& b = organ.sphere[j];
     SphereSlope& of = organ.of_sphere[j];
     const Rotation& q = b.rotation;
@@ -106,8 +107,8 @@ void fill_slope(MovedOrgan& organ) RT_SAFE {
     // (n x dz) x lever = dz (n . lever) - n (dz . lever)
     of.tilt_m = diagonal(dot(q.normal, lever_m)) + outer(-1.0 * q.normal, lever_m);
   }
-  for (std::size_t i = 0; i < organ.count; ++i)
-    for (std::size_t j = 0; j < organ.count; ++j) {
+  for (std::size_t i = 0; i < organ.count; ++i)      // bound: spheres
+    for (std::size_t j = 0; j < organ.count; ++j) {  // bound: spheres
       const SphereSlope& of = organ.of_sphere[i];
       const Mat3 m =
           (of.chord * organ.compliance_m_per_N[i][j] + of.tilt_m * organ.slope_per_N[i][j]) *
@@ -134,11 +135,11 @@ double structural_ratio(const MovedOrgan& organ, std::size_t i, std::size_t j,
 void fill_matrices(MovedOrgan& organ) RT_SAFE {
   auto& g = organ.compliance_m_per_N;
   auto& t = organ.slope_per_N;
-  for (std::size_t i = 0; i < organ.count; ++i) {
+  for (std::size_t i = 0; i < organ.count; ++i) {  // bound: spheres
     const SurfaceFrame& a = organ.sphere[i].at;
     g[i][i] = a.compliance_m_per_N;
     t[i][i] = a.slope_per_N;
-    for (std::size_t j = 0; j < i; ++j) {
+    for (std::size_t j = 0; j < i; ++j) {  // bound: spheres - 1; pairs in all
       const SurfaceFrame& b = organ.sphere[j].at;
       const PairCompliance& pair = organ.pair[i][j];
       g[i][j] = outer(pair.near_field_m_per_N * a.normal, b.normal) +
@@ -153,13 +154,14 @@ void fill_matrices(MovedOrgan& organ) RT_SAFE {
 double evaluate(MovedOrgan& organ) RT_SAFE {
   constexpr int kMaxPasses = 3;
   constexpr double kSettled_m = 3e-7;
+  // bound: spheres
   for (std::size_t i = 0; i < organ.count; ++i) fill_load(*organ.law, organ.sphere[i]);
   double worst_m = 0.0;
-  for (int i = 0; i < kMaxPasses; ++i) {
+  for (int i = 0; i < kMaxPasses; ++i) {  // bound: kMaxPasses
     worst_m = pass(organ);
     if (worst_m < kSettled_m) break;
   }
-  for (std::size_t i = 0; i < organ.count; ++i) {
+  for (std::size_t i = 0; i < organ.count; ++i) {  // bound: spheres
     OrganSphere& b = organ.sphere[i];
     const Rotation& q = b.rotation;
     b.residual_m = b.centre_m - b.at.point_m - rotated(q.chord, q.axis, b.shift_m) -
@@ -178,16 +180,16 @@ bool find_slope(MovedOrgan& organ) RT_SAFE {
 }
 
 bool newton_step(MovedOrgan& organ, double max_step_m, double share) RT_SAFE {
-  constexpr double kLost_m = 1.0;  // farther than this, or NaN: no step at all
-  Column x;                        // only the part in use is set
-  for (std::size_t i = 0; i < organ.count; ++i) {
+  constexpr double kLost_m = 1.0;                  // farther than this, or NaN: no step at all
+  Column x;                                        // only the part in use is set
+  for (std::size_t i = 0; i < organ.count; ++i) {  // bound: spheres
     const Vec3& r_m = organ.sphere[i].residual_m;
     x[3 * i] = r_m.x, x[3 * i + 1] = r_m.y, x[3 * i + 2] = r_m.z;
   }
   organ.slope.solve(x);
-  for (std::size_t i = 0; i < organ.count; ++i)
+  for (std::size_t i = 0; i < organ.count; ++i)  // bound: spheres
     if (!(norm(Vec3{x[3 * i], x[3 * i + 1], x[3 * i + 2]}) < kLost_m)) return false;
-  for (std::size_t i = 0; i < organ.count; ++i) {
+  for (std::size_t i = 0; i < organ.count; ++i) {  // bound: spheres
     const Vec3 step_m = share * Vec3{x[3 * i], x[3 * i + 1], x[3 * i + 2]};
     const double length_m = norm(step_m);
     organ.sphere[i].y_m += (length_m > max_step_m ? max_step_m / length_m : 1.0) * step_m;
@@ -198,6 +200,7 @@ bool newton_step(MovedOrgan& organ, double max_step_m, double share) RT_SAFE {
 // ML-7   W = sum (U(e_i) + k_t t_i^2 / 2 + (L_i . v_i + m_i . z_i) / 2)
 double stored_energy_J(const MovedOrgan& organ) RT_SAFE {
   double sum_J = 0.0;
+  // bound: spheres
   for (std::size_t i = 0; i < organ.count; ++i) sum_J += stored_energy_J(organ, i);
   return sum_J;
 }
@@ -207,12 +210,13 @@ double stored_energy_J(const MovedOrgan& organ, std::size_t i) RT_SAFE {
   const OrganSphere& b = organ.sphere[i];
   double twice_J = b.tangential_N_per_m * dot(b.tangential_m, b.tangential_m) +
                    dot(b.organ_N, b.shift_m) + dot(b.moment_Nm, b.slope);
+  // bound: creeps * spheres (if it creeps)
   for (std::size_t j = 0; organ.creep.terms() > 0 && j < organ.count; ++j) {
     const OrganSphere& o = organ.sphere[j];
     const Mat3& g = organ.compliance_m_per_N[i][j];
     twice_J -=
         dot(b.organ_N, g * o.crept_N) + dot(b.moment_Nm, organ.slope_per_N[i][j] * o.crept_N);
-    for (std::size_t k = 0; k < organ.creep.terms(); ++k)
+    for (std::size_t k = 0; k < organ.creep.terms(); ++k)  // bound: terms (of the creep)
       twice_J += organ.creep.ratio(k) * dot(b.creep[k], g * o.creep[k]);
   }
   return b.tip.energy_J + 0.5 * twice_J;

@@ -32,8 +32,8 @@ Vec3 beyond_friction(const OrganSphere& b, const Vec3& tangential_m) RT_SAFE {
 // not include their change.
 void MovedContact::couple() RT_SAFE {
   constexpr double kWay_m = 0.01;
-  for (std::size_t i = 0; i < organ_.count; ++i)
-    for (std::size_t j = 0; j < i; ++j) {
+  for (std::size_t i = 0; i < organ_.count; ++i)  // bound: spheres
+    for (std::size_t j = 0; j < i; ++j) {         // bound: spheres - 1; pairs in all
       const OrganSphere &a = organ_.sphere[i], &b = organ_.sphere[j];
       const ContactCoupling now = scene_.law->coupling({.surface_point = a.at.surface_point},
                                                        {.surface_point = b.at.surface_point},
@@ -90,7 +90,7 @@ bool MovedContact::follow_foot(OrganSphere& b) const RT_SAFE {
   bool has_moved = false;
   b.slides = !b.is_held && b.may_slide_m > 0.0 && !(has_friction && b.tip.force_N > 0.0);
   if (b.is_held) return false;
-  for (int k = 0; k < kMaxFootSteps && b.may_slide_m > 0.0; ++k) {
+  for (int k = 0; k < kMaxFootSteps && b.may_slide_m > 0.0; ++k) {  // bound: kMaxFootSteps
     const LocalPosition at = local_position(b.at, b.y_m);
     const Vec3 slip_m =
         has_friction ? beyond_friction(b, at.tangential_m - b.rest_m) : at.tangential_m - b.rest_m;
@@ -121,7 +121,7 @@ bool MovedContact::follow_foot(OrganSphere& b) const RT_SAFE {
 
 void MovedContact::follow_feet() RT_SAFE {
   bool has_moved = false;
-  for (std::size_t i = 0; i < organ_.count; ++i)
+  for (std::size_t i = 0; i < organ_.count; ++i)  // bound: spheres
     if (follow_foot(organ_.sphere[i])) has_moved = true;
   if (has_moved) fill_matrices(organ_);
 }
@@ -132,7 +132,7 @@ bool MovedContact::solve_sliding() RT_SAFE {
   is_nearly_ = false;
   constexpr double kFast_ratio = 0.4;  // residual after a step over that before
   double before_m = 0.0;
-  for (std::size_t i = 0; i < organ_.count; ++i) {
+  for (std::size_t i = 0; i < organ_.count; ++i) {  // bound: spheres
     OrganSphere& b = organ_.sphere[i];
     b.residual_m += b.moved_m;
     const double residual_m = norm(b.residual_m);
@@ -145,7 +145,7 @@ bool MovedContact::solve_sliding() RT_SAFE {
     if (before_m < kSolved_m) return true;
     organ_.has_slope = false;
   }
-  for (int i = 0; i < kMaxNewtonSteps; ++i, ++status_.steps) {
+  for (int i = 0; i < kMaxNewtonSteps; ++i, ++status_.steps) {  // bound: kMaxNewtonSteps
     if (!organ_.has_slope && !find_slope(organ_)) return false;
     if (!newton_step(organ_, kMaxStep_m, 1.0)) return false;
     follow_feet();
@@ -162,16 +162,16 @@ bool MovedContact::solve_sliding() RT_SAFE {
 }
 
 bool MovedContact::solve_fixed() RT_SAFE {
-  constexpr double kProgress = 0.7;
+  constexpr double kMaxResidualRatio = 0.7;
   status_.is_fixed = true;
   organ_.has_slope = false;
-  for (std::size_t i = 0; i < organ_.count; ++i) organ_.sphere[i].slides = false;
+  for (std::size_t i = 0; i < organ_.count; ++i) organ_.sphere[i].slides = false;  // bound: spheres
   double before_m = std::numeric_limits<double>::infinity(), share = 1.0;
-  for (int i = 0; i <= kMaxFixedSteps; ++i) {
+  for (int i = 0; i <= kMaxFixedSteps; ++i) {  // bound: kMaxFixedSteps + 1 (evaluations)
     const double residual_m = evaluate(organ_);
     if (residual_m < kSolved_m) return true;
     // Without damping a sphere could alternate for ever between touching and not touching.
-    share = residual_m < kProgress * before_m ? std::min(2.0 * share, 1.0) : 0.5 * share;
+    share = residual_m < kMaxResidualRatio * before_m ? std::min(2.0 * share, 1.0) : 0.5 * share;
     before_m = residual_m;
     if (i == kMaxFixedSteps || !find_slope(organ_) || !newton_step(organ_, kMaxFixedStep_m, share))
       break;
@@ -188,7 +188,7 @@ void MovedContact::brake() RT_SAFE {
   constexpr double kMaxBrake_ratio = 0.1;                        // of |P|
   constexpr double kMaxChange_N = 5e-4;                          // a tick
   double braked_J = 0.0, way_J = 0.0, press_N = 0.0, work_J = 0.0;
-  for (std::size_t i = 0; i < organ_.count; ++i) {
+  for (std::size_t i = 0; i < organ_.count; ++i) {  // bound: spheres
     const OrganSphere& b = organ_.sphere[i];
     const double force_N = norm(b.force_N);
     braked_J -= dot(b.brake_N, b.moved_m);
@@ -202,7 +202,7 @@ void MovedContact::brake() RT_SAFE {
   if (!(press_N > 0.0)) tank_J_ = 0.0;  // the next contact begins at zero
   const double excess_J = std::max(-(tank_J_ + kFree_J + kTolerated_ratio * stored_J), 0.0);
   const double rho = way_J > 0.0 ? std::min(excess_J / way_J, kMaxBrake_ratio) : 0.0;
-  for (std::size_t i = 0; i < organ_.count; ++i) {
+  for (std::size_t i = 0; i < organ_.count; ++i) {  // bound: spheres
     OrganSphere& b = organ_.sphere[i];
     const Vec3 wanted_N = -rho * norm(b.force_N) * normalized(b.moved_m);
     const Vec3 change_N = wanted_N - b.brake_N;

@@ -140,24 +140,25 @@ void RestContact::respond() RT_SAFE {
   couple_new_spheres();
   keep_definite();
   press();
-  for (RestSphere& s : sphere_) s.is_new = false;
+  for (RestSphere& s : sphere_) s.is_new = false;  // bound: kMaxSpheres
 }
 
 // Couples a new sphere with the others until it leaves. They may have displaced its tissue
 // sideways: its tangential spring starts unloaded there.
 void RestContact::couple_new_spheres() RT_SAFE {
   const std::array<bool, kMaxSpheres> before = is_coupled_;
+  // bound: spheres
   for (std::size_t i = 0; i < count(); ++i) is_coupled_[i] = pressing_[i].presses;
   // Couplings are constant from touch to release, as MC-3 is a potential only for constant C. The
   // spheres' springs are set first, as couple() bounds each pair by both springs.
   if (is_coupled_ == before) return;
-  for (std::size_t i = 0; i < count(); ++i)
+  for (std::size_t i = 0; i < count(); ++i)  // bound: spheres
     if (!is_coupled_[i])
       shear_.leave(i);
     else if (!before[i])
       start_tangent_spring(i);
-  for (std::size_t i = 0; i < count(); ++i)
-    for (std::size_t j = 0; j < i; ++j)
+  for (std::size_t i = 0; i < count(); ++i)  // bound: spheres
+    for (std::size_t j = 0; j < i; ++j)      // bound: spheres - 1; pairs in all
       if (!is_coupled_[i] || !is_coupled_[j])
         coupling_[i][j] = coupling_[j][i] = 0.0;
       else if (!before[i] || !before[j])
@@ -165,7 +166,7 @@ void RestContact::couple_new_spheres() RT_SAFE {
   shear_.solve();
   // MC-4 for f_i = 0:  t_i <- t_i + sum over j != i of (h + b) A_ij f_j, by the forces f of the
   // tick before; then exactly  t_i <- t_i - K_ii^-1 f_i,  f = K t,  K = (diag(G) + (h + b) A)^-1
-  for (std::size_t i = 0; i < count(); ++i)
+  for (std::size_t i = 0; i < count(); ++i)  // bound: spheres
     if (is_coupled_[i] && !before[i]) {
       shift_m_[i] = shift_m_[i] + shear_.unloaded_m(shear_N_, i);
       shift_m_[i] =
@@ -197,7 +198,7 @@ Indentation RestContact::indentation(std::size_t i) const RT_SAFE {
 }
 
 void RestContact::press() RT_SAFE {
-  for (std::size_t i = 0; i < count(); ++i) pressing_[i].in = indentation(i);
+  for (std::size_t i = 0; i < count(); ++i) pressing_[i].in = indentation(i);  // bound: spheres
   energy_J_ = press_together(*scene_.law, coupling_, pressing());
 }
 
@@ -205,9 +206,9 @@ void RestContact::press() RT_SAFE {
 // With contact points too stiff for their coupling there could be two solutions at some depth. Then
 // C is reduced, and pressing spheres get an offset, so that forces stay and no energy is added.
 void RestContact::keep_definite() RT_SAFE {
-  if (std::count(is_coupled_.begin(), is_coupled_.end(), true) < 2) return;
+  if (std::count(is_coupled_.begin(), is_coupled_.end(), true) < 2) return;  // bound: kMaxSpheres
   std::array<double, kMaxSpheres> stiffest_N_per_m{};
-  for (std::size_t i = 0; i < count(); ++i)
+  for (std::size_t i = 0; i < count(); ++i)  // bound: spheres
     if (is_coupled_[i])
       stiffest_N_per_m[i] =
           scene_.law->stiffest_N_per_m(sphere_[i].surface_point, sphere_[i].is_held);
@@ -215,16 +216,16 @@ void RestContact::keep_definite() RT_SAFE {
   if (share >= 1.0) return;
   std::array<double, kMaxSpheres> spared_m{};
   double spared_J = 0.0;
-  for (std::size_t i = 0; i < count(); ++i) {
+  for (std::size_t i = 0; i < count(); ++i) {  // bound: spheres
     if (!pressing_[i].presses || sphere_[i].is_new) continue;
     spared_m[i] = (1.0 - share) * coupled_m(coupling_, pressing(), i);
     spared_J += pressing_[i].response.law.force_N * spared_m[i];
   }
   // One sphere pulls, another presses: reducing C would add energy.
   if (!(spared_J >= 0.0)) return;
-  for (std::size_t i = 0; i < count(); ++i) add_depth_offset(i, spared_m[i]);
-  for (auto& row : coupling_)
-    for (double& m_per_N : row) m_per_N *= share;
+  for (std::size_t i = 0; i < count(); ++i) add_depth_offset(i, spared_m[i]);  // bound: spheres
+  for (auto& row : coupling_)                                                  // bound: kMaxSpheres
+    for (double& m_per_N : row) m_per_N *= share;                              // bound: kMaxSpheres
 }
 
 // Friction is last, as its cap depends on the normal force.

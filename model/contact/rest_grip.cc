@@ -53,7 +53,7 @@ bool RestContact::release(std::size_t i) RT_SAFE {
   };
   double low_m = 0.0, high_m = std::max(0.0, std::min(s.reach_m, held_m));
   if (affords(high_m)) low_m = high_m;
-  for (int k = 0; k < kHalvings && low_m < high_m; ++k) {
+  for (int k = 0; k < kHalvings && low_m < high_m; ++k) {  // bound: kHalvings (of the depth)
     const double middle_m = 0.5 * (low_m + high_m);
     (affords(middle_m) ? low_m : high_m) = middle_m;
   }

@@ -33,7 +33,7 @@ Vec2 slipping_N(const Vec2& f_N, const Tensor2& stiffness_N_per_m, double cap_N)
   double g_m_per_N = 0.0, length_N = norm(f_N);
   const double settled_N =
       cap_N + std::min(kOfExcess_ratio * (length_N - cap_N), kSettled_ratio * cap_N);
-  for (int step = 0; step < kNewtonSteps && length_N > settled_N; ++step) {
+  for (int step = 0; step < kNewtonSteps && length_N > settled_N; ++step) {  // bound: kNewtonSteps
     g_m_per_N += (length_N / cap_N - 1.0) * length_N * length_N / dot(left_N, solve(m, k * left_N));
     m = {1.0 + g_m_per_N * k.xx, g_m_per_N * k.xy, 1.0 + g_m_per_N * k.yy};
     left_N = solve(m, f_N);
@@ -81,6 +81,7 @@ void RestContact::drop_shift(std::size_t i) RT_SAFE {
   without.leave(i);
   without.solve();
   Shear::Shifts f_N{};
+  // bound: spheres
   for (std::size_t j = 0; j < count(); ++j) f_N[j] = without.force_N(shift_m_, j);
   shift_m_[i] = shear_.unloaded_m(f_N, i);
   start_tangent_spring(i);
@@ -94,7 +95,7 @@ void RestContact::stiffen() RT_SAFE {
   constexpr double kStep_ratio = 0.99;
   Shear::Shifts change_m{};
   bool is_stiffer = false;
-  for (std::size_t i = 0; i < count(); ++i) {
+  for (std::size_t i = 0; i < count(); ++i) {  // bound: spheres
     if (!is_coupled_[i]) continue;
     const OwnCompliance before = shear_.own(i);
     double most_m_per_N = kStep_ratio * before.m_per_N.trace();
@@ -116,6 +117,7 @@ void RestContact::stiffen() RT_SAFE {
   }
   if (!is_stiffer) return;
   shear_.solve();
+  // bound: spheres
   for (std::size_t i = 0; i < count(); ++i) shift_m_[i] = shift_m_[i] + change_m[i];
 }
 
@@ -127,9 +129,9 @@ void RestContact::resist_sliding() RT_SAFE {
   constexpr int kMaxSweeps = 5;
   constexpr double kRounding_N = 1e-12;  // without friction the cap is 0
   bool is_settled = false;
-  for (int sweep = 0; sweep < kMaxSweeps && !is_settled; ++sweep) {
+  for (int sweep = 0; sweep < kMaxSweeps && !is_settled; ++sweep) {  // bound: kMaxSweeps
     is_settled = true;
-    for (std::size_t i = 0; i < count(); ++i) {
+    for (std::size_t i = 0; i < count(); ++i) {  // bound: spheres
       if (!is_coupled_[i]) continue;
       const Vec2 spring_N = shear_.force_N(shift_m_, i);
       shear_N_[i] = spring_N;
@@ -142,7 +144,7 @@ void RestContact::resist_sliding() RT_SAFE {
       shift_m_[i] = shift_m_[i] - solve(own_N_per_m, spring_N - shear_N_[i]);
     }
   }
-  for (std::size_t i = 0; i < count() && !is_settled; ++i) {
+  for (std::size_t i = 0; i < count() && !is_settled; ++i) {  // bound: spheres
     if (!is_coupled_[i]) continue;
     const double cap_N = scene_.parameters.friction_ratio * pressing_[i].response.law.force_N;
     shear_N_[i] = shear_.force_N(shift_m_, i);

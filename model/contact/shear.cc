@@ -15,7 +15,7 @@ void Shear::set_own(std::size_t i, const OwnCompliance& own) RT_SAFE {
 
 void Shear::leave(std::size_t i) RT_SAFE {
   set_own(i, {});
-  for (std::size_t j = 0; j < count_; ++j) couple(i, j, 0.0, {}, {});
+  for (std::size_t j = 0; j < count_; ++j) couple(i, j, 0.0, {}, {});  // bound: spheres
 }
 
 // The matrix is diagonally dominant, hence positive definite.
@@ -23,9 +23,9 @@ void Shear::couple(std::size_t i, std::size_t j, double m_per_N, const Axes& of_
                    const Axes& of_j) RT_SAFE {
   constexpr double kAll = 0.9, kPair = kAll / 3.0;
   double most_m_per_N = kPair * std::min(own_[i].least_m_per_N, own_[j].least_m_per_N);
-  for (const auto [a, b] : {std::array{i, j}, std::array{j, i}}) {
+  for (const auto [a, b] : {std::array{i, j}, std::array{j, i}}) {  // bound: 2 (orders)
     double left_m_per_N = kAll * own_[a].least_m_per_N;
-    for (std::size_t k = 0; k < count_; ++k)
+    for (std::size_t k = 0; k < count_; ++k)  // bound: spheres
       if (k != b) left_m_per_N -= std::abs(pair_m_per_N_[a][k]);
     most_m_per_N = std::min(most_m_per_N, std::max(left_m_per_N, 0.0));
   }
@@ -40,14 +40,14 @@ void Shear::couple(std::size_t i, std::size_t j, double m_per_N, const Axes& of_
 
 void Shear::solve() RT_SAFE {
   std::size_t pressing = 0, changed = 0;
-  for (std::size_t i = 0; i < count_; ++i) {
+  for (std::size_t i = 0; i < count_; ++i) {  // bound: spheres
     if (own_[i].least_m_per_N > 0.0) ++pressing;
     if (!(own_[i] == solved_[i])) ++changed;
   }
   if (is_recoupled_ || 2 * changed >= pressing)
     invert();
   else
-    for (std::size_t i = 0; i < count_; ++i)
+    for (std::size_t i = 0; i < count_; ++i)  // bound: spheres
       if (!(own_[i] == solved_[i])) update(i);
   solved_ = own_;
   is_recoupled_ = false;
@@ -63,18 +63,20 @@ double Shear::compliance_m_per_N(std::size_t row, std::size_t column) const RT_S
 void Shear::invert() RT_SAFE {
   std::array<std::size_t, 2 * kMaxSpheres> row;
   std::size_t n = 0;
-  for (std::size_t i = 0; i < count_; ++i)
+  for (std::size_t i = 0; i < count_; ++i)  // bound: spheres
     if (own_[i].least_m_per_N > 0.0) row[n++] = 2 * i, row[n++] = 2 * i + 1;
   SmallLu<2 * kMaxSpheres> lu;
-  for (std::size_t i = 0; i < n; ++i)
+  for (std::size_t i = 0; i < n; ++i)  // bound: 2 * spheres
+    // bound: 2 * spheres
     for (std::size_t j = 0; j < n; ++j) lu.at(i, j) = compliance_m_per_N(row[i], row[j]);
-  for (std::size_t i = 0; i < 2 * count_; ++i)
-    std::fill_n(stiffness_N_per_m_[i].begin(), 2 * count_, 0.0);
+  for (std::size_t i = 0; i < 2 * count_; ++i)                    // bound: 2 * spheres
+    std::fill_n(stiffness_N_per_m_[i].begin(), 2 * count_, 0.0);  // bound: 2 * spheres
   if (!lu.factorise(n, Pivot::kOfDiagonal, 0.0)) return;
-  for (std::size_t j = 0; j < n; ++j) {
+  for (std::size_t j = 0; j < n; ++j) {  // bound: 2 * spheres
     std::array<double, 2 * kMaxSpheres> unit{};
     unit[j] = 1.0;
     lu.solve(unit);
+    // bound: 2 * spheres
     for (std::size_t i = 0; i < n; ++i) stiffness_N_per_m_[row[i]][row[j]] = unit[i];
   }
 }
@@ -89,9 +91,9 @@ void Shear::update(std::size_t i) RT_SAFE {
   const Tensor2 m{(d.xx * b_yy - d.xy * b_yx) / det, (d.xy * b_xx - d.xx * b_xy) / det,
                   (d.yy * b_xx - d.xy * b_xy) / det};
   const auto x = stiffness_N_per_m_[2 * i], y = stiffness_N_per_m_[2 * i + 1];
-  for (std::size_t r = 0; r < 2 * count_; ++r) {
+  for (std::size_t r = 0; r < 2 * count_; ++r) {  // bound: 2 * spheres
     const Vec2 row = m * Vec2{x[r], y[r]};
-    for (std::size_t c = 0; c < 2 * count_; ++c)
+    for (std::size_t c = 0; c < 2 * count_; ++c)  // bound: 2 * spheres
       stiffness_N_per_m_[r][c] += row.x * x[c] + row.y * y[c];
   }
 }
@@ -103,7 +105,7 @@ Tensor2 Shear::own_N_per_m(std::size_t i) const RT_SAFE {
 
 Vec2 Shear::times(const Matrix& m, std::size_t i, const Shifts& v) const RT_SAFE {
   Vec2 sum{};
-  for (std::size_t j = 0; j < count_; ++j) {
+  for (std::size_t j = 0; j < count_; ++j) {  // bound: spheres
     sum.x += m[2 * i][2 * j] * v[j].x + m[2 * i][2 * j + 1] * v[j].y;
     sum.y += m[2 * i + 1][2 * j] * v[j].x + m[2 * i + 1][2 * j + 1] * v[j].y;
   }

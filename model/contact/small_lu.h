@@ -31,17 +31,20 @@ class SmallLu {
   /// solve() must then not be called.
   bool factorise(std::size_t n, Pivot pivot, double least_pivot) RT_SAFE {
     n_ = n;
-    for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t k = 0; k < n; ++k) {  // bound: unknowns
       std::size_t best = k;
+      // bound: unknowns - 1; half in all
       for (std::size_t i = k + 1; pivot == Pivot::kOfColumn && i < n; ++i)
         if (std::abs(lu_[i][k]) > std::abs(lu_[best][k])) best = i;
       const double least = pivot == Pivot::kOfColumn ? std::abs(lu_[best][k]) : lu_[best][k];
       if (!(least > least_pivot)) return false;
+      // bound: unknowns
       if (best != k) std::swap_ranges(lu_[best].begin(), lu_[best].begin() + n, lu_[k].begin());
       row_[k] = best;
       const double inverse = 1.0 / lu_[k][k];
-      for (std::size_t i = k + 1; i < n; ++i) {
+      for (std::size_t i = k + 1; i < n; ++i) {  // bound: unknowns - 1; half in all
         lu_[i][k] *= inverse;
+        // bound: unknowns - 1
         for (std::size_t j = k + 1; j < n; ++j) lu_[i][j] -= lu_[i][k] * lu_[k][j];
       }
     }
@@ -50,10 +53,12 @@ class SmallLu {
 
   /// Solves A x = b; x replaces b.
   void solve(Column& b) const RT_SAFE {
-    for (std::size_t k = 0; k < n_; ++k) std::swap(b[k], b[row_[k]]);
-    for (std::size_t k = 1; k < n_; ++k)
+    for (std::size_t k = 0; k < n_; ++k) std::swap(b[k], b[row_[k]]);  // bound: unknowns
+    for (std::size_t k = 1; k < n_; ++k)                               // bound: unknowns
+      // bound: unknowns - 1; half in all
       for (std::size_t j = 0; j < k; ++j) b[k] -= lu_[k][j] * b[j];
-    for (std::size_t k = n_; k-- > 0;) {
+    for (std::size_t k = n_; k-- > 0;) {  // bound: unknowns
+      // bound: unknowns - 1; half in all
       for (std::size_t j = k + 1; j < n_; ++j) b[k] -= lu_[k][j] * b[j];
       b[k] /= lu_[k][k];
     }

@@ -33,7 +33,7 @@ Map2 invertible_offset_map(const SurfaceFrame& f, double height_m) RT_SAFE {
   constexpr double kMinDeterminant = 0.15;
   constexpr int kHalvings = 4;
   Map2 m = offset_map(f, height_m);
-  for (int i = 0;
+  for (int i = 0;  // bound: kHalvings
        i < kHalvings && !(m.determinant() > kMinDeterminant && m.xx + m.yy > 2.0 * kMinDeterminant);
        ++i) {
     height_m *= 0.5;
@@ -104,11 +104,11 @@ void fill_compliance(const SmoothSurface& surface, SurfaceFrame& f) RT_SAFE {
   const TriangleCorners& corner = surface.mesh.triangle[f.surface_point.triangle];
   std::array<double, 6> g{};
   std::array<Vec3, 6> dg{};
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < 3; ++i) {  // bound: 3
     const VertexCompliance& v = surface.compliance[corner[i]];
     const Vec3 half_way_m = 0.5 * (f.point_m - surface.corner[corner[i]].point_m());
     const double weight = f.surface_point.weight[i] / surface.youngs_modulus_Pa;
-    for (std::size_t k = 0; k < 6; ++k) {
+    for (std::size_t k = 0; k < 6; ++k) {  // bound: 6
       const Vec3 slope = v.slope_times_E_per_m2(k);
       g[k] += weight * (static_cast<double>(v.times_E_per_m[k]) + dot(half_way_m, slope));
       dg[k] += weight * slope;
@@ -153,7 +153,7 @@ Mat3 normal_slope_per_m(const SurfaceFrame& f, double height_m) RT_SAFE {
 
 void move_along(const SurfaceView& mesh, SurfacePoint& surface_point, Vec3 way_m) RT_SAFE {
   constexpr int kMaxEdges = 8;
-  for (int i = 0; i < kMaxEdges; ++i) {
+  for (int i = 0; i < kMaxEdges; ++i) {  // bound: kMaxEdges (triangles)
     const TriangleRecord& record = mesh.record[surface_point.triangle];
     const std::array<Vec3, 3> gradient_per_m = weight_gradients(record);
     std::array<double, 3> db{};

@@ -59,11 +59,12 @@ struct Axes {
 
 /// Axes for a normal that has turned, as near as possible to `before`; any axes if that is 0.
 inline Axes axes_of(const Vec3& normal, const Axes& before = {}) RT_SAFE {
-  constexpr double kFlat = 0.25;  // least square of a unit vector's part along the surface
+  constexpr double kMinTangentSquared =
+      0.25;  // least square of a unit vector's part along the surface
   Vec3 a = tangential(before.unit[0], normal);
-  if (!(dot(a, a) > kFlat)) a = cross(before.unit[1], normal);
-  if (!(dot(a, a) > kFlat)) a = tangential({1.0, 0.0, 0.0}, normal);
-  if (!(dot(a, a) > kFlat)) a = tangential({0.0, 1.0, 0.0}, normal);
+  if (!(dot(a, a) > kMinTangentSquared)) a = cross(before.unit[1], normal);
+  if (!(dot(a, a) > kMinTangentSquared)) a = tangential({1.0, 0.0, 0.0}, normal);
+  if (!(dot(a, a) > kMinTangentSquared)) a = tangential({0.0, 1.0, 0.0}, normal);
   a = normalized(a);
   return {{a, cross(normal, a)}};
 }

@@ -137,10 +137,11 @@ ContactPoint nearest_contact_point(const TriangleTreeView& tree, const SurfaceVi
   std::array<Branch, kMaxDepth> later;
   std::size_t waiting = 0;
   later[waiting++] = {0, squared_distance_m2(tree.node[0], p_m)};
-  for (int visit = 0; waiting > 0 && visit < kMaxVisits; ++visit) {
+  for (int visit = 0; waiting > 0 && visit < kMaxVisits; ++visit) {  // bound: kMaxVisits (boxes)
     const Branch branch = later[--waiting];
     if (!(branch.squared_m2 < best.squared_m2)) continue;
     const BoxNode& node = tree.node[branch.node];
+    // bound: kLeafTriangles; kLeafTriangles * leaves in all
     for (std::uint32_t k = node.first; k < node.first + node.count; ++k) {
       const Nearest other = nearest_on(surface, tree.triangle[k], p_m);
       if (other.squared_m2 < best.squared_m2) best = other;
@@ -164,10 +165,11 @@ bool is_between(const TriangleTreeView& tree, const SurfaceView& surface, const 
   std::array<std::uint32_t, kMaxDepth> later;
   std::size_t waiting = 0;
   later[waiting++] = 0;
-  for (int visit = 0; waiting > 0 && visit < kMaxVisits; ++visit) {
+  for (int visit = 0; waiting > 0 && visit < kMaxVisits; ++visit) {  // bound: kMaxVisits (boxes)
     const std::uint32_t here = later[--waiting];
     const BoxNode& node = tree.node[here];
     if (!meets(node, from_m, to_m)) continue;
+    // bound: kLeafTriangles; kLeafTriangles * leaves in all
     for (std::uint32_t k = node.first; k < node.first + node.count; ++k) {
       const auto& [a, b, c] = surface.record[tree.triangle[k]].corner_m;
       if (passes(a, b, c, from_m, to_m)) return true;

@@ -139,9 +139,10 @@ std::size_t ComplianceCurve::profile(double depth_m, std::span<double> ring_m) c
 }
 
 Result<ComplianceCurve> half_space_under(double radius_m, double working_depth_m) {
-  constexpr double kRingsARadius = 3.0;  // LW-4: the indentation bends most at the rim of the touch
+  constexpr double kRingsPerRadius =
+      3.0;  // LW-4: the indentation bends most at the rim of the touch
   constexpr std::size_t kRings = 23;
-  return half_space_under(radius_m, working_depth_m, radius_m / kRingsARadius, kRings);
+  return half_space_under(radius_m, working_depth_m, radius_m / kRingsPerRadius, kRings);
 }
 
 Result<ComplianceCurve> half_space_under(double radius_m, double working_depth_m,

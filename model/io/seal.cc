@@ -72,7 +72,7 @@ Result<SealedFile> SealedFile::open(const std::string& path, std::string_view re
   std::uint64_t size_bytes = file->size_bytes();
   const auto end = file->read_end(seal.data(), seal.size());
   if (!end) return end.error();
-  // Without one it is read to its end all the same; trouble() says so.
+  // Without one it is read to its end all the same; damage() says so.
   if (*end == kSealBytes && seal.starts_with(kMagic))
     size_bytes -= kSealBytes;
   else
@@ -102,7 +102,7 @@ bool SealedFile::skip(std::uint64_t bytes) {
   return true;
 }
 
-std::string SealedFile::trouble() {
+std::string SealedFile::damage() {
   // The digest is of all bytes, also of those that were skipped.
   skip(size_bytes_ - read_bytes_);
   if (!failed_.empty()) return failed_;

@@ -71,7 +71,7 @@ class SealedFile {
   /// False if the file ends before.
   bool skip(std::uint64_t bytes);
   /// Reads what is left. Empty, or what is wrong with the file as a whole.
-  std::string trouble();
+  std::string damage();
 
  private:
   SealedFile(InputFile file, std::uint64_t size_bytes, std::string seal)

@@ -34,11 +34,13 @@ class Creep {
   /// CP-4: b, N.
   Vec3 crept_N(const CreepState& state) const RT_SAFE {
     Vec3 sum;
+    // bound: terms (of the creep)
     for (std::size_t j = 0; j < count_; ++j) sum += share_[j] * state[j];
     return sum;
   }
   /// One tick under the load a, N.
   void advance(CreepState& state, const Vec3& load_N) const RT_SAFE {
+    // bound: terms (of the creep)
     for (std::size_t j = 0; j < count_; ++j) state[j] += tick_share_[j] * (load_N - state[j]);
   }
 

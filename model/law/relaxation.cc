@@ -31,7 +31,7 @@ double flow_ratio(double stretch_m, const LawResponse& at_stretch) RT_SAFE {
 RelaxationState Relaxation::after(const RelaxationState& before, double depth_m,
                                   bool held) const RT_SAFE {
   RelaxationState now{.depth_m = depth_m};
-  for (std::size_t i = 0; i < count_; ++i) {
+  for (std::size_t i = 0; i < count_; ++i) {  // bound: terms (of the relaxation)
     const double x = before.flow_ratio[i] * tick_share_[i];
     const double b = gain(x);
     const double e = (1.0 - x * b) * before.stretch_m[i] + b * (depth_m - before.depth_m);

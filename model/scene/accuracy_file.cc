@@ -2,7 +2,6 @@
 #include "model/scene/accuracy_file.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -104,23 +103,6 @@ Result<std::string> hash_of_linear_forces(const Scene& scene, std::string_view l
 
 std::string accuracy_path(const Scene& scene) {
   return fs::path(scene.path).replace_extension(".accuracy").string();
-}
-
-std::string accuracy_text(const std::vector<Accuracy>& laws) {
-  std::string out = fmt::format(
-      "# How true the force of the whole tool is: tact-lab chart --tool-reference\nschema = "
-      "\"{}\"\n",
-      kSchema);
-  for (const Accuracy& a : laws)
-    out += fmt::format(
-        "\n[{}]\nlaw_hash = \"{}\"\nreference = \"{}\"\ndate = \"{}\"\n{}"
-        "force_rms_ratio = {:.4f}  # of the peak\n"
-        "within_noticeable_ratio = {:.4f}  # share of places and depths\ndepth_m = [{}]\n"
-        "own_worst_ratio = [{:.4f}]  # of the force at the same place and depth\n",
-        a.law, a.law_hash, a.reference, a.date,
-        a.large_strain_off ? "large_strain_off = true  # the scene has it on\n" : "", a.rms_ratio,
-        a.within_noticeable_ratio, fmt::join(a.depth_m, ", "), fmt::join(a.own_worst_ratio, ", "));
-  return out;
 }
 
 Result<Accuracy> read_accuracy(const Scene& scene) {

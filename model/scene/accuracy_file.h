@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // accuracy_file.h - how true the force of a scene's whole tool is, as tact-lab chart measured it.
 //
-// SCENE.accuracy is next to SCENE.toml, a table for each law. tactd --check prints it. A
-// figure counts for what was measured alone: the hash is of forces, so another law, parameter,
-// organ or tool has another one, and another hand or device has not. A scene keeps its tolerance
-// where the RMS, of the peak, and the error of the own force at every place and depth are within
-// tolerance.force_error_ratio: an RMS alone hides light touch. Set-up code only.
+// SCENE.accuracy, which tools/chart/tool.py writes, is next to SCENE.toml, a table for each law.
+// tactd --check prints it. A figure counts for what was measured alone: the hash is of forces, so
+// another law, parameter, organ or tool has another one, and another hand or device has not. A
+// scene keeps its tolerance where the RMS, of the peak, and the error of the own force at every
+// place and depth are within tolerance.force_error_ratio: an RMS alone hides light touch. Set-up
+// code only.
 #pragma once
 
 #include <optional>
@@ -40,7 +41,6 @@ Result<std::string> hash_of_linear_forces(const Scene& scene, std::string_view l
 
 /// "model/scenes/liver.accuracy"
 std::string accuracy_path(const Scene& scene);
-std::string accuracy_text(const std::vector<Accuracy>& laws);
 /// The figure of this scene's law. An error says that there is none, or that it is of something
 /// else, and the remedy.
 Result<Accuracy> read_accuracy(const Scene& scene);

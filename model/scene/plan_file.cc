@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "model/indent/disc_stack.h"
-#include "model/io/file_writer.h"
 #include "model/io/input_file.h"
 #include "model/io/seal.h"
 #include "model/io/toml.h"
@@ -156,28 +155,6 @@ Result<std::string> plan_path(const std::string& scene_hash) {
   if (cache.empty())
     return Error{"no folder for plans: neither XDG_CACHE_HOME nor HOME is set; set one"};
   return (cache / "tact" / "plan" / (scene_hash + ".toml")).string();
-}
-
-std::string plan_text(const Plan& plan) {
-  std::string out = "# What tact-lab plan chose; tactd reads it for a scene with law = \"auto\".\n";
-  out += fmt::format("law = \"{}\"\n", plan.sizes.law);
-  if (!plan.sizes.disc_form.empty())
-    out += fmt::format("disc_form = \"{}\"\n", plan.sizes.disc_form);
-  for (const auto& [key, size] : keys_of(plan.sizes.law))
-    if (plan.sizes.*size != 0) out += fmt::format("{} = {}\n", key, plan.sizes.*size);
-  out += fmt::format(
-      "tick_p999_us = {:.6g}\nforce_error_ratio = {:.6g}\nshape_error_ratio = {:.6g}\n"
-      "machine = \"{}\"\nscene_hash = \"{}\"\n",
-      plan.tick_p999_us, plan.force_error_ratio, plan.shape_error_ratio, plan.machine,
-      plan.scene_hash);
-  return io::sealed_text(out);
-}
-
-Result<std::string> write_plan(const Plan& plan, const std::string& path) {
-  std::error_code failed;
-  fs::create_directories(fs::path(path).parent_path(), failed);
-  if (auto error = io::write_file(path, plan_text(plan))) return *error;
-  return path;
 }
 
 Result<Plan> read_plan(const std::string& path, const Scene& scene,

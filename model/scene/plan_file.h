@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// plan_file.h - the law and size that tact-lab plan chose for a scene on this machine, as a file.
+// plan_file.h - the law and size that tact-lab plan chose for a scene on this machine, as the file
+// that tools/chart/plan.py writes.
 //
 // A scene with law = "auto" is felt through it. The file is in the user's cache, named by the
 // hash of the scene, so a changed scene has none; it also names the machine that was measured. A
@@ -40,9 +41,6 @@ std::string machine_name();
 /// $XDG_CACHE_HOME/tact/plan/HASH.toml, or below $HOME/.cache; an error if neither is set.
 Result<std::string> plan_path(const std::string& scene_hash);
 
-std::string plan_text(const Plan& plan);
-/// All or nothing; makes the folder. Returns the path.
-Result<std::string> write_plan(const Plan& plan, const std::string& path);
 /// `scene` is the one to be felt: its hash and this machine must be the plan's. The overrides it
 /// was loaded with go into the remedy.
 Result<Plan> read_plan(const std::string& path, const Scene& scene,

@@ -102,7 +102,7 @@ contact::ContactLawResponse ElasticField::respond(const contact::Indentation& in
   if (relaxation.terms() > 0) next = relaxation.after(now_[in.sphere], in.indentation_m, in.held);
   const Gradient& gradient = gradient_at(in);
   contact::ContactLawResponse sum{};
-  for (std::size_t i = 0; i <= relaxation.terms(); ++i) {
+  for (std::size_t i = 0; i <= relaxation.terms(); ++i) {  // bound: terms + 1 (and the spring)
     const double depth_m = i == 0 ? in.indentation_m : next.stretch_m[i - 1];
     const Part part = part_at(in.surface_point, depth_m);
     // RX-4: q of this tick, for the next one.

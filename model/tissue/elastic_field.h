@@ -87,6 +87,7 @@ class ElasticField final : public contact::ContactLaw {
                                                 const contact::Axes& axes) const RT_SAFE override;
   void leave(std::size_t sphere) RT_SAFE override { now_[sphere] = next_[sphere] = {}; }
   void advance() RT_SAFE override {
+    // bound: spheres
     if (parts_.relaxation.terms() > 0) std::copy_n(next_.begin(), spheres_, now_.begin());
   }
   std::size_t profile(const contact::Indentation& in,

@@ -25,12 +25,12 @@ export function check(message, holds, seen = "") {
   console.log(`${holds ? "ok    " : "FAILED"} ${message}${seen === "" ? "" : ` (${seen})`}`);
 }
 
-/** A program of BUILD_DIR; its standard output is first_line's, or unread. */
-export const start = (program, args) => start_at(join(build, program), args);
+/** A program of BUILD_DIR; its standard output is first_line's, or unread. `errors`: "pipe" for a test that reads them. */
+export const start = (program, args, errors = "inherit") => start_at(join(build, program), args, process.env, errors);
 
 /** One from elsewhere. */
-export function start_at(path, args, env = process.env) {
-  const child = spawn(path, args, { stdio: ["ignore", "pipe", "inherit"], env });
+export function start_at(path, args, env = process.env, errors = "inherit") {
+  const child = spawn(path, args, { stdio: ["ignore", "pipe", errors], env });
   children.add(child);
   child.ended = new Promise((done) =>
     child.on("exit", (status) => {
@@ -70,8 +70,8 @@ export function first_line(child, beginning = "") {
 }
 
 /** tact-view on a free port, and the link that it prints. */
-export async function start_view(args) {
-  const viewer = start("tact-view", [...args, "--port", "0", "--json"]);
+export async function start_view(args, errors = "inherit") {
+  const viewer = start("tact-view", [...args, "--port", "0", "--json"], errors);
   viewer.ready = JSON.parse(await first_line(viewer));
   return { viewer, url: viewer.ready.url };
 }
@@ -80,18 +80,19 @@ export async function start_view(args) {
 export const sharp = (url) => `${url}&sharp`;
 
 /** Its pages have 2 minutes to load: on a busy machine the first one compiles its shaders for half a minute. */
-export async function start_browser() {
+export async function start_browser(flags = []) {
   const browser = await chromium.launch({
     executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
     args: [
       "--no-sandbox",
       "--disable-gpu",
-      "--enable-unsafe-swiftshader",
+      ...(flags.includes("--disable-3d-apis") ? [] : ["--enable-unsafe-swiftshader"]),
       "--disable-quic",
       "--no-first-run",
       "--disable-background-networking",
       "--disable-component-update",
       "--disable-sync",
+      ...flags,
     ],
   });
   const open = browser.newContext.bind(browser);

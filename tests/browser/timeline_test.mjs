@@ -12,6 +12,7 @@ import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { setTimeout as pause } from "node:timers/promises";
 
+import { check_sought } from "./sought_recording.mjs";
 import { build, check, folder, numbers, play, size, start_browser, start_tactd, start_view, stop, waits } from "./stage.mjs";
 
 const socket = join(folder, "timeline.sock");
@@ -21,6 +22,7 @@ const text = (page, id) => page.textContent(`#${id}`);
 
 /** When the recording has a frame, s since its start: a slow PC leaves gaps of 0.2 s. */
 let frame_at_s = [];
+let force_at_N = [];
 /** Where a jump to this time leads: to the first frame that is not before it. */
 const lands_s = (at_s) => frame_at_s.find((one_s) => one_s >= at_s - 1e-6) ?? frame_at_s.at(-1);
 
@@ -34,6 +36,8 @@ function read_frames() {
     .map((line) => line.split(","));
   const time_s = rows.map((row) => 1e-9 * Number(row[head.indexOf("time_ns")]));
   frame_at_s = time_s.map((one_s) => one_s - time_s[0]);
+  const force = ["x", "y", "z"].map((axis) => head.indexOf(`force_${axis}_N`));
+  force_at_N = rows.map((row) => Math.hypot(...force.map((column) => Number(row[column]))));
 }
 
 /** At this time, and there it stays. */
@@ -163,7 +167,6 @@ async function check_mouse(page) {
 }
 
 async function check_plots(page) {
-  await page.keyboard.press("Space");
   await page.keyboard.press("End");
   await page.keyboard.press("ArrowLeft");
   await page.keyboard.press("Space");
@@ -248,6 +251,7 @@ async function run() {
   await check_words(page);
   await check_keys(page);
   await check_mouse(page);
+  await check_sought(page, { rests_at, lands_s, frame_at_s, force_at_N });
   await check_plots(page);
   await check_saving(page);
   check("has no error on the console", complaints.length === 0, complaints.slice(0, 3).join("; "));

@@ -7,7 +7,7 @@
 
 #include <filesystem>
 
-#include "model/io/program/remedy.h"
+#include "hal/rights_remedy.h"
 #include "tests/support/usb_folders.h"
 
 namespace tact::hal::permission_test {
@@ -39,11 +39,11 @@ TEST_F(PermissionOfNode, TheRuleIsMissingUnlessTheNodeIsOfTheGroup) {
   const gid_t own = getegid();
   const Refusal of_root = why_refused(node, kRule, own + 1);
   EXPECT_NE(of_root.lacking.find(kRule), std::string::npos) << of_root.lacking;
-  EXPECT_EQ(of_root.remedy,
-            model::io::container_of() == nullptr
-                ? model::io::group_remedy() +
-                      " installs it; then sudo adduser $USER haptics, and log in again"
-                : "start the container with --device " + node);
+  EXPECT_EQ(
+      of_root.remedy,
+      hal::container_of() == nullptr
+          ? hal::group_remedy() + " installs it; then sudo adduser $USER haptics, and log in again"
+          : "start the container with --device " + node);
   const Refusal of_group = why_refused(node, kRule, own);
   EXPECT_EQ(of_group.lacking.find("rule"), std::string::npos) << of_group.lacking;
   EXPECT_NE(of_group.lacking.find("group haptics"), std::string::npos);

@@ -18,16 +18,17 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 DIGESTS = ROOT / "tools/pictures.json"
 PAGE = ["host/web/index.html", "host/web/package-lock.json", "host/web/src/"]
 SCENE = "model/scenes/"
+ACCURACY = [f"{SCENE}{name}.accuracy" for name in ("gum", "heart", "liver", "liver_source", "liver_twist", "maintenance", "skin")]
 # A folder is all of its tracked files. Of a scene its meshes are part.
 SHOWN = {
     "host/page.png": [*PAGE, SCENE + "liver.toml"],
     "host/cut.png": [*PAGE, SCENE + "gum.toml"],
     "host/maintenance.png": [*PAGE, *(f"{SCENE}maintenance.{name}" for name in
                                       ("toml", "tracking.toml", "observations.jsonl"))],
-    "tools/chart/chart.png": ["tools/chart/report/chart.gp", "tools/results/peers.json", "tests/data/reference/liver.json",
-                              SCENE + "liver.toml"],
+    "tools/chart/chart.png": ["tools/chart/picture.py", "tools/chart/scenes.py", *ACCURACY,
+                              *(f"tools/results/{name}.json" for name in ("tool", "scenes", "finite_strain", "peers"))],
 }
-COMMENT = {".ts": re.compile(r"^\s*(?://|/?\*).*\n", re.M), ".gp": re.compile(r"^\s*#.*\n", re.M)}
+COMMENT = {".ts": re.compile(r"^\s*(?://|/?\*).*\n", re.M), ".py": re.compile(r"^\s*#.*\n", re.M)}
 
 
 def content(path, data):

@@ -97,7 +97,9 @@ VERSION_AT = {  # each: the version as written there
     "tools/deploy/CHANGELOG.md": r"^## (\S+)",
     "host/web/package.json": r'^  "version": "([^"]+)"',
     "tools/mcap/tact-mcap": r'^VERSION = "([^"]+)"',
-    "tools/plot/tact-plot": r'^VERSION = "([^"]+)"'}
+    "tools/metrics/tact-metrics": r'^VERSION = "([^"]+)"',
+    "tools/plot/tact-plot": r'^VERSION = "([^"]+)"',
+    "tools/trial/tact-trial": r'^VERSION = "([^"]+)"'}
 
 
 def version_breaches(read):
@@ -140,7 +142,9 @@ def blind_rules():
     files = dict.fromkeys(VERSION_AT, "") | {"CMakeLists.txt": "set(TACT_VERSION 1.0.0-rc1)\n"}
     good_files = {"CMakeLists.txt": files["CMakeLists.txt"], ".github/CITATION.cff": 'version: "1.0.0-rc1"',
                   "tools/deploy/CHANGELOG.md": "## 1.0.0-rc1", "host/web/package.json": '  "version": "1.0.0-rc1"',
-                  "tools/mcap/tact-mcap": 'VERSION = "1.0.0-rc1"', "tools/plot/tact-plot": 'VERSION = "1.0.0-rc1"'}
+                  "tools/mcap/tact-mcap": 'VERSION = "1.0.0-rc1"', "tools/plot/tact-plot": 'VERSION = "1.0.0-rc1"',
+                  "tools/metrics/tact-metrics": 'VERSION = "1.0.0-rc1"',
+                  "tools/trial/tact-trial": 'VERSION = "1.0.0-rc1"'}
     cases = {
         "a revision that is unknown": result_breaches(of("bad"), {}, known),
         "a changed tree": result_breaches(of("good-dirty"), {}, known),

@@ -79,11 +79,10 @@ TOOLS = {
     **dict.fromkeys(["jitter", "limits"], ["program", "report"]),
     "sweep": ["program", "report", "ground_truth"],
     "fit": ["program", "report", "ground_truth"],
-    "chart": ["program", "report", "ground_truth"],
-    "plan": ["program", "report", "chart"],
+    "chart": ["program", "ground_truth"],
     "stability": ["program", "report", "printed"],
     "verify": ["program", "printed"],
-    "lab": ["program", "report", "chart", "fit", "ground_truth", "mesh", "plan",
+    "lab": ["program", "report", "chart", "fit", "ground_truth", "mesh",
             "stability", "sweep"],
 }
 # The parts of a room, and what each may include of the others. What is in the room itself, as main.cc, includes
@@ -101,7 +100,6 @@ PARTS = {
     "tools/chart": {
         "measure": [],
         "compare": ["measure"],
-        "report": ["compare"],
     },
     "tools/jitter": {
         "statistics": [],

@@ -95,7 +95,7 @@ class DeviceLoop : public testing::Test {
     EXPECT_EQ(guard.calls(), 0u);
   }
   bool reported(const std::string& part) const {
-    return device->trouble().find(part) != std::string::npos;
+    return device->fault_detail().find(part) != std::string::npos;
   }
 
   hal::registry::OpenDevice device;

@@ -100,11 +100,14 @@ class Viewer : public ::testing::Test {
     if (!protocols_.empty()) request.set(http::field::sec_websocket_protocol, protocols_);
   }
 
+  using Headers = std::vector<std::pair<std::string, std::string>>;
   http::response<http::string_body> get(const std::string& target,
-                                        const std::string& host = "localhost") {
+                                        const std::string& host = "localhost",
+                                        const Headers& headers = {}) {
     tcp::socket socket = connect();
     http::request<http::empty_body> request{http::verb::get, target, 11};
     request.set(http::field::host, host);
+    for (const auto& [name, value] : headers) request.set(name, value);
     show_token(request);
     http::write(socket, request);
     boost::beast::flat_buffer buffer;

@@ -11,6 +11,7 @@
 #include "firmware/pc/pc_files.h"
 #include "model/fault.h"
 #include "model/scene/plan_file.h"
+#include "tests/support/measured_files.h"
 #include "tests/system/tactd_fixture.h"
 
 namespace tact::tests::tactd_test {
@@ -167,10 +168,10 @@ TEST_F(Tactd, ARunOfAnAutomaticLawIsReplayedWithoutThePlan) {
   EXPECT_TRUE(has(unknown, "run tact-lab plan " + kLiver)) << unknown.output;
   const auto scene = tact::model::scene::load_scene(kLiver, {"law=\"auto\""});
   ASSERT_TRUE(scene) << scene.error().message;
-  ASSERT_TRUE(tact::model::scene::write_plan({.sizes = {.law = "rhombus", .table_knots = 33},
-                                              .machine = tact::model::scene::machine_name(),
-                                              .scene_hash = scene->hash},
-                                             *tact::model::scene::plan_path(scene->hash)));
+  tact::tests::write_plan({.sizes = {.law = "rhombus", .table_knots = 33},
+                           .machine = tact::model::scene::machine_name(),
+                           .scene_hash = scene->hash},
+                          *tact::model::scene::plan_path(scene->hash));
   const Outcome run = tactd(kLiver + " --set law=auto --free-run --ticks 900 --record " + log);
   EXPECT_EQ(run.status, 0) << run.output;
   EXPECT_TRUE(has(run, "--set law=rhombus --set table_knots=33")) << run.output;

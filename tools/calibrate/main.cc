@@ -84,8 +84,8 @@ bool agrees(FalconDevice& device, const std::string& question) {
 }
 
 Error failed(const FalconDevice& device, Fault fault) {
-  const std::string trouble = device.trouble();
-  return Error{trouble.empty() ? tact::model::describe(fault).cause : trouble};
+  const std::string detail = device.fault_detail();
+  return Error{detail.empty() ? tact::model::describe(fault).cause : detail};
 }
 
 Result<FalconBalance> balance(FalconDevice& device, double mass_kg) {
@@ -108,7 +108,7 @@ Result<FalconBalance> balance(FalconDevice& device, double mass_kg) {
 }
 
 std::optional<Error> home(FalconDevice& device) {
-  fmt::print("{}\n", device.trouble());
+  fmt::print("{}\n", device.fault_detail());
   Sample sample;
   const Fault fault = run(device, sample, [&](double&) { return !sample.fresh; });
   if (fault != Fault::kNone) return failed(device, fault);
@@ -125,12 +125,12 @@ Result<std::vector<FalconBalance>> measure(FalconDevice& device, const Options& 
               fmt::format("pose {} of {}: rest the grip on its support, hang {:.0f} g on it, hands "
                           "off. It will lift by 2 mm. Ready (yes)?",
                           pose, o.poses, 1000.0 * mass_kg)))
-        return Error{device.trouble().empty() ? "not agreed to" : device.trouble()};
+        return Error{device.fault_detail().empty() ? "not agreed to" : device.fault_detail()};
       const auto sample = balance(device, mass_kg);
       if (program::is_interrupted()) return program::interruption();
       if (!sample) {
         fmt::print("left out: {}\n", sample.error().message);
-        if (device.trouble().empty()) continue;
+        if (device.fault_detail().empty()) continue;
         return sample.error();
       }
       fmt::print("balanced with the words {:.0f} {:.0f} {:.0f}\n", sample->words[0],

@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// tact-lab chart: speed against accuracy of every law of a scene, and of other methods.
+// tact-lab chart: speed against accuracy of every law of a scene. Measured here; compared, written
+// and drawn by chart/chart.py.
 #include "tools/chart/compare/chart.h"
 
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <cstdio>
 
 #include "firmware/pc/environment.h"
-#include "model/io/file_writer.h"
 #include "model/io/input_file.h"
+#include "model/io/json.h"
 #include "model/reader/scene_text.h"
-#include "tools/chart/report/report.h"
-#include "tools/chart/report/tool_report.h"
+#include "model/scene/accuracy_file.h"
 #include "tools/lab/commands.h"
+#include "tools/lab/script.h"
+#include "tools/report/just_noticeable.h"
 
 namespace tact::tools::lab {
 namespace {
@@ -23,10 +21,11 @@ using namespace chart;
 using model::Error;
 using model::Result;
 using model::scene::Scene;
+using nlohmann::json;
 
 struct Options {
   program::SceneArguments scene;
-  std::string out, reference, tool_reference, accuracy, peers;
+  std::string out, reference, tool_reference, accuracy, peers, scenes;
   ChartOptions chart;
   bool quick = false, no_plots = false, json = false;
 };
@@ -53,7 +52,11 @@ void add_options(CLI::App& app, Options& o) {
          "show these rows of a chart.json, measured before, beside the laws; the liver's, in "
          "the sources: peers.json among its results")
       ->needs("--reference");
-  app.add_flag("--no-pictures", o.no_plots, "tables alone; needs no gnuplot");
+  app.add_option("--scenes", o.scenes,
+                 "draw the shipped scenes, too: scenes.json among the results in the sources; "
+                 "finite_strain.json beside it judges those that it has")
+      ->needs("--reference");
+  app.add_flag("--no-pictures", o.no_plots, "tables alone; needs no matplotlib");
   app.add_flag("--json", o.json, "print the table as JSON");
 }
 
@@ -69,100 +72,33 @@ std::string hash_of_files(std::initializer_list<std::string> paths) {
   return hash.hex();
 }
 
-Provenance provenance_of(const Scene& scene, const Options& o) {
-  return {.scene_hash = scene.hash,
-          .reference_hash = hash_of_files({o.reference, o.tool_reference}),
-          .revision = firmware::pc::read_environment({}).git_revision,
-          .machine = model::scene::machine_name()};
+json job_of(const program::Program& program, const Options& o, const Scene& scene) {
+  return {{"version", kChartVersion},
+          {"out", o.out},
+          {"json", o.json},
+          {"draw", !o.no_plots},
+          {"accuracy", o.accuracy},
+          {"scenes", o.scenes},
+          {"command", program.command()},
+          {"scene", {{"name", scene.name}, {"path", scene.path}, {"law", scene.law}}},
+          {"noticeable_ratio", report::kJustNoticeable_ratio},
+          {"provenance",
+           {{"scene", scene.hash},
+            {"reference", hash_of_files({o.reference, o.tool_reference})},
+            {"revision", firmware::pc::read_environment({}).git_revision},
+            {"machine", model::scene::machine_name()}}}};
 }
 
-/// Evaluates the whole tool, law by law, and writes tool.csv and tool.json.
-Result<int> check_whole_tool(const program::Program& program, const Options& o,
-                             const Scene& scene) {
-  const auto reference = ground_truth::read_tool_reference(o.tool_reference);
-  if (!reference) return reference.error();
-  std::vector<ToolRow> rows;
-  for (const std::string& law : wanted_laws(scene, o.chart.request)) {
-    auto row = check_tool(scene, law, *reference, o.chart.timing);
-    if (!row) return row.error();
-    rows.push_back(std::move(*row));
-  }
-  if (rows.empty()) return Error{"none of the wanted laws is described; leave out --laws"};
-  const Provenance provenance = provenance_of(scene, o);
-  const std::string json = tool_json(rows, *reference, program.command(), provenance);
-  if (auto error =
-          model::io::write_file(o.out + "/tool.csv", csv_head(program.command(), provenance) +
-                                                         tool_table(rows, *reference).to_csv()))
-    return *error;
-  if (auto error = model::io::write_file(o.out + "/tool.json", json)) return *error;
-  if (!o.accuracy.empty()) {
-    const auto accuracy = accuracy_of(scene, rows, *reference);
-    if (!accuracy) return accuracy.error();
-    if (auto error = model::io::write_file(o.accuracy, model::scene::accuracy_text(*accuracy)))
-      return *error;
-  }
-  fmt::print("{}", o.json ? json : tool_text(rows, *reference));
-  return 0;
-}
-
-Result<report::Table> table_of(const Options& o, const Scene& scene,
-                               const ground_truth::ReferenceData& reference,
-                               const Provenance& provenance) {
-  ChartOptions options = o.chart;
-  std::optional<ground_truth::ToolReference> whole_tool;
-  if (!o.tool_reference.empty()) {
-    auto read = ground_truth::read_tool_reference(o.tool_reference);
-    if (!read) return read.error();
-    whole_tool = std::move(*read);
-    options.tool_reference = &*whole_tool;
-  }
-  const auto rows = measure_chart(scene, reference, options);
-  if (!rows) return rows.error();
-  // One message instead of a table of failures.
-  if (std::ranges::none_of(*rows, &std::string::empty, &ChartRow::failure))
-    return Error{rows->front().failure};
-  report::Table table("chart");
-  for (const ChartRow& row : *rows) table.add(table_row(row, provenance));
-  return table;
-}
-
-/// Measures and writes it down; the pictures come last.
-Result<int> make_chart(const program::Program& program, const Options& o, const Scene& scene) {
-  const auto reference = ground_truth::read_reference(o.reference);
-  if (!reference) return reference.error();
-  const Provenance provenance = provenance_of(scene, o);
-  const auto add_peers = [&o](const report::Table& laws) -> Result<report::Table> {
-    if (o.peers.empty()) return laws;
-    return with_peers(laws, o.peers, hash_of_files({o.reference}));
-  };
-  // Before the work, which a file that does not fit would make vain.
-  if (const auto peers = add_peers(report::Table("chart")); !peers) return peers.error();
-  auto table = table_of(o, scene, *reference, provenance);
-  if (!table) return table.error();
-  table = add_peers(*table);
-  if (!table) return table.error();
-  auto files = write_chart(*table, program.command(), provenance, o.out);
-  if (!files) return files.error();
-  if (!o.no_plots) {
-    const std::string title =
-        fmt::format("{}: speed against accuracy, {}", scene.name, provenance.machine);
-    const auto plots = draw_chart(*table, title, o.out);
-    if (!plots) return program.fail(plots.error(), "the tables are written, the pictures are not");
-    files->insert(files->end(), plots->begin(), plots->end());
-  }
-  if (o.json) {
-    fmt::print("{}", chart_json(*table, program.command(), provenance));
-  } else {
-    fmt::print("{}", chart_text(*table));
-    for (const std::string& file : *files) fmt::print("{}\n", file);
-  }
-  // tact's own promise: where a peer beats it, the check fails.
-  const auto ahead = peers_ahead(*table);
-  for (const std::size_t i : ahead)
-    fmt::print(stderr,
-               "tact-lab chart: the peer {} {} is both faster and nearer than tact's front\n",
-               word(table->rows()[i], "family"), word(table->rows()[i], "size"));
-  return ahead.empty() ? 0 : 1;
+/// What tactd knows a law by again: its forces, not the file.
+std::optional<Error> add_hashes(json& row, const Scene& scene, const std::string& law_name) {
+  const auto law = model::scene::make_tissue_law(scene, law_name);
+  if (!law) return law.error();
+  const auto hash = model::scene::hash_of_linear_forces(scene, law_name);
+  if (!hash) return hash.error();
+  row["law_hash"] = *hash;
+  row["large_strain_off"] =
+      scene.compliance.large_strain && ((*law)->organ() != nullptr || law_name == "compliance");
+  return std::nullopt;
 }
 
 Result<int> run(const program::Program& program, Options& o) {
@@ -173,8 +109,34 @@ Result<int> run(const program::Program& program, Options& o) {
     return Error{"no reference given; --reference or --tool-reference is needed"};
   const auto scene = o.scene.load();
   if (!scene) return scene.error();
-  return o.reference.empty() ? check_whole_tool(program, o, *scene)
-                             : make_chart(program, o, *scene);
+  json job = job_of(program, o, *scene);
+  if (!o.tool_reference.empty()) {
+    auto read = ground_truth::read_tool_reference(o.tool_reference);
+    if (!read) return read.error();
+    job["places"] = to_json(*read);
+    o.chart.tool_reference = std::move(*read);
+  }
+  Result<std::vector<Measured>> rows = std::vector<Measured>{};
+  if (o.reference.empty()) {
+    rows = measure_tool(*scene, o.chart);
+  } else {
+    const auto reference = ground_truth::read_reference(o.reference);
+    if (!reference) return reference.error();
+    // Before the work, which a file that does not fit would make vain.
+    if (!o.scenes.empty())
+      if (const auto scenes = model::io::read_json(o.scenes); !scenes) return scenes.error();
+    auto peers = peers_of(o.peers, hash_of_files({o.reference}));
+    if (!peers) return peers.error();
+    job["peers"] = std::move(*peers);
+    rows = measure_chart(*scene, *reference, o.chart);
+  }
+  if (!rows) return rows.error();
+  for (const Measured& row : *rows) {
+    json& out = job["rows"].emplace_back(to_json(row));
+    if (o.accuracy.empty() || !row.failure.empty()) continue;
+    if (auto error = add_hashes(out, *scene, row.variant.sizes.law)) return *error;
+  }
+  return become("chart/chart.py", job);
 }
 
 }  // namespace
@@ -184,10 +146,11 @@ void add_chart(program::Program& lab) {
       "chart", "speed against accuracy of every law of a scene, and of other methods",
       R"(Measures every law of the scene in several sizes: force and shape error against the
 reference, time and memory of a tick. --peers shows beside them what was measured before:
-finite elements solved every tick, a mesh of springs, Bullet's soft body. Errors are ratios
-of the peak force and of the depth, times us, memory bytes. A reference is linear elastic,
-so relaxation is off for the errors and on for the times, and compliance.large_strain is
-off. The pictures need gnuplot. It fails a check when a peer is ahead of tact's front.
+finite elements solved every tick, a mesh of springs, Bullet's soft body; --scenes the
+shipped scenes. Errors are ratios of the peak force, of the local force and of the depth,
+times us, memory bytes. A reference is linear elastic, so relaxation is off for the errors
+and on for the times, and compliance.large_strain is off. The pictures need matplotlib.
+It fails a check when a peer is ahead of tact's front.
 Example: tact-lab chart model/scenes/liver.toml --reference reference.json --out chart)",
       add_options, run);
 }

@@ -62,9 +62,9 @@ LimitsReport begin_report(const model::scene::Scene& scene, const hal::DeviceInf
 /// What the guards found: it has no case of its own.
 void report_fault(Fault found, const hal::Device& device, const hal::SafetyLines& lines) {
   const model::FaultEntry& fault = model::describe(found);
-  const std::string trouble = firmware::console::trouble_behind(found, device, lines);
+  const std::string detail = firmware::console::fault_detail_of(found, device, lines);
   fmt::print(stderr, "tact-limits: the plan ended with {}: {}{}{}; {}\n", fault.name, fault.cause,
-             trouble.empty() ? "" : ": ", trouble, fault.remedy);
+             detail.empty() ? "" : ": ", detail, fault.remedy);
 }
 
 /// Names the cases of the whole plan that are not to be played, as they were not asked for.
@@ -176,8 +176,9 @@ const char* why_left_out(const Case& c, const hal::LinesSettings& lines) {
   // A person cannot be asked to pull a device by so many m/s in a given tick.
   if (c.hand != HandMove::kStill || c.grip == Grip::kJaws) return kNeedsHand;
   const bool has_estop = lines.wired() && (lines.estop_a >= 0 || lines.estop_b >= 0);
-  if (c.trouble == Trouble::kEmergencyStop && !has_estop) return "no emergency stop is wired";
-  if (c.trouble == Trouble::kDeadMan && !(lines.wired() && lines.dead_man >= 0))
+  if (c.injected == InjectedFault::kEmergencyStop && !has_estop)
+    return "no emergency stop is wired";
+  if (c.injected == InjectedFault::kDeadMan && !(lines.wired() && lines.dead_man >= 0))
     return "no dead-man switch is wired";
   return nullptr;
 }

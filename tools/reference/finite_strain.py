@@ -14,7 +14,7 @@ import fenicsx
 import surface
 from body import gmsh_version, make_body
 from run import Failure
-from tool_press import ToolCase
+from tool_press import Press, ToolCase
 
 # A level: edge of an element under the tool, of the radius; growth with distance; how far the far surface may be off, m.
 LEVELS = [(0.6, 0.72, 3e-3), (0.42, 0.6, 1.5e-3), (0.3, 0.4, 0.8e-3), (0.21, 0.33, 0.4e-3), (0.15, 0.28, 0.2e-3)]
@@ -23,11 +23,7 @@ CONTACT_REACH = 2.0  # of R around each sphere's axis: faces that CalculiX lets 
 
 
 @dataclass(frozen=True)
-class FinitePress:
-    direction: tuple[float, ...]  # (3,), of the way, unit, into the tissue
-    centre_m: tuple[tuple[float, ...], ...]  # (s, 3), of the spheres at depth 0, in the mesh's own frame
-    radius_m: tuple[float, ...]  # (s,)
-    depths_m: tuple[float, ...]  # above 0, rising
+class FinitePress(Press):
     solver: str  # FEniCSx or CalculiX
     level: int = 1
 

@@ -200,17 +200,21 @@ def surface_around(organ, place):
     return tuple(np.flatnonzero(near & (organ.vertex_normal @ place.direction < -surface.FACING)).tolist())
 
 
+def tool_at(places, place, depths_m):
+    """The fields of a Press there."""
+    return (tuple(place.direction.tolist()), tuple(map(tuple, places.centres_m(place).tolist())), tuple(places.radius_m.tolist()),
+            tuple(depths_m))
+
+
 def presses_of(places, tool_places, depths_m, level):
     """Every solve, each once: all places at the level, then one level coarser."""
-    return [ToolPress(tuple(place.direction.tolist()), tuple(map(tuple, places.centres_m(place).tolist())),
-                      tuple(places.radius_m.tolist()), tuple(depths_m), place.skin if finer else (), level - (not finer))
+    return [ToolPress(*tool_at(places, place, depths_m), place.skin if finer else (), level - (not finer))
             for finer in (True, False) if level - (not finer) >= ROUGH for place in tool_places]
 
 
 def finite_presses_of(places, tool_places, depths_m, level, solver):
     """Every solve at finite strain, at one level: minutes each."""
-    return [FinitePress(tuple(place.direction.tolist()), tuple(map(tuple, places.centres_m(place).tolist())),
-                        tuple(places.radius_m.tolist()), tuple(depths_m), solver, level) for place in tool_places]
+    return [FinitePress(*tool_at(places, place, depths_m), solver, level) for place in tool_places]
 
 
 def assemble(tool_places, solved):

@@ -38,11 +38,16 @@ WEIGHT = np.array([0.225, *[0.132394152788506] * 3, *[0.125939180544827] * 3])
 
 
 @dataclass(frozen=True)
-class ToolPress:
+class Press:
+    """The way and the spheres of a tool."""
     direction: tuple[float, ...]  # (3,), of the way, unit, into the tissue
     centre_m: tuple[tuple[float, ...], ...]  # (s, 3), of the spheres at depth 0, in the mesh's own frame
     radius_m: tuple[float, ...]  # (s,)
     depths_m: tuple[float, ...]  # above 0, rising
+
+
+@dataclass(frozen=True)
+class ToolPress(Press):
     skin: tuple[int, ...] = ()  # vertices of the organ's surface whose way is wanted
     level: int = 2
 

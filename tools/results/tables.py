@@ -4,7 +4,13 @@
 Each function takes load(name), the values of tools/results/NAME.json, and gives the lines. A goal
 that was not met says so.
 """
+import pathlib
+import sys
 import textwrap
+
+TOOLS = pathlib.Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(TOOLS / "chart"))
+import scenes as of_scenes  # noqa: E402
 
 
 def judged(value, goal, text):
@@ -133,6 +139,22 @@ def strains(load):
             yield f"| {words} | {PLACES[place]} | {' | '.join(f'{found[name][place][mm]:+.1f} %' for mm in depths)} |"
 
 
+def scene_laws(load):
+    """The largest local error from 1 mm on, of every law of each scene with committed figures; the law that it ships is bold."""
+    found = of_scenes.errors_of(TOOLS.parent / "model/scenes", load("finite_strain"))
+    shipped = load("scenes")
+    laws = sorted({law for of_scene in found.values() for law in of_scene})
+    yield f"| scene | {' | '.join(f'`{law}`' for law in laws)} |"
+    yield "|---|" + "---|" * len(laws)
+    for scene in shipped:
+        cells = []
+        for law in laws:
+            error = found[scene].get(law)
+            text = off(error.percent) + (" (finite strain)" if error.reference == of_scenes.FINITE else "") if error else ""
+            cells.append(f"**{text}**" if law == shipped[scene]["law"] else text)
+        yield f"| `{scene}` | {' | '.join(cells)} |"
+
+
 def known_errors(load):
     """How far the force of each scene's tool is off at its worst place and depth, in the words of the front page."""
     met, missed = [], []
@@ -176,4 +198,4 @@ def silicone(load):
                    f"{judged(worst, 7, f'{worst:.2g} %')} |")
 
 
-TABLES = {f.__name__: f for f in (measured, tick_size, known_errors, scenes, finite_strain, strains, tool, silicone)}
+TABLES = {f.__name__: f for f in (measured, tick_size, known_errors, scenes, scene_laws, finite_strain, strains, tool, silicone)}

@@ -3,46 +3,47 @@
 
 import "./style/index.css";
 import { Connection } from "./link/connection";
-import { describe_past_state, describe_state } from "./panels/faults";
-import { dated_name, save } from "./controls/file_names";
 import { HandControl } from "./controls/hand_control";
 import type { Headset } from "./operator/headset";
 import { by_id } from "./document/dom";
 import { Hud } from "./panels/hud";
+import { move_by_key } from "./controls/key_moves";
 import { bind_keys } from "./controls/keys";
 import { take_token } from "./link/link";
 import { News } from "./link/news";
 import { Operator } from "./operator/operator";
 import { count_boundary_edges } from "./organ/boundary";
+import { Pairs } from "./operator/pairs";
 import { OrganView } from "./organ/organ_view";
 import { Outside } from "./scene/outside";
 import { Plots } from "./panels/plots";
-import { length_of, time_s_of } from "./link/protocol";
+import { time_s_of } from "./link/protocol";
 import type { FigureFrame, Frame, Mesh, Scene, Status, Vec } from "./link/protocol";
 import { close_panel, toggle_panel } from "./controls/open_panel";
 import { Recorder } from "./controls/recorder";
+import { save_picture } from "./controls/save_picture";
 import { ScenePicker } from "./controls/scene_picker";
 import { Stage } from "./scene/stage";
 import { Timeline } from "./controls/timeline";
 import { ToolView } from "./scene/tool_view";
+import { Troubles } from "./panels/troubles";
 
+const troubles = new Troubles(
+  (text) => connection.report(text),
+  (failing) => hud.fails(failing),
+);
+troubles.listen();
 const token = take_token();
 const canvas = by_id<HTMLCanvasElement>("view");
 const hud = new Hud();
-const plots = new Plots(by_id);
+const plots = new Plots(by_id, (path) => connection.fetch(path));
 const recorder = new Recorder((path) => connection.fetch(path));
 const news = new News();
-// Of a frame for its figure, in pictures, or in frames that have none: no clock, as a page that stood still has both in
-// its queue.
-const kLongestWait = 6;
+const pairs = new Pairs();
 
 let scene: Scene | null = null;
 let organ: OrganView | null = null;
 let tool: ToolView | null = null;
-let newest: Frame | null = null; // not drawn yet
-let waiting: Frame | null = null; // its figure is not here yet: a hand and its tool are drawn together
-let pictures_waited = 0;
-let frames_alone = 0; // since the last figure
 let shown: Frame | null = null;
 let status: Status | null = null;
 let paused = false;
@@ -56,10 +57,12 @@ let headset: Headset | null = null;
 const connection = new Connection(token, {
   status: (now) => {
     status = now;
+    void troubles.flush();
     hud.link(now);
     operator.status(now);
     timeline.status(now.replay ?? null);
     plots.zero_s = now.replay?.start_s ?? 0;
+    plots.replay_Hz = now.replay ? (scene?.rate_Hz ?? 0) : 0;
     report_hand();
     void picker.status(now.picker ?? null);
     if (now.replay) paused = false;
@@ -71,17 +74,21 @@ const connection = new Connection(token, {
   scene: take_scene,
   frame: take_frame,
   figure: take_figure,
-  server_gone: (refused) => {
+  server_gone: (why) => {
     status = null;
     timeline.status(null);
     void picker.status(null);
     report_hand();
-    hud.link(null, refused);
+    hud.link(null, why);
     hud.tracking(null); // what a chip said last is not known any more
     recorder.stop();
   },
 });
-const stage = new Stage(canvas, draw);
+const stage = new Stage(canvas, {
+  draw: (now_ms) => void troubles.guard("page", () => draw(now_ms)),
+  drawn: () => hud.drawn(),
+  missing: (words, remedy) => (words ? troubles.report("picture", words, remedy) : troubles.over("picture")),
+});
 const operator = new Operator(stage, hud);
 const outside = new Outside(canvas, stage.camera);
 const timeline = new Timeline((request) => connection.steer(request));
@@ -112,7 +119,7 @@ function take_scene(next: Scene, organ_mesh: Mesh, tool_mesh: Mesh): void {
     organ.dispose();
     tool.dispose();
   }
-  waiting = null;
+  pairs.clear();
   freeze(false); // what was frozen is gone
   scene = next;
   organ = new OrganView(organ_mesh, next);
@@ -124,6 +131,7 @@ function take_scene(next: Scene, organ_mesh: Mesh, tool_mesh: Mesh): void {
   stage.set_home(organ.bounds, floor_m - 0.004);
   hud.scene(next, count_boundary_edges(organ_mesh.triangle));
   plots.spheres = next.spheres.length;
+  if (status?.replay) plots.replay_Hz = next.rate_Hz;
   recorder.scene = next.scene_name;
   report_hand();
 }
@@ -133,36 +141,25 @@ function take_frame(frame: Frame): void {
   news.frame(performance.now());
   timeline.frame(time_s_of(frame));
   if (paused) return;
-  if (!waiting) pictures_waited = 0;
-  const waits = operator.there && ++frames_alone <= kLongestWait;
-  waiting = waits ? frame : null;
-  if (!waits) newest = frame;
+  pairs.frame(frame, operator.there);
   plots.add(frame);
 }
 
 function take_figure(next: FigureFrame): void {
   if (paused) return;
   operator.take(next);
-  frames_alone = 0;
-  if (waiting?.tick !== next.tick) return;
-  newest = waiting;
-  waiting = null;
+  pairs.figure(next.tick);
 }
 
 function draw(now_ms: number): void {
-  if (waiting && ++pictures_waited > kLongestWait) {
-    newest = waiting; // without its figure, then: no tick is kept from a person's eyes
-    waiting = null;
-  }
-  if (organ && tool && newest) {
+  const next = organ && tool ? pairs.take() : null;
+  if (organ && next) {
     if (first_drawn_ms === null) void look_for_headset();
     first_drawn_ms ??= performance.timeOrigin + performance.now();
-    shown = newest;
-    newest = null;
-    organ.show(shown.contacts, shown.patch);
-    tool.show(shown);
+    shown = next;
     hand.frame(shown, now_ms);
     hud.frame(shown, now_ms);
+    troubles.guard("picture", () => show(next));
     most_ever_m = Math.max(most_ever_m, organ.deformed.most_m);
   }
   hud.draw(now_ms, stage.fps);
@@ -179,27 +176,18 @@ function draw(now_ms: number): void {
   headset?.report(now_ms, () => hud.said(paused));
 }
 
-/** After the first picture, so that it waits for nothing. */
-async function look_for_headset(): Promise<void> {
-  if (!navigator.xr) return;
-  const { Headset } = await import("./operator/headset");
-  headset = new Headset(stage, draw);
-  await headset.offer();
+function show(frame: Frame): void {
+  organ?.show(frame.contacts, frame.patch);
+  tool?.show(frame);
+  stage.keep_in_view(frame.tool_position_m);
 }
 
-/** As a file, with what it is of. */
-async function save_picture(): Promise<void> {
-  if (!shown || !scene) return;
-  const { name, words } = (status?.link === "replay" ? describe_past_state : describe_state)(shown.state, shown.fault);
-  const from = status?.link === "replay" ? `, ${status.detail}` : "";
-  const blob = await stage.picture([
-    `${scene.scene_name}${from} · ${scene.law_name} · ${scene.device_name}`,
-    `${(time_s_of(shown) - plots.zero_s).toFixed(2)} s · force ${length_of(shown.force_N).toFixed(2)} N · ${name}: ${words}`,
-  ]);
-  if (!blob) return;
-  const url = URL.createObjectURL(blob);
-  save(url, dated_name(scene.scene_name, "png"));
-  setTimeout(() => URL.revokeObjectURL(url), 60_000);
+/** After the first picture, so that it waits for nothing. */
+async function look_for_headset(): Promise<void> {
+  if (!navigator.xr || !stage.renderer) return;
+  const { Headset } = await import("./operator/headset");
+  headset = new Headset(stage, stage.renderer, draw);
+  await headset.offer();
 }
 
 function freeze(on: boolean): void {
@@ -242,14 +230,21 @@ const actions: Record<string, () => unknown> = {
   d: () => hand.twist(kTwist_rad),
   grip: () => hand.grip(1),
   "let go": () => hand.grip(0),
-  s: () => void save_picture(),
+  s: () => shown && scene && void save_picture(stage, scene, status, shown, plots.zero_s),
   l: () => picker.there && toggle_panel("picker"),
   h: () => toggle_panel("keys"),
   Escape: close_panel,
 };
 
-bind_keys((key, shift) => timeline.key(key, shift), actions);
+function move_by_keys(key: string, shift: boolean): boolean {
+  const moved = move_by_key(key, shift, stage, hand);
+  if (moved) operator.view_chosen = true;
+  return moved;
+}
 
+bind_keys((key, shift) => timeline.key(key, shift), move_by_keys, actions);
+
+stage.start();
 stage.controls.addEventListener("start", () => (operator.view_chosen = true));
 
 /** Read-only numbers for tests and for curious people in the console: a table, one a line. */
@@ -264,6 +259,7 @@ const numbers = {
   get largest_frame_bytes() { return connection.largest_frame_bytes; },
   get moved_vertices() { return organ?.deformed.moved ?? 0; },
   get cut_triangles() { return organ?.cut_triangles ?? 0; },
+  get cut_gap_m() { return organ?.cut_gap_m ?? 0; },
   get most_m() { return organ?.deformed.most_m ?? 0; },
   get most_ever_m() { return most_ever_m; },
   get tool_m() { return shown ? [...shown.tool_position_m] : null; },
@@ -273,6 +269,7 @@ const numbers = {
   get tick() { return shown?.tick ?? 0; },
   get state() { return shown?.state ?? 0; },
   get paused() { return paused; },
+  get plotted() { return plots.drawn; },
   get first_drawn_ms() { return first_drawn_ms; },
   get time_s() { return shown ? time_s_of(shown) : 0; },
   get silence_s() { return silence_s; },
@@ -287,7 +284,7 @@ const numbers = {
   get tracking_words() { return operator.shown?.words ?? ""; },
   get largest_figure_bytes() { return connection.largest_figure_bytes; },
   get camera_m() { return stage.camera.position.toArray(); },
-  get camera() { return { projection: stage.camera.projectionMatrix.toArray(), view: stage.camera.matrixWorldInverse.toArray() }; },
+  get camera() { stage.camera.updateMatrixWorld(); return { projection: stage.camera.projectionMatrix.toArray(), view: stage.camera.matrixWorldInverse.toArray() }; },
   get organ_m() { return organ?.drawn_m ?? null; },
   get headset() { return headset?.numbers ?? null; },
 };

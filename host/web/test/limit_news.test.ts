@@ -8,7 +8,7 @@ import type { Frame, Contact } from "../src/link/protocol";
 import { LimitNews } from "../src/panels/limit_news";
 
 function frame(given: Partial<Frame>): Frame {
-  return { state: 2, fault: 0, limit: 0, contact_losses: 0, contacts: [], ...given } as Frame;
+  return { state: 2, time_ns: 0, fault: 0, limit: 0, contact_losses: 0, contacts: [], ...given } as Frame;
 }
 
 const inside = [{ contact: 0, state: 3 } as Contact];
@@ -67,4 +67,16 @@ test("a count that falls, as in a replay that goes back, is no loss", () => {
   news.frame(frame({ contact_losses: 5 }), 1000);
   news.frame(frame({ contact_losses: 0 }), 2000);
   assert.equal(news.shown(2000), 0);
+});
+
+test("a sought recording forgets the limits of another time", () => {
+  const shown_after = (seconds: number, sought: boolean): number => {
+    const news = new LimitNews();
+    news.frame(frame({ time_ns: 5e9, limit: 7, contact_losses: 1 }), 1000, sought);
+    news.frame(frame({ time_ns: 5e9 + 1e9 * seconds, contact_losses: 2 }), 1016, sought);
+    return news.shown(1016);
+  };
+  assert.equal(shown_after(0.02, true), 7, "played on");
+  for (const seconds of [-3, 3]) assert.equal(shown_after(seconds, true), 0, `sought by ${seconds} s`);
+  assert.equal(shown_after(3, false), 7, "a live run with a gap");
 });

@@ -11,7 +11,7 @@ namespace tact::firmware::console::operator_view_test {
 class WordyDevice final : public PuppetDevice {
  public:
   using PuppetDevice::PuppetDevice;
-  std::string trouble() const override { return words; }
+  std::string fault_detail() const override { return words; }
   std::string words;
 };
 class WordyLines final : public hal::SafetyLines {
@@ -21,7 +21,7 @@ class WordyLines final : public hal::SafetyLines {
   bool enabled() const RT_SAFE override { return true; }
   void scope(bool) RT_SAFE override {}
   void stop() override {}
-  std::string trouble() const override { return "channel B sticks"; }
+  std::string fault_detail() const override { return "channel B sticks"; }
   std::string notice() const override { return words; }
   std::string words;
 };

@@ -8,6 +8,8 @@
 
 #include <array>
 #include <chrono>
+#include <filesystem>
+#include <fstream>
 #include <string>
 #include <thread>
 
@@ -19,6 +21,8 @@ namespace tact::firmware::run::law_updater_test {
 using Event = LawUpdater::Event;
 using State = LawUpdater::State;
 
+constexpr auto kPause = std::chrono::milliseconds(1);
+constexpr int kMaxTries = 60'000;  // a minute
 constexpr const char* kSofter = "rhombus.normal_stiffness_N_per_m=140";
 
 TEST(LawUpdaterState, EachEventHasOneSuccessorOfEachState) {
@@ -76,12 +80,41 @@ class LawUpdaterTest : public testing::Test {
   }
   /// Polls until the thread has prepared the tissue, or could not; the report of the last poll.
   std::string poll_until_prepared() {
+    const auto is_preparing = [this] {
+      return updater->state() == State::kPreparing || updater->state() == State::kReplacing;
+    };
     std::optional<std::string> report;
-    while (updater->state() == State::kPreparing || updater->state() == State::kReplacing) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    for (int i = 0; i < kMaxTries && is_preparing(); ++i) {
+      std::this_thread::sleep_for(kPause);
       report = updater->poll();
     }
+    EXPECT_FALSE(is_preparing()) << "the thread has prepared nothing within a minute";
     return report.value_or("");
+  }
+  /// Times that the updater's thread has waited so far; 0 while it computes.
+  static long waits_of_thread() {
+    for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
+      const std::string status = text_of(task.path() / "status");
+      if (!status.starts_with("Name:\ttact-law\n")) continue;
+      const std::size_t count = status.find("\nvoluntary_ctxt_switches:\t");
+      return status.find("\nState:\tS") != std::string::npos ? std::stol(status.substr(count + 26))
+                                                             : 0;
+    }
+    return 0;
+  }
+  static std::string text_of(const std::filesystem::path& file) {
+    std::ifstream in(file);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  /// A request whose tissue the thread has prepared, before any poll.
+  void request_and_prepare(Client& of, const std::string& set) {
+    for (int i = 0; i < kMaxTries && waits_of_thread() == 0; ++i)
+      std::this_thread::sleep_for(kPause);
+    const long before = waits_of_thread();
+    EXPECT_FALSE(updater->request(of.request(), set));
+    for (int i = 0; i < kMaxTries && waits_of_thread() <= before; ++i)
+      std::this_thread::sleep_for(kPause);
+    ASSERT_GT(waits_of_thread(), before);
   }
   std::string poll() { return updater->poll().value_or(""); }
   /// In contact, with an offer whose client has its answer.
@@ -89,7 +122,7 @@ class LawUpdaterTest : public testing::Test {
     step_until_clear(false);
     EXPECT_FALSE(updater->request(first.request(), kSofter));
     poll_until_prepared();
-    while (updater->state() == State::kOffered) poll();
+    for (int i = 0; i < 5; ++i) poll();  // law_updater.cc: kMaxPolls
     ASSERT_EQ(updater->state(), State::kDeferred);
   }
 
@@ -136,14 +169,12 @@ TEST_F(LawUpdaterTest, ARequestWhileOfferedIsRefused) {
   EXPECT_EQ(poll(), std::string(kSofter) + ": set") << "the first request is not disturbed";
 }
 
-TEST_F(LawUpdaterTest, AnOlderOfferThatIsUsedIsReportedWhileItIsReplaced) {
+TEST_F(LawUpdaterTest, AnOlderOfferIsReportedAsUsedWhenTheNewerIsPrepared) {
   defer(client);
-  EXPECT_FALSE(updater->request(second.request(), "rhombus.normal_stiffness_N_per_m=130"));
+  request_and_prepare(second, "rhombus.normal_stiffness_N_per_m=130");
   EXPECT_EQ(updater->state(), State::kReplacing);
   step_until_clear(true);
   step();
-  // Whether the newer tissue is ready or not: with a pause, it mostly is.
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
   EXPECT_EQ(poll(), std::string(kSofter) + ": set");
   poll_until_prepared();
   EXPECT_EQ(updater->state(), State::kOffered);

@@ -112,8 +112,9 @@ TEST(CanBus, APeerThatIsGoneIsABusThatIsDown) {
   b.bus->push(frame(1));
   b.bus->send();
   EXPECT_EQ(b.bus->fault(), Fault::kBusDown);
-  EXPECT_NE(can_bus_trouble(b.bus->cause(), "can3").find("can3: Connection"), std::string::npos)
-      << can_bus_trouble(b.bus->cause(), "can3");
+  EXPECT_NE(can_bus_fault_detail(b.bus->cause(), "can3").find("can3: Connection"),
+            std::string::npos)
+      << can_bus_fault_detail(b.bus->cause(), "can3");
 }
 
 TEST(CanBus, WhatIsNoFrameIsCountedAndDropped) {

@@ -158,7 +158,7 @@ TEST(CanDelta, AnglesThatCannotBeLoseTheHomingAndTouchNothing) {
     const auto lost = delta.measure(turns_for(theta, settings), 0, tool);
     ASSERT_TRUE(lost);
     EXPECT_EQ(lost->fault, Fault::kHomingLost);
-    EXPECT_FALSE(homing_trouble(*lost, settings.of<DeltaSettings>()).empty());
+    EXPECT_FALSE(homing_fault_detail(*lost, settings.of<DeltaSettings>()).empty());
     EXPECT_TRUE(delta.check_home(turns_for(theta, settings)));
   }
   EXPECT_EQ(tool.position_m, (Vec3{1.0, 2.0, 3.0}));

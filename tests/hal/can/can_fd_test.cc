@@ -125,7 +125,7 @@ TEST(CanFdBus, RemediesNameASetUpOfCanFd) {
   Bus b;
   b.wire.say_error(0x080, 0);
   b.bus->receive();
-  EXPECT_NE(silent_bus_trouble(*b.bus, "can0").find("dbitrate 5000000 sample-point 0.666"),
+  EXPECT_NE(silent_bus_detail(*b.bus, "can0").find("dbitrate 5000000 sample-point 0.666"),
             std::string::npos);
 }
 

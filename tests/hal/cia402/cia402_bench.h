@@ -17,13 +17,15 @@ struct Cia402Bench : CanBench<PlayedCia402s> {
   std::string open() { return CanBench::open(&hal::cia402::start_cia402_delta); }
   void run() {
     ASSERT_EQ(open(), "");
-    ASSERT_GT(ticks_until_ready(50), 0) << device->trouble();
+    ASSERT_GT(ticks_until_ready(50), 0) << device->fault_detail();
     drives.forget();
   }
   double motor_Nm(std::size_t i) const {
     return 1e-6 * drives.axis[i].permille * drives.axis[i].rated;
   }
-  bool says(const char* words) const { return device->trouble().find(words) != std::string::npos; }
+  bool says(const char* words) const {
+    return device->fault_detail().find(words) != std::string::npos;
+  }
   void expect_stopped() const {
     for (const auto& axis : drives.axis) {
       EXPECT_EQ(axis.permille, 0);

@@ -20,7 +20,7 @@ TEST(Cia402Delta, GoesToTorqueStepByStepInsideTheLoop) {
     EXPECT_EQ(axis.status, 0x40) << "no power at opening";
     axis.controlwords.clear();
   }
-  EXPECT_GT(bench.ticks_until_ready(50), 0) << bench.device->trouble();
+  EXPECT_GT(bench.ticks_until_ready(50), 0) << bench.device->fault_detail();
   for (const auto& axis : bench.drives.axis) {
     EXPECT_EQ(axis.controlwords, (std::vector<std::uint16_t>{0x00, 0x06, 0x07, 0x0F}));
     EXPECT_EQ(axis.status, 0x27);
@@ -128,7 +128,7 @@ TEST(Cia402Delta, WithoutPermissionTheDrivesLetGoAndComeBackWithItAtZeroTorque) 
   for (int press = 0; press < 2; ++press) {
     bench.permitted = false;
     for (int i = 0; i < 100; ++i) {
-      ASSERT_EQ(bench.tick({0.0, 0.0, 5.0}), Fault::kNone) << bench.device->trouble();
+      ASSERT_EQ(bench.tick({0.0, 0.0, 5.0}), Fault::kNone) << bench.device->fault_detail();
       ASSERT_FALSE(bench.device->ready()) << "from the tick of the withdrawal on";
       ASSERT_TRUE(bench.sample.fresh);
       for (const auto& axis : bench.drives.axis) {
@@ -140,7 +140,7 @@ TEST(Cia402Delta, WithoutPermissionTheDrivesLetGoAndComeBackWithItAtZeroTorque) 
     int starting = 0;
     for (; starting < 50 && !bench.device->ready(); ++starting) {
       for (const auto& axis : bench.drives.axis) ASSERT_EQ(axis.permille, 0);
-      ASSERT_EQ(bench.tick({0.0, 0.0, 5.0}), Fault::kNone) << bench.device->trouble();
+      ASSERT_EQ(bench.tick({0.0, 0.0, 5.0}), Fault::kNone) << bench.device->fault_detail();
       ASSERT_TRUE(bench.sample.fresh);
     }
     EXPECT_GT(starting, 3) << "step by step";
@@ -181,7 +181,7 @@ TEST(Cia402Delta, EveryDriveWatchesTheHostBeforeItGetsPowerAgain) {
   EXPECT_GT(bench.ticks_until(Fault::kDriveFault, 4000), 2900);
   EXPECT_EQ(bench.drives.axis[1].status, 0x40) << "no power to who would not let go by itself";
   EXPECT_TRUE(bench.says("arm 2 (node 2 on can0): the drive does not take up its watch"))
-      << bench.device->trouble();
+      << bench.device->fault_detail();
   Bench good;
   good.run();
   good.permitted = false;
@@ -196,9 +196,10 @@ TEST(Cia402Delta, ADriveThatKeepsItsWatchRunsAsWell) {
   bench.run();
   for (auto& axis : bench.drives.axis) axis.refuses_watch = true, axis.abort_code = 0x08000022;
   bench.permitted = false;
-  for (int i = 0; i < 300; ++i) ASSERT_EQ(bench.tick(), Fault::kNone) << bench.device->trouble();
+  for (int i = 0; i < 300; ++i)
+    ASSERT_EQ(bench.tick(), Fault::kNone) << bench.device->fault_detail();
   bench.permitted = true;
-  EXPECT_GT(bench.ticks_until_ready(50), 0) << bench.device->trouble();
+  EXPECT_GT(bench.ticks_until_ready(50), 0) << bench.device->fault_detail();
 }
 
 TEST(Cia402Delta, StopLetsGoForGoodAndLeavesNoFaultBehind) {

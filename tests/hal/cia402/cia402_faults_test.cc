@@ -34,7 +34,7 @@ TEST(Cia402Faults, WithoutPositionsTorqueFadesIn12TicksAndTheDeviceIsLostIn20) {
   EXPECT_EQ(bench.tick(), Fault::kDeviceLost);
   EXPECT_FALSE(bench.device->ready());
   EXPECT_TRUE(bench.says("arm 2 (node 2 on can0): no position for 20 ms"))
-      << bench.device->trouble();
+      << bench.device->fault_detail();
   bench.expect_stopped();
   bench.expect_latched(Fault::kDeviceLost);
 }
@@ -52,7 +52,7 @@ TEST(Cia402Faults, AFaultStateStopsAllThreeInTheSameTickAndGetsItsReason) {
   bench.drives.say_emergency(bench.drives.axis[1], 0x3220);
   bench.tick();
   EXPECT_TRUE(bench.says("arm 2 (node 2 on can0): DC bus voltage too low"))
-      << bench.device->trouble();
+      << bench.device->fault_detail();
   bench.expect_latched(Fault::kDriveFault);
 }
 
@@ -64,7 +64,7 @@ TEST(Cia402Faults, AnEmergencyIsAFaultAndItsEndIsNone) {
   bench.drives.say_emergency(bench.drives.axis[2], 0x8130);
   EXPECT_EQ(bench.tick({0.0, 0.0, 5.0}), Fault::kDriveFault);
   EXPECT_TRUE(bench.says("arm 3 (node 3 on can0): The drive missed the controller's heartbeat"))
-      << bench.device->trouble();
+      << bench.device->fault_detail();
   bench.expect_stopped();
   bench.drives.say_emergency(bench.drives.axis[2], 0x0000);
   bench.expect_latched(Fault::kDriveFault);
@@ -80,7 +80,7 @@ TEST(Cia402Faults, LeavingOperationEnabledAfterAForceIsAFault) {
   EXPECT_TRUE(
       bench.says("arm 1 (node 1 on can0): the drive left operation by itself and is "
                  "switched_on"))
-      << bench.device->trouble();
+      << bench.device->fault_detail();
   bench.expect_latched(Fault::kDriveFault);
 }
 
@@ -91,7 +91,7 @@ TEST(Cia402Faults, ADriveThatDoesNotFollowTheTorqueIsNamed) {
   const int ticks = bench.ticks_until(Fault::kDriveFault, 100);
   EXPECT_GE(ticks, 20);
   EXPECT_LE(ticks, 22);
-  EXPECT_TRUE(bench.says("does not follow the torque")) << bench.device->trouble();
+  EXPECT_TRUE(bench.says("does not follow the torque")) << bench.device->fault_detail();
 }
 
 TEST(Cia402Faults, ATorqueThatWasNotCommandedIsNamed) {
@@ -100,8 +100,9 @@ TEST(Cia402Faults, ATorqueThatWasNotCommandedIsNamed) {
   EXPECT_EQ(bench.tick({0.0, 0.0, 1.0}), Fault::kNone);
   bench.drives.axis[1].extra_permille = 400;
   EXPECT_GT(bench.ticks_until(Fault::kDriveFault, 200), 0);
-  EXPECT_TRUE(bench.says("arm 2 (node 2 on can0): the drive gives 0.")) << bench.device->trouble();
-  EXPECT_TRUE(bench.says("that was not commanded (object 6077)")) << bench.device->trouble();
+  EXPECT_TRUE(bench.says("arm 2 (node 2 on can0): the drive gives 0."))
+      << bench.device->fault_detail();
+  EXPECT_TRUE(bench.says("that was not commanded (object 6077)")) << bench.device->fault_detail();
   bench.expect_stopped();
   bench.expect_latched(Fault::kDriveFault);
 }
@@ -113,7 +114,7 @@ TEST(Cia402Faults, LessTorqueThanCommandedIsALimitOfTheDrive) {
     const double force_N = i % 100 < 50 ? 2.0 : -2.0;  // a torque that turns round is late
     for (auto& one : bench.drives.axis)
       one.extra_permille = static_cast<std::int16_t>(-one.permille / 2);
-    ASSERT_EQ(bench.tick({0.0, 0.0, force_N}), Fault::kNone) << i << bench.device->trouble();
+    ASSERT_EQ(bench.tick({0.0, 0.0, force_N}), Fault::kNone) << i << bench.device->fault_detail();
   }
 }
 
@@ -124,7 +125,7 @@ TEST(Cia402Faults, ASilentDriveIsFoundWithin36Milliseconds) {
   const int ticks = bench.ticks_until(Fault::kDriveSilent, 100);
   EXPECT_GT(ticks, 25);
   EXPECT_LE(ticks, 36);
-  EXPECT_TRUE(bench.says("arm 3 (node 3 on can0): no heartbeat")) << bench.device->trouble();
+  EXPECT_TRUE(bench.says("arm 3 (node 3 on can0): no heartbeat")) << bench.device->fault_detail();
   bench.expect_stopped();
   bench.expect_latched(Fault::kDriveSilent);
 }
@@ -135,7 +136,8 @@ TEST(Cia402Faults, ADriveThatRestartsIsNamed) {
   bench.drives.axis[0].nmt = NmtState::kBoot;
   bench.drives.say_heartbeat(bench.drives.axis[0]);
   EXPECT_EQ(bench.tick(), Fault::kDriveFault);
-  EXPECT_TRUE(bench.says("arm 1 (node 1 on can0): the drive restarted")) << bench.device->trouble();
+  EXPECT_TRUE(bench.says("arm 1 (node 1 on can0): the drive restarted"))
+      << bench.device->fault_detail();
 }
 
 TEST(Cia402Faults, ADriveWithoutPowerAtTheStartIsWaitedForAndNamed) {
@@ -143,16 +145,16 @@ TEST(Cia402Faults, ADriveWithoutPowerAtTheStartIsWaitedForAndNamed) {
   ASSERT_EQ(bench.open(), "");
   bench.drives.axis[1].obeys = false;
   for (int i = 0; i < 20'000; ++i) {
-    ASSERT_EQ(bench.tick(), Fault::kNone) << i << ": " << bench.device->trouble();
+    ASSERT_EQ(bench.tick(), Fault::kNone) << i << ": " << bench.device->fault_detail();
     ASSERT_FALSE(bench.device->ready());
   }
   EXPECT_TRUE(
       bench.says("waiting for power of arm 2 (node 2 on can0): the drive is "
                  "switch_on_disabled (statusword 0x0040)"))
-      << bench.device->trouble();
+      << bench.device->fault_detail();
   bench.drives.axis[1].obeys = true;
   EXPECT_GT(bench.ticks_until_ready(), 0);
-  EXPECT_EQ(bench.device->trouble(), "");
+  EXPECT_EQ(bench.device->fault_detail(), "");
 }
 
 TEST(Cia402Faults, ADriveThatKeepsNoWatchIsReportedWhileAnEarlierOneWaits) {
@@ -163,9 +165,9 @@ TEST(Cia402Faults, ADriveThatKeepsNoWatchIsReportedWhileAnEarlierOneWaits) {
   bench.drives.axis[0].obeys = false;
   bench.drives.axis[1].answers_watch = false;
   bench.permitted = true;
-  EXPECT_GT(bench.ticks_until(Fault::kDriveFault, 4000), 2900) << bench.device->trouble();
+  EXPECT_GT(bench.ticks_until(Fault::kDriveFault, 4000), 2900) << bench.device->fault_detail();
   EXPECT_TRUE(bench.says("arm 2 (node 2 on can0): the drive does not take up its watch"))
-      << bench.device->trouble();
+      << bench.device->fault_detail();
 }
 
 TEST(Cia402Faults, PowerThatGoesBeforeAnyForceIsWaitedForAgain) {
@@ -176,7 +178,7 @@ TEST(Cia402Faults, PowerThatGoesBeforeAnyForceIsWaitedForAgain) {
   for (int i = 0; i < 5000; ++i) ASSERT_EQ(bench.tick(), Fault::kNone) << i;
   EXPECT_FALSE(bench.device->ready());
   EXPECT_TRUE(bench.says("waiting for power of arm 1 (node 1 on can0): the drive is "))
-      << bench.device->trouble();
+      << bench.device->fault_detail();
   bench.drives.axis[0].obeys = true;
   EXPECT_GT(bench.ticks_until_ready(), 0);
 }
@@ -218,7 +220,7 @@ TEST(Cia402Faults, ACommandOfAnotherSenderLatchesInTheTickThatHearsIt) {
     bench.drives.bus.say(frame);
     EXPECT_EQ(bench.tick({0.0, 0.0, 5.0}), Fault::kForeignCommand) << frame.id;
     EXPECT_EQ(bench.count("foreign_commands"), 1u);
-    EXPECT_TRUE(bench.says("a command that tactd did not send")) << bench.device->trouble();
+    EXPECT_TRUE(bench.says("a command that tactd did not send")) << bench.device->fault_detail();
     bench.expect_stopped();
     bench.expect_latched(Fault::kForeignCommand);
   }

@@ -45,14 +45,14 @@ struct Cia402Bench : tests::CanBench<Cia402Drives> {
   testing::AssertionResult run() {
     const std::string message = open();
     if (!message.empty()) return testing::AssertionFailure() << message;
-    if (ticks_until_ready() < 0) return testing::AssertionFailure() << device->trouble();
+    if (ticks_until_ready() < 0) return testing::AssertionFailure() << device->fault_detail();
     return testing::AssertionSuccess();
   }
   void expect_no_fault_for(int ticks) {
-    for (int i = 0; i < ticks; ++i) ASSERT_EQ(tick(), Fault::kNone) << device->trouble();
+    for (int i = 0; i < ticks; ++i) ASSERT_EQ(tick(), Fault::kNone) << device->fault_detail();
   }
   void expect_torques_of(const Vec3& force_N) {
-    for (int i = 0; i < 3; ++i) ASSERT_EQ(tick(force_N), Fault::kNone) << device->trouble();
+    for (int i = 0; i < 3; ++i) ASSERT_EQ(tick(force_N), Fault::kNone) << device->fault_detail();
     const auto wanted = tests::expected_motor_Nm(settings, published_pose(), force_N);
     for (std::size_t i = 0; i < 3; ++i)
       EXPECT_NEAR(drives.drive[i]->torque_Nm(), wanted[i], 0.5e-3 * kRated_Nm);

@@ -50,7 +50,7 @@ TEST(Cia402Emulated, PermissionThatIsTakenAndComesBackLeavesNoFaultInTheLog) {
       bench.expect_no_fault_for(300);
       for (const auto& drive : bench.drives.drive) EXPECT_FALSE(drive->is_enabled());
       bench.permitted = true;
-      ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->trouble();
+      ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->fault_detail();
     }
     bench.expect_torques_of({0.0, 0.0, 4.0});
     EXPECT_FALSE(bench.drives.any_noted());
@@ -127,7 +127,7 @@ TEST(Cia402Emulated, LastWordsTakeTheTorqueAtOnceThenThePowerAndLeaveTheWatchOn)
     ASSERT_EQ(bench.open(), "");
     const auto words = bench.device->shutdown_frames();  // before the loop, as tactd asks for them
     ASSERT_TRUE(words);
-    ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->trouble();
+    ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->fault_detail();
     bench.expect_torques_of({0.0, 0.0, 4.0});
     bench.drives.expect_freed_by(*words);
     for (int i = 0; i < 200; ++i) bench.drives.millisecond();
@@ -268,15 +268,15 @@ TEST(Cia402Emulated, ThreeDrivesWithTheirStoLowAtBootAreWaitedForAndThenTakeForc
   for (int i = 0; i < 50; ++i) bench.drives.millisecond();
   ASSERT_EQ(bench.open(&cia402::start_cia402_delta), "");
   for (int i = 0; i < 10'000; ++i) {
-    ASSERT_EQ(bench.tick(), Fault::kNone) << i << ": " << bench.device->trouble();
+    ASSERT_EQ(bench.tick(), Fault::kNone) << i << ": " << bench.device->fault_detail();
     ASSERT_FALSE(bench.device->ready()) << i;
     for (const auto& drive : bench.drives.drive) ASSERT_EQ(drive->torque_Nm(), 0.0);
   }
-  EXPECT_NE(bench.device->trouble().find("waiting for power of arm "), std::string::npos)
-      << bench.device->trouble();
+  EXPECT_NE(bench.device->fault_detail().find("waiting for power of arm "), std::string::npos)
+      << bench.device->fault_detail();
   low = false;
-  EXPECT_GT(bench.ticks_until_ready(1000), 0) << bench.device->trouble();
-  EXPECT_EQ(bench.device->trouble(), "");
+  EXPECT_GT(bench.ticks_until_ready(1000), 0) << bench.device->fault_detail();
+  EXPECT_EQ(bench.device->fault_detail(), "");
   for (int i = 0; i < 100; ++i) ASSERT_EQ(bench.tick({0.0, 0.0, 1.0}), Fault::kNone);
   low = true;  // after a force it is a fault, as ever
   int ticks = 0;

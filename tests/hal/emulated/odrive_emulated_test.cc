@@ -49,9 +49,9 @@ TEST(OdriveEmulated, TheFirstStartAfterPowerOnKnowsWhereTheArmsAreInEveryHoming)
     if (homing == Homing::kJig)  // wherever the encoders began
       for (auto& motor : bench.drives.motor) motor.position_turns = 0.7;
     ASSERT_EQ(bench.open(), "");
-    ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->trouble();
+    ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->fault_detail();
     EXPECT_LT(bench.error_m(), 2e-4);  // counts of the encoder
-    EXPECT_EQ(bench.ticks_until(Fault::kHomingLost, 200), -1) << bench.device->trouble();
+    EXPECT_EQ(bench.ticks_until(Fault::kHomingLost, 200), -1) << bench.device->fault_detail();
   }
 }
 
@@ -60,7 +60,7 @@ TEST(OdriveEmulated, NearItsZeroTooAPositionIsProvedBeforeItCounts) {
   Bench bench;
   for (auto& motor : bench.drives.motor) motor.position_turns = 0.015;
   ASSERT_EQ(bench.open(), "");
-  ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->trouble();
+  ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->fault_detail();
   EXPECT_LT(bench.error_m(), 2e-4);
 }
 
@@ -75,7 +75,7 @@ TEST(OdriveEmulated, ArmsThatLeaveTheJigBeforeTheyHavePowerAreFollowed) {
       motor.position_turns += 0.001;
       motor.velocity_turns_per_s = 1.0;
     }
-    ASSERT_EQ(bench.tick(), Fault::kNone) << bench.device->trouble();
+    ASSERT_EQ(bench.tick(), Fault::kNone) << bench.device->fault_detail();
   }
   EXPECT_GT(bench.error_m(), 5e-3);
 }
@@ -96,7 +96,8 @@ TEST(OdriveEmulated, MotorsWithoutSupplyStillReportWhereTheyAre) {
     for (auto& motor : bench.drives.motor) motor.position_turns = turns;
     ASSERT_EQ(bench.open(), "");
     bench.permitted = false;
-    for (int i = 0; i < 50; ++i) ASSERT_EQ(bench.tick(), Fault::kNone) << bench.device->trouble();
+    for (int i = 0; i < 50; ++i)
+      ASSERT_EQ(bench.tick(), Fault::kNone) << bench.device->fault_detail();
     EXPECT_LT(bench.error_m(), 2e-4);
   }
 }
@@ -134,11 +135,12 @@ TEST(OdriveEmulated, DrivesThatKnowTheirPositionGetNoPowerAtOpening) {
 TEST(OdriveEmulated, AKilledRunAndAPermissionThatComesBackNeedNoSecondWay) {
   Bench bench({.generation = OdriveGeneration::k05}, Homing::kAbsolute);
   ASSERT_EQ(bench.open(), "");
-  ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->trouble();
+  ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->fault_detail();
   bench.permitted = false;
-  for (int i = 0; i < 200; ++i) ASSERT_EQ(bench.tick(), Fault::kNone) << bench.device->trouble();
+  for (int i = 0; i < 200; ++i)
+    ASSERT_EQ(bench.tick(), Fault::kNone) << bench.device->fault_detail();
   bench.permitted = true;
-  ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->trouble();
+  ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->fault_detail();
   bench.drives.bus.socket().send_error = ENOBUFS;  // killed: nothing more of it reaches a drive
   bench.device.reset();
   for (int i = 0; i < 100; ++i) bench.drives.millisecond();
@@ -147,7 +149,7 @@ TEST(OdriveEmulated, AKilledRunAndAPermissionThatComesBackNeedNoSecondWay) {
   bench.drives.most_enabled = 0;
   ASSERT_EQ(bench.open(), "");
   EXPECT_EQ(bench.drives.most_enabled, 0u);
-  ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->trouble();
+  ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->fault_detail();
   EXPECT_LT(bench.error_m(), 2e-4);
 }
 
@@ -157,7 +159,7 @@ TEST(OdriveEmulated, LastWordsTakeTheTorqueAtOnceThenThePower) {
     ASSERT_EQ(bench.open(), "");
     const auto words = bench.device->shutdown_frames();  // before the loop, as tactd asks for them
     ASSERT_TRUE(words);
-    ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->trouble();
+    ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->fault_detail();
     for (int i = 0; i < 3; ++i) bench.tick({0.0, 0.0, 4.0});
     ASSERT_NE(bench.drives.drive[0]->torque_Nm(), 0.0);
     bench.drives.expect_freed_by(*words);
@@ -197,7 +199,7 @@ TEST(OdriveEmulated, TorqueCutByTheDrivesVelocityLimitIsReportedWithNumbers) {
       << caution;
   EXPECT_NE(caution.find("stops the drive at 0.35 m/s"), std::string::npos) << caution;
   EXPECT_NE(caution.find("enable_torque_mode_vel_limit = False"), std::string::npos) << caution;
-  ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->trouble();
+  ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->fault_detail();
   for (int i = 0; i < 3; ++i) bench.tick(kPush_N);
   EXPECT_NEAR(bench.drives.largest_torque_Nm, 0.333, 1e-3) << "the drive cuts it, silently";
   const auto wanted = tests::expected_motor_Nm(bench.settings, published_pose(), kPush_N);
@@ -214,7 +216,7 @@ TEST(OdriveEmulated, AVelocityLimitOfTheSceneLetsAllTorquePassAndIsNotWarnedOf) 
   bench.settings.of<odrive::OdriveSettings>().max_current_A = 20.0;
   ASSERT_EQ(bench.open(), "");
   EXPECT_EQ(bench.device->info().caution, "");
-  ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->trouble();
+  ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->fault_detail();
   for (int i = 0; i < 3; ++i) bench.tick(kPush_N);
   const auto wanted = tests::expected_motor_Nm(bench.settings, published_pose(), kPush_N);
   for (std::size_t i = 0; i < 3; ++i)
@@ -235,14 +237,14 @@ TEST(OdriveEmulated, ADriveThatStopsByOverspeedSaysSo) {
   for (const auto generation : {OdriveGeneration::k05, OdriveGeneration::k06}) {
     Bench bench({.generation = generation, .velocity_limit_turns_per_s = 2.0});
     ASSERT_EQ(bench.open(), "");
-    ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->trouble();
+    ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->fault_detail();
     for (auto& motor : bench.drives.motor) motor.velocity_turns_per_s = 2.5;
     int ticks = 0;
     for (Fault fault = Fault::kNone; fault == Fault::kNone && ticks < 150; ++ticks) {
       for (auto& motor : bench.drives.motor) motor.position_turns += 0.0025;
       fault = bench.tick();
     }
-    const std::string words = bench.device->trouble();
+    const std::string words = bench.device->fault_detail();
     EXPECT_TRUE(words.find("overspeed") != std::string::npos ||
                 words.find("elocity") != std::string::npos)
         << words;

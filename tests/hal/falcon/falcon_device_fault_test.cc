@@ -11,7 +11,7 @@ constexpr falcon::FalconWords kNoWords{};
 constexpr Vec3 kPush_N{2.0, 0.0, 0.0};
 
 bool names(const FalconBench& bench, const char* what) {
-  return bench.device.trouble().find(what) != std::string::npos;
+  return bench.device.fault_detail().find(what) != std::string::npos;
 }
 
 /// The fault stays, without force, for any further reply, and zeros go out in every tick.
@@ -171,7 +171,7 @@ TEST(FalconDeviceFault, GarbageWithoutReportsLatchesBeforeTheGateGivesUp) {
   EXPECT_EQ(bench.fault, Fault::kDeviceGarbled);
   EXPECT_GE(missed, 15);
   EXPECT_LT(missed, 20);
-  EXPECT_TRUE(names(bench, "different speeds")) << bench.device.trouble();
+  EXPECT_TRUE(names(bench, "different speeds")) << bench.device.fault_detail();
   expect_latched(bench, Fault::kDeviceGarbled);
 }
 
@@ -218,7 +218,7 @@ TEST(FalconDeviceFault, WhatEndsThePipeLatchesAndIsNamed) {
     bench.pipe->state = c.health;
     EXPECT_FALSE(bench.tick(kPush_N));
     EXPECT_EQ(bench.fault, c.fault);
-    EXPECT_TRUE(names(bench, c.words)) << bench.device.trouble();
+    EXPECT_TRUE(names(bench, c.words)) << bench.device.fault_detail();
     expect_latched(bench, c.fault);
   }
 }
@@ -232,7 +232,7 @@ TEST(FalconDeviceFault, AfterItsThreadStoodInForTheLoopTheOldForceDoesNotComeBac
   EXPECT_FALSE(bench.tick(kPush_N));
   EXPECT_EQ(bench.fault, Fault::kLoopStalled);
   EXPECT_EQ(bench.words(), kNoWords);
-  EXPECT_TRUE(names(bench, "gave the Falcon no command for 100 ms")) << bench.device.trouble();
+  EXPECT_TRUE(names(bench, "gave the Falcon no command for 100 ms")) << bench.device.fault_detail();
   expect_latched(bench, Fault::kLoopStalled);
 }
 

@@ -15,7 +15,7 @@ namespace tact::tests::falcon_device_test {
 constexpr falcon::FalconWords kNoWords{};
 
 bool names(const FalconBench& bench, const char* what) {
-  return bench.device.trouble().find(what) != std::string::npos;
+  return bench.device.fault_detail().find(what) != std::string::npos;
 }
 
 TEST(FalconDevice, AsksToBeHomedWithoutForceAndShowsNothing) {
@@ -28,7 +28,7 @@ TEST(FalconDevice, AsksToBeHomedWithoutForceAndShowsNothing) {
     EXPECT_EQ(bench.pipe->command.lights, falcon::kFalconRed);
     EXPECT_EQ(bench.fault, Fault::kNone);
   }
-  EXPECT_TRUE(names(bench, "not homed (axis 2 (right))")) << bench.device.trouble();
+  EXPECT_TRUE(names(bench, "not homed (axis 2 (right))")) << bench.device.fault_detail();
   EXPECT_TRUE(names(bench, "pull the grip all the way out"));
 }
 
@@ -42,7 +42,7 @@ TEST(FalconDevice, IsFreshWhenAllAxesAreHomedAndForgetsWhatWasBefore) {
   EXPECT_EQ(bench.sample.tool.velocity_mps, Vec3{});  // the counts jumped, nothing moved
   ASSERT_TRUE(bench.tick());
   EXPECT_EQ(bench.sample.tool.velocity_mps, Vec3{});
-  EXPECT_EQ(bench.device.trouble(), "");
+  EXPECT_EQ(bench.device.fault_detail(), "");
   EXPECT_EQ(bench.pipe->command.lights, falcon::kFalconGreen);
   bench.device.permit(false);
   bench.tick();

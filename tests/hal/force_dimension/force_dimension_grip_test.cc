@@ -103,12 +103,12 @@ TEST_F(ForceDimensionGrip, AGripperAngleThatIsNoNumberIsReported) {
   EXPECT_TRUE(tick_until([&] { return std::isnan(sample.tool.grip_ratio); }));
 }
 
-TEST_F(ForceDimensionGrip, AGripperThatFailsIsATrouble) {
+TEST_F(ForceDimensionGrip, AGripperThatFailsIsAFault) {
   open(35);
   ASSERT_TRUE(ready());
   stub.fail("dhdGetGripperAngleRad", 2);
   EXPECT_TRUE(tick_until([&] { return fault != Fault::kNone; }));
-  EXPECT_TRUE(reported("the device does not report its gripper: ")) << device->trouble();
+  EXPECT_TRUE(reported("the device does not report its gripper: ")) << device->fault_detail();
 }
 
 /// Torque, of each type that has motors for it.

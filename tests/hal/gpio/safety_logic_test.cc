@@ -221,7 +221,7 @@ TEST(SimLines, AreLostForGoodWithTheirChip) {
   EXPECT_FALSE(lines.enabled() || lines.outputs().enable);
   lines.inputs().chip_lost = false;
   EXPECT_EQ(tick(), Fault::kLinesLost);
-  EXPECT_NE(lines.trouble().find("gpiodetect"), std::string::npos);
+  EXPECT_NE(lines.fault_detail().find("gpiodetect"), std::string::npos);
 }
 
 TEST(SimLines, OnceDroppedByTheWatchStayLowForAnyWriteOfTheLoop) {

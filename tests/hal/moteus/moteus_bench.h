@@ -27,12 +27,14 @@ struct MoteusBench : CanBench<EmulatedMoteus> {
   /// Open and holding.
   void run() {
     ASSERT_EQ(open(), "");
-    ASSERT_GT(ticks_until_ready(), 0) << device->trouble();
+    ASSERT_GT(ticks_until_ready(), 0) << device->fault_detail();
   }
   rig::MoteusDrive& axis(std::size_t i) const {
     return static_cast<rig::MoteusDrive&>(*drives.drive[i]);
   }
-  bool says(const char* words) const { return device->trouble().find(words) != std::string::npos; }
+  bool says(const char* words) const {
+    return device->fault_detail().find(words) != std::string::npos;
+  }
   bool all_stopped() const {
     return axis(0).mode() == 0 && axis(1).mode() == 0 && axis(2).mode() == 0;
   }

@@ -78,7 +78,7 @@ TEST(MoteusBringUp, AFaultThatAStopClearsIsReportedAndOneThatStaysIsRefused) {
   EXPECT_NE(bench.device->info().caution.find("arm 3 (node 3 on can0) was in fault"),
             std::string::npos)
       << bench.device->info().caution;
-  EXPECT_GT(bench.ticks_until_ready(), 0) << bench.device->trouble();
+  EXPECT_GT(bench.ticks_until_ready(), 0) << bench.device->fault_detail();
 
   MoteusBench stays;
   stays.drives.also = [&] { stays.drives.drive[0]->fail(0); };

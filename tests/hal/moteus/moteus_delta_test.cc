@@ -19,7 +19,7 @@ TEST(MoteusDelta, IsReadyWhenAllAreInPositionModeWithoutEarlierTorque) {
   ASSERT_EQ(bench.open(), "");
   int ticks = 0;
   for (; ticks < 300 && !bench.device->ready(); ++ticks) {
-    ASSERT_EQ(bench.tick({0.0, 0.0, 5.0}), Fault::kNone) << bench.device->trouble();
+    ASSERT_EQ(bench.tick({0.0, 0.0, 5.0}), Fault::kNone) << bench.device->fault_detail();
     if (!bench.device->ready()) EXPECT_EQ(bench.drives.largest_torque_Nm, 0.0);
   }
   EXPECT_GT(ticks, 50) << "40 ms to prepare, ten replies without torque";
@@ -59,14 +59,14 @@ TEST(MoteusDelta, WithdrawnPermissionStopsAtOnceAndReturnsWithoutTorque) {
     EXPECT_NE(bench.axis(0).torque_Nm(), 0.0);
     bench.permitted = false;
     for (int i = 0; i < 50; ++i) {
-      ASSERT_EQ(bench.tick({0.0, 0.0, 5.0}), Fault::kNone) << bench.device->trouble();
+      ASSERT_EQ(bench.tick({0.0, 0.0, 5.0}), Fault::kNone) << bench.device->fault_detail();
       ASSERT_TRUE(bench.all_stopped()) << "from the tick of the withdrawal on";
     }
     bench.permitted = true;
     bench.drives.largest_torque_Nm = 0.0;
     while (!bench.device->ready()) {
       EXPECT_EQ(bench.drives.largest_torque_Nm, 0.0);
-      ASSERT_EQ(bench.tick({0.0, 0.0, 5.0}), Fault::kNone) << bench.device->trouble();
+      ASSERT_EQ(bench.tick({0.0, 0.0, 5.0}), Fault::kNone) << bench.device->fault_detail();
     }
   }
 }
@@ -145,7 +145,7 @@ TEST(MoteusDelta, AHostThatFallsSilentIsEndedByTheDrivesAfterTenMilliseconds) {
     // The host wakes: nothing comes back by itself, and it says why.
     EXPECT_EQ(bench.ticks_until(Fault::kDriveFault, 3), 2);
     EXPECT_TRUE(bench.says("arm 1 (node 1 on can0): its watchdog expired"))
-        << bench.device->trouble();
+        << bench.device->fault_detail();
     EXPECT_TRUE(bench.all_stopped());
   }
 }
@@ -162,7 +162,7 @@ TEST(MoteusDelta, AKilledRunLeavesDrivesThatTheNextOneTakesUp) {
   bench.drives.most_enabled = 0;
   ASSERT_EQ(bench.open(), "");
   EXPECT_EQ(bench.drives.most_enabled, 0u);
-  ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->trouble();
+  ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->fault_detail();
 }
 
 TEST(MoteusDelta, LastWordsStopAllThreeAtOnceAndAreNoMoreThanThat) {
@@ -176,7 +176,7 @@ TEST(MoteusDelta, LastWordsStopAllThreeAtOnceAndAreNoMoreThanThat) {
     ASSERT_TRUE(frame);
     EXPECT_EQ(*frame, *moteus_stop(moteus_address(*frame).destination));
   }
-  ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->trouble();
+  ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->fault_detail();
   for (int i = 0; i < 3; ++i) bench.tick({0.0, 0.0, 4.0});
   ASSERT_NE(bench.axis(0).torque_Nm(), 0.0);
   bench.drives.expect_freed_by(*words);

@@ -32,7 +32,7 @@ TEST(MoteusFaults, ADrivesFaultIsReportedAsTextAndStopsAllThree) {
   const int ticks = bench.ticks_until(Fault::kDriveFault, 5);
   EXPECT_TRUE(ticks == 1 || ticks == 2) << ticks;
   EXPECT_TRUE(bench.says("arm 2 (node 2 on can0): The power stage reports a fault"))
-      << bench.device->trouble();
+      << bench.device->fault_detail();
   EXPECT_TRUE(bench.says("(fault 33)"));
   EXPECT_TRUE(bench.all_stopped());
   bench.expect_latched(Fault::kDriveFault);
@@ -45,7 +45,7 @@ TEST(MoteusFaults, ADriveThatCannotBeEnabledIsNamedWithItsReason) {
   const int ticks = bench.ticks_until(Fault::kDriveFault, 100);
   EXPECT_GT(ticks, 0);
   EXPECT_TRUE(bench.says("arm 3 (node 3 on can0): The motor is not configured"))
-      << bench.device->trouble();
+      << bench.device->fault_detail();
   EXPECT_FALSE(bench.device->ready());
 }
 
@@ -55,7 +55,7 @@ TEST(MoteusFaults, ASupplyThatIsTooLowAtTheStartIsWaitedFor) {
   bench.axis(1).sag(true);
   int asked = 0;
   for (int i = 0, before = 1; i < 8000; ++i) {
-    ASSERT_EQ(bench.tick(), Fault::kNone) << i << ": " << bench.device->trouble();
+    ASSERT_EQ(bench.tick(), Fault::kNone) << i << ": " << bench.device->fault_detail();
     ASSERT_FALSE(bench.device->ready());
     for (const auto& drive : bench.drives.drive) ASSERT_EQ(drive->torque_Nm(), 0.0);
     const int mode = bench.axis(1).mode();
@@ -63,12 +63,12 @@ TEST(MoteusFaults, ASupplyThatIsTooLowAtTheStartIsWaitedFor) {
     before = mode;
   }
   EXPECT_TRUE(bench.says("waiting for power of arm 2 (node 2 on can0): DC bus voltage too low"))
-      << bench.device->trouble();
+      << bench.device->fault_detail();
   EXPECT_GE(asked, 7) << "once a second";
   EXPECT_LE(asked, 9);
   bench.axis(1).sag(false);
-  EXPECT_GT(bench.ticks_until_ready(1500), 0) << bench.device->trouble();
-  EXPECT_EQ(bench.device->trouble(), "");
+  EXPECT_GT(bench.ticks_until_ready(1500), 0) << bench.device->fault_detail();
+  EXPECT_EQ(bench.device->fault_detail(), "");
   EXPECT_EQ(bench.allocations, 0u);
 }
 
@@ -77,11 +77,11 @@ TEST(MoteusFaults, AFaultIsReportedWhileAnEarlierArmWaitsForItsSupply) {
   ASSERT_EQ(bench.open(), "");
   bench.axis(0).sag(true);
   for (int i = 0; i < 100; ++i) bench.tick();  // past the first time that it is asked again
-  ASSERT_TRUE(bench.says("waiting for power of arm 1")) << bench.device->trouble();
+  ASSERT_TRUE(bench.says("waiting for power of arm 1")) << bench.device->fault_detail();
   bench.drives.drive[1]->fail(bench.drives.now_ns);
-  EXPECT_GT(bench.ticks_until(Fault::kDriveFault, 5), 0) << bench.device->trouble();
+  EXPECT_GT(bench.ticks_until(Fault::kDriveFault, 5), 0) << bench.device->fault_detail();
   EXPECT_TRUE(bench.says("arm 2 (node 2 on can0): The power stage reports a fault"))
-      << bench.device->trouble();
+      << bench.device->fault_detail();
   bench.expect_latched(Fault::kDriveFault);
 }
 
@@ -89,10 +89,11 @@ TEST(MoteusFaults, ASupplyThatSagsBeforeAnyForceIsWaitedForAndAfterOneIsAFault) 
   Bench bench;
   bench.run();
   bench.axis(2).sag(true);
-  for (int i = 0; i < 20; ++i) ASSERT_EQ(bench.tick(), Fault::kNone) << bench.device->trouble();
+  for (int i = 0; i < 20; ++i)
+    ASSERT_EQ(bench.tick(), Fault::kNone) << bench.device->fault_detail();
   EXPECT_FALSE(bench.device->ready());
   bench.axis(2).sag(false);
-  ASSERT_GT(bench.ticks_until_ready(1500), 0) << bench.device->trouble();
+  ASSERT_GT(bench.ticks_until_ready(1500), 0) << bench.device->fault_detail();
   bench.tick({0.0, 0.0, 5.0});
   bench.axis(2).sag(true);
   EXPECT_GT(bench.ticks_until(Fault::kDriveFault, 20), 0);
@@ -111,7 +112,7 @@ TEST(MoteusFaults, ADriveThatNeverGetsReadyIsNamedAfterThreeSeconds) {
   EXPECT_TRUE(
       bench.says("arm 1 (node 1 on can0): the drive does not enter position mode and is "
                  "preparing"))
-      << bench.device->trouble();
+      << bench.device->fault_detail();
 }
 
 TEST(MoteusFaults, ADriveWithATorqueOfItsOwnNeverGetsReady) {
@@ -124,7 +125,7 @@ TEST(MoteusFaults, ADriveWithATorqueOfItsOwnNeverGetsReady) {
   EXPECT_TRUE(
       bench.says("arm 2 (node 2 on can0): the drive gives -0.50 N m that was not commanded: set "
                  "servo.pid_position.ki"))
-      << bench.device->trouble();
+      << bench.device->fault_detail();
 }
 
 TEST(MoteusFaults, ATorqueThatGrowsSlowlyIsAFaultOfAReadyDrive) {
@@ -133,7 +134,8 @@ TEST(MoteusFaults, ATorqueThatGrowsSlowlyIsAFaultOfAReadyDrive) {
       1, rig::MoteusSettings{.integral_gain_Nm_per_turn_s = 2.0, .integral_limit_Nm = 1.0});
   bench.run();
   EXPECT_GT(bench.ticks_until(Fault::kDriveFault, 4000), 0);
-  EXPECT_TRUE(bench.says("arm 2 (node 2 on can0): the drive gives")) << bench.device->trouble();
+  EXPECT_TRUE(bench.says("arm 2 (node 2 on can0): the drive gives"))
+      << bench.device->fault_detail();
   bench.expect_latched(Fault::kDriveFault);
 }
 
@@ -141,7 +143,7 @@ TEST(MoteusFaults, GravityAndForceAreNoUncommandedTorque) {
   Bench bench;
   bench.run();
   for (int i = 0; i < 500; ++i) bench.tick();
-  EXPECT_TRUE(bench.device->ready()) << bench.device->trouble();
+  EXPECT_TRUE(bench.device->ready()) << bench.device->fault_detail();
 }
 
 TEST(MoteusFaults, ADriveThatAnotherHostStopsIsAFault) {
@@ -153,7 +155,7 @@ TEST(MoteusFaults, ADriveThatAnotherHostStopsIsAFault) {
   bench.drives.drive[2]->receive(frame, bench.drives.now_ns);
   EXPECT_GT(bench.ticks_until(Fault::kDriveFault, 5), 0);
   EXPECT_TRUE(bench.says("arm 3 (node 3 on can0): the drive left position mode"))
-      << bench.device->trouble();
+      << bench.device->fault_detail();
   bench.expect_latched(Fault::kDriveFault);
 }
 
@@ -171,7 +173,8 @@ TEST(MoteusFaults, TorquesFadeWithoutRepliesAndTheDeviceIsLostAfterTwenty) {
     EXPECT_NEAR(bench.axis(0).torque_Nm(), ratio * full_Nm, 1e-6) << missing;
   }
   EXPECT_EQ(bench.tick(), Fault::kDeviceLost);
-  EXPECT_TRUE(bench.says("arm 2 (node 2 on can0): no reply for 20 ms")) << bench.device->trouble();
+  EXPECT_TRUE(bench.says("arm 2 (node 2 on can0): no reply for 20 ms"))
+      << bench.device->fault_detail();
   bench.expect_latched(Fault::kDeviceLost);
 }
 
@@ -187,7 +190,7 @@ TEST(MoteusFaults, RepliesThatLackWhatWasAskedForAreNoSamplesAndTenAreAFault) {
   EXPECT_GT(ticks, 7);
   EXPECT_LT(ticks, 12);
   EXPECT_TRUE(bench.says("arm 1 (node 1 on can0): its replies lack what was asked for"))
-      << bench.device->trouble();
+      << bench.device->fault_detail();
   EXPECT_EQ(bench.count("incomplete"), 10u);
 }
 
@@ -197,7 +200,7 @@ TEST(MoteusFaults, AFaultIsReportedAlsoByADriveThatHasLostItsPosition) {
   bench.axis(0).lose_position();
   bench.drives.drive[0]->fail(bench.drives.now_ns);
   EXPECT_GT(bench.ticks_until(Fault::kDriveFault, 3), 0);
-  EXPECT_TRUE(bench.says("(fault 33)")) << bench.device->trouble();
+  EXPECT_TRUE(bench.says("(fault 33)")) << bench.device->fault_detail();
 }
 
 TEST(MoteusFaults, ABusThatGoesOffLatches) {
@@ -205,7 +208,7 @@ TEST(MoteusFaults, ABusThatGoesOffLatches) {
   bench.run();
   bench.drives.bus.socket().receive_error = ENETDOWN;
   EXPECT_EQ(bench.tick({0.0, 0.0, 5.0}), Fault::kBusDown);
-  EXPECT_TRUE(bench.says("dbitrate 5000000 sample-point 0.666")) << bench.device->trouble();
+  EXPECT_TRUE(bench.says("dbitrate 5000000 sample-point 0.666")) << bench.device->fault_detail();
   bench.expect_latched(Fault::kBusDown);
 }
 
@@ -231,7 +234,7 @@ TEST(MoteusFaults, ACommandOfAnotherSenderLatchesInTheTickThatHearsIt) {
       const can::CanFdFrameBytes bytes = *can::pack_can_frame(frame);
       ASSERT_EQ(send(bench.drives.cable.descriptor(), bytes.data(), bytes.size(), 0), 72);
       EXPECT_EQ(bench.tick({0.0, 0.0, 5.0}), Fault::kForeignCommand) << frame.id;
-      EXPECT_TRUE(bench.says("a command that tactd did not send")) << bench.device->trouble();
+      EXPECT_TRUE(bench.says("a command that tactd did not send")) << bench.device->fault_detail();
       bench.expect_latched(Fault::kForeignCommand);
     }
   }

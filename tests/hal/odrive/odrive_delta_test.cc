@@ -25,7 +25,7 @@ struct Bench : tests::CanBench<tests::PlayedOdrives> {
   /// Open and holding.
   void run() {
     ASSERT_EQ(open(), "");
-    ASSERT_GT(ticks_until_ready(), 0) << device->trouble();
+    ASSERT_GT(ticks_until_ready(), 0) << device->fault_detail();
     drives.forget();
   }
   bool all_off() const {
@@ -100,7 +100,7 @@ TEST(OdriveDelta, PermissionThatComesBackBringsZeroTorqueFirst) {
     EXPECT_NE(bench.drives.axis[0].torque_Nm, 0.0f);
     bench.permitted = false;
     for (int i = 0; i < 500; ++i) {
-      ASSERT_EQ(bench.tick({0.0, 0.0, 5.0}), Fault::kNone) << bench.device->trouble();
+      ASSERT_EQ(bench.tick({0.0, 0.0, 5.0}), Fault::kNone) << bench.device->fault_detail();
       ASSERT_TRUE(bench.all_off()) << "from the tick of the withdrawal on";
       ASSERT_FALSE(bench.device->ready());
       ASSERT_TRUE(bench.sample.fresh);
@@ -109,7 +109,7 @@ TEST(OdriveDelta, PermissionThatComesBackBringsZeroTorqueFirst) {
     int starting = 0;
     for (; starting < 300 && !bench.device->ready(); ++starting) {
       for (const auto& axis : bench.drives.axis) ASSERT_EQ(axis.torque_Nm, 0.0f);
-      ASSERT_EQ(bench.tick({0.0, 0.0, 5.0}), Fault::kNone) << bench.device->trouble();
+      ASSERT_EQ(bench.tick({0.0, 0.0, 5.0}), Fault::kNone) << bench.device->fault_detail();
     }
     EXPECT_GT(starting, 5) << "zero torque first, then closed loop";
     EXPECT_LT(starting, 300);
@@ -233,7 +233,7 @@ TEST(OdriveDelta, APositionThatJumpsIsNotTakenAndThriceIsALostHoming) {
   EXPECT_EQ(bench.tick(), Fault::kNone);
   EXPECT_EQ(bench.tick(), Fault::kNone);
   EXPECT_EQ(bench.tick(), Fault::kHomingLost);
-  EXPECT_NE(bench.device->trouble().find("arm 2 (node 2 on can0): its position jumped"),
+  EXPECT_NE(bench.device->fault_detail().find("arm 2 (node 2 on can0): its position jumped"),
             std::string::npos);
   EXPECT_TRUE(bench.all_off());
 }

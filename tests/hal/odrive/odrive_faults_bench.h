@@ -18,11 +18,13 @@ struct OdriveFaultsBench : CanBench<PlayedOdrives> {
   }
   void run() {
     ASSERT_EQ(open(&hal::odrive::start_odrive_delta), "");
-    ASSERT_GT(ticks_until_ready(), 0) << device->trouble();
+    ASSERT_GT(ticks_until_ready(), 0) << device->fault_detail();
     drives.forget();
     tick({0.0, 0.0, 5.0});
   }
-  bool says(const char* words) const { return device->trouble().find(words) != std::string::npos; }
+  bool says(const char* words) const {
+    return device->fault_detail().find(words) != std::string::npos;
+  }
   /// The fault stays, for all further behaviour of bus and drives; the hand has no force.
   void expect_latched(model::Fault fault) {
     for (auto& axis : drives.axis) axis.error = 0, axis.powered = axis.says_heartbeat = true;

@@ -20,7 +20,7 @@ TEST(OdriveFaults, ADrivesErrorStopsAllThreeInTheSameTick) {
   EXPECT_EQ(bench.tick({0.0, 0.0, 5.0}), Fault::kDriveFault);
   bench.expect_stopped();
   EXPECT_TRUE(bench.says("arm 2 (node 2 on can0): DC bus voltage too low"))
-      << bench.device->trouble();
+      << bench.device->fault_detail();
   bench.expect_latched(Fault::kDriveFault);
 }
 
@@ -30,8 +30,8 @@ TEST(OdriveFaults, BitsOf05AreReadAs05) {
   bench.drives.axis[0].error = 0x100;  // over-voltage in 0.6, the encoder in 0.5
   bench.drives.say_heartbeat(bench.drives.axis[0]);
   EXPECT_EQ(bench.tick(), Fault::kDriveFault);
-  EXPECT_TRUE(bench.says("arm 1")) << bench.device->trouble();
-  EXPECT_TRUE(bench.says("ENCODER_FAILED")) << bench.device->trouble();
+  EXPECT_TRUE(bench.says("arm 1")) << bench.device->fault_detail();
+  EXPECT_TRUE(bench.says("ENCODER_FAILED")) << bench.device->fault_detail();
 }
 
 TEST(OdriveFaults, APartOf05ThatFailsIsNamedEvenWithoutAnErrorOfTheAxis) {
@@ -40,7 +40,8 @@ TEST(OdriveFaults, APartOf05ThatFailsIsNamedEvenWithoutAnErrorOfTheAxis) {
   bench.drives.axis[2].parts = 1;
   bench.drives.say_heartbeat(bench.drives.axis[2]);
   EXPECT_EQ(bench.tick(), Fault::kDriveFault);
-  EXPECT_TRUE(bench.says("arm 3 (node 3 on can0): the encoder reports")) << bench.device->trouble();
+  EXPECT_TRUE(bench.says("arm 3 (node 3 on can0): the encoder reports"))
+      << bench.device->fault_detail();
 }
 
 TEST(OdriveFaults, AnAxisThatGoesIdleByItselfIsAFault) {
@@ -49,8 +50,8 @@ TEST(OdriveFaults, AnAxisThatGoesIdleByItselfIsAFault) {
   bench.drives.axis[2].state = 1;
   bench.drives.say_heartbeat(bench.drives.axis[2]);
   EXPECT_EQ(bench.tick(), Fault::kDriveFault);
-  EXPECT_TRUE(bench.says("arm 3")) << bench.device->trouble();
-  EXPECT_TRUE(bench.says("is idle")) << bench.device->trouble();
+  EXPECT_TRUE(bench.says("arm 3")) << bench.device->fault_detail();
+  EXPECT_TRUE(bench.says("is idle")) << bench.device->fault_detail();
   bench.expect_latched(Fault::kDriveFault);
 }
 
@@ -62,7 +63,8 @@ TEST(OdriveFaults, ASilentHeartbeatIsFoundWithin350Milliseconds) {
   EXPECT_GT(ticks, 250);
   EXPECT_LE(ticks, 351);
   bench.expect_stopped();
-  EXPECT_TRUE(bench.says("arm 2 (node 2 on can0): no heartbeat for 35")) << bench.device->trouble();
+  EXPECT_TRUE(bench.says("arm 2 (node 2 on can0): no heartbeat for 35"))
+      << bench.device->fault_detail();
   bench.expect_latched(Fault::kDriveSilent);
 }
 
@@ -85,7 +87,7 @@ TEST(OdriveFaults, WithoutPositionsTorqueFadesIn12TicksAndTheDeviceIsLostIn20) {
   }
   EXPECT_EQ(bench.tick(), Fault::kDeviceLost);
   EXPECT_FALSE(bench.device->ready());
-  EXPECT_TRUE(bench.says("no new position for 20 ms")) << bench.device->trouble();
+  EXPECT_TRUE(bench.says("no new position for 20 ms")) << bench.device->fault_detail();
   bench.expect_stopped();
   for (auto& axis : bench.drives.axis) axis.says_position = true;
   bench.expect_latched(Fault::kDeviceLost);
@@ -117,7 +119,7 @@ TEST(OdriveFaults, ADriveThatNeverEntersClosedLoopIsNamed) {
   EXPECT_GT(ticks, 2900);
   EXPECT_LT(ticks, 3100);
   EXPECT_TRUE(bench.says("arm 1 (node 1 on can0): the drive does not enter closed loop"))
-      << bench.device->trouble();
+      << bench.device->fault_detail();
   EXPECT_FALSE(bench.device->ready());
 }
 
@@ -128,7 +130,7 @@ TEST(OdriveFaults, AWatchdogThatExpiredBeforeTheLoopIsClearedOnce) {
   for (auto& axis : bench.drives.axis) axis.error = 0x1000000;
   bench.loop();
   for (const auto& axis : bench.drives.axis) bench.drives.say_heartbeat(axis);
-  EXPECT_GT(bench.ticks_until_ready(), 0) << bench.device->trouble();
+  EXPECT_GT(bench.ticks_until_ready(), 0) << bench.device->fault_detail();
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(bench.drives.times(i, kClearErrors), 1);
   bench.drives.axis[0].error = 0x1000000;
   bench.drives.say_heartbeat(bench.drives.axis[0]);
@@ -150,7 +152,7 @@ TEST(OdriveFaults, PassiveAndOffLatchEvenIfTheBusComesBack) {
     bench.drives.bus.say_error(one.classes, one.controller);
     EXPECT_EQ(bench.tick(), Fault::kBusOff);
     bench.expect_stopped();
-    EXPECT_TRUE(bench.says(one.words)) << bench.device->trouble();
+    EXPECT_TRUE(bench.says(one.words)) << bench.device->fault_detail();
     bench.drives.bus.say_error(0x104, 0x40);  // restarted, active again
     bench.expect_latched(Fault::kBusOff);
   }
@@ -171,7 +173,7 @@ TEST(OdriveFaults, ALostInterfaceIsABusThatIsDown) {
     receiving.run();
     receiving.drives.bus.socket().receive_error = error;
     EXPECT_EQ(receiving.tick(), Fault::kBusDown);
-    EXPECT_TRUE(receiving.says("ip link set can0 up")) << receiving.device->trouble();
+    EXPECT_TRUE(receiving.says("ip link set can0 up")) << receiving.device->fault_detail();
     receiving.expect_latched(Fault::kBusDown);
     sending.run();
     sending.drives.bus.socket().send_error = error;
@@ -199,7 +201,7 @@ TEST(OdriveFaults, ABusThatTakesNothingForTwentyTicksIsDown) {
   bench.run();
   bench.drives.bus.socket().send_error = ENOBUFS;
   EXPECT_EQ(bench.ticks_until(Fault::kBusDown, 100), 20);
-  EXPECT_TRUE(bench.says("took no frames")) << bench.device->trouble();
+  EXPECT_TRUE(bench.says("took no frames")) << bench.device->fault_detail();
 }
 
 TEST(OdriveFaults, ArmsBeyondTheirStopsAreALostHoming) {
@@ -208,7 +210,7 @@ TEST(OdriveFaults, ArmsBeyondTheirStopsAreALostHoming) {
   auto& axis = bench.drives.axis[2];
   axis.turns_per_s = 20.0;
   EXPECT_GT(bench.ticks_until(Fault::kHomingLost, 2000), 0);
-  EXPECT_TRUE(bench.says("arm 3 would be at 97 degrees")) << bench.device->trouble();
+  EXPECT_TRUE(bench.says("arm 3 would be at 97 degrees")) << bench.device->fault_detail();
   bench.expect_stopped();
 }
 
@@ -229,14 +231,14 @@ TEST(OdriveFaults, AMotorSupplyThatIsOffAtTheStartIsWaitedFor) {
     for (auto& one : bench.drives.axis) one.no_supply = true, one.turns = 0.1;
     ASSERT_EQ(bench.open(&start_odrive_delta), "");
     for (int i = 0; i < 8000; ++i) {
-      ASSERT_EQ(bench.tick(), Fault::kNone) << i << ": " << bench.device->trouble();
+      ASSERT_EQ(bench.tick(), Fault::kNone) << i << ": " << bench.device->fault_detail();
       ASSERT_FALSE(bench.device->ready());
     }
-    EXPECT_NE(bench.device->trouble().find("waiting for power of arm "), std::string::npos);
-    EXPECT_NE(bench.device->trouble().find("motor supply is too low"), std::string::npos);
+    EXPECT_NE(bench.device->fault_detail().find("waiting for power of arm "), std::string::npos);
+    EXPECT_NE(bench.device->fault_detail().find("motor supply is too low"), std::string::npos);
     for (auto& one : bench.drives.axis) one.no_supply = false;
-    EXPECT_GT(bench.ticks_until_ready(2000), 0) << bench.device->trouble();
-    EXPECT_EQ(bench.device->trouble(), "");
+    EXPECT_GT(bench.ticks_until_ready(2000), 0) << bench.device->fault_detail();
+    EXPECT_EQ(bench.device->fault_detail(), "");
   }
 }
 

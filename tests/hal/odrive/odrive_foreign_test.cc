@@ -29,7 +29,7 @@ TEST(OdriveForeign, ACommandOfAnotherSenderLatchesInTheTickThatHearsIt) {
     ASSERT_EQ(bench.tick({0.0, 0.0, 5.0}), Fault::kForeignCommand) << frame.id;
     for (const auto& axis : bench.drives.axis) ASSERT_EQ(axis.torque_Nm, 0.0f) << frame.id;
     ASSERT_EQ(bench.count("foreign_commands"), static_cast<std::uint64_t>(burst));
-    ASSERT_TRUE(bench.says("a command that tactd did not send")) << bench.device->trouble();
+    ASSERT_TRUE(bench.says("a command that tactd did not send")) << bench.device->fault_detail();
     bench.expect_latched(Fault::kForeignCommand);
   }
 }
@@ -44,7 +44,7 @@ TEST(OdriveForeign, ADriveThatAnotherSenderStartsAgainIsStoppedEachTime) {
     bench.expect_stopped();
   }
   EXPECT_TRUE(bench.says("frame 0x04E with 33 33 33 3F 00 00 00 00 on can0"))
-      << bench.device->trouble();
+      << bench.device->fault_detail();
 }
 
 TEST(OdriveForeign, FramesOfOtherNodesAndQuestionsAreNoCommands) {
@@ -52,7 +52,7 @@ TEST(OdriveForeign, FramesOfOtherNodesAndQuestionsAreNoCommands) {
   bench.run();
   bench.drives.bus.say(*odrive_input_torque(9, 0.7, OdriveTorqueLength::kPadded));
   bench.drives.bus.say(*odrive_request(2, OdriveCommand::kGetVersion));
-  EXPECT_EQ(bench.tick({0.0, 0.0, 5.0}), Fault::kNone) << bench.device->trouble();
+  EXPECT_EQ(bench.tick({0.0, 0.0, 5.0}), Fault::kNone) << bench.device->fault_detail();
   EXPECT_EQ(bench.count("foreign_commands"), 0u);
 }
 

@@ -152,7 +152,7 @@ TEST_F(Phantom, OneFrameForEachCycleOfTheLibraryAndNoneFromTheLoop) {
   ASSERT_TRUE(ready());
   const long begun = stub.calls("hdBeginFrame");
   for (int i = 0; i < 200; ++i) tick({.force_N = {0, 0, 1}, .torque_Nm = {}});
-  EXPECT_EQ(fault, Fault::kNone) << device->trouble() << ": the stub refuses a second frame";
+  EXPECT_EQ(fault, Fault::kNone) << device->fault_detail() << ": the stub refuses a second frame";
   EXPECT_GT(stub.calls("hdBeginFrame") - begun, 100);
   EXPECT_LE(stub.calls("hdEnable"), 2 + silences) << "the clamping, and the output once";
 }
@@ -264,7 +264,7 @@ TEST_F(Phantom, StopSwitchesOffAndClosesTwiceWithoutHarm) {
   EXPECT_EQ(force[1], 0.0);
   EXPECT_FALSE(stub.is_open());
   EXPECT_EQ(device->why_not_off(), "");
-  EXPECT_EQ(device->trouble(), "");
+  EXPECT_EQ(device->fault_detail(), "");
   device->stop();
   EXPECT_EQ(stub.calls("hdDisableDevice"), 1);
 }

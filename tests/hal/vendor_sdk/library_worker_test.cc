@@ -49,8 +49,8 @@ class Worker final : public LibraryWorker {
     return switches;
   }
   void close() override { closed = true; }
-  std::string trouble_text() const override {
-    return first_trouble().fault == Fault::kNone ? "" : "it failed";
+  std::string cause_text() const override {
+    return first_cause().fault == Fault::kNone ? "" : "it failed";
   }
 };
 
@@ -111,14 +111,14 @@ TEST(LibraryWorker, TheForcesAreOnForSureAfterAHundredMilliseconds) {
   EXPECT_FALSE(worker.powered_for_sure());
 }
 
-TEST(LibraryWorker, TheFirstTroubleIsKept) {
+TEST(LibraryWorker, TheFirstFaultIsKept) {
   Worker worker;
   EXPECT_EQ(worker.words(worker.now_ns), "");
   worker.keep({.fault = Fault::kForceOff, .kind = 3, .code = 0x0203});
   worker.keep({.fault = Fault::kDeviceFailed, .kind = 1, .code = 7});
-  EXPECT_EQ(worker.first_trouble().fault, Fault::kForceOff);
-  EXPECT_EQ(worker.first_trouble().kind, 3);
-  EXPECT_EQ(worker.first_trouble().code, 0x0203);
+  EXPECT_EQ(worker.first_cause().fault, Fault::kForceOff);
+  EXPECT_EQ(worker.first_cause().kind, 3);
+  EXPECT_EQ(worker.first_cause().code, 0x0203);
 }
 
 TEST(LibraryWorker, ALibraryWithoutACycleForTwentyMillisecondsMayStillPush) {

@@ -94,6 +94,37 @@ TEST_F(HttpSession, AConnectionWithoutTheTokenTakesNoSlot) {
   EXPECT_TRUE(warnings_.empty());
 }
 
+// As a proxy that replaces Host, or drops Upgrade: the page asks the reason with its next request.
+TEST_F(HttpSession, ARefusedWebSocketIsReportedToPageAndTerminalOnce) {
+  start();
+  for (int i = 0; i < 3; ++i) {
+    Socket socket(client_io_);
+    EXPECT_EQ(open_live(socket, "http://proxy:9"), websocket::error::upgrade_declined);
+    const auto session = get("/session", "localhost:1", {{"Tact-Origin", "http://proxy:9"}});
+    EXPECT_EQ(session.result(), http::status::forbidden);
+    EXPECT_NE(session.body().find("Host localhost:1 and Origin http://proxy:9"), std::string::npos);
+    EXPECT_EQ(get("/live").result(), http::status::upgrade_required);
+  }
+  EXPECT_EQ(get("/session", "proxy:9", {{"Tact-Origin", "http://proxy:9"}}).result(),
+            http::status::forbidden)
+      << "the name of the proxy alone is not enough";
+  EXPECT_EQ(get("/session", "localhost:1", {{"Tact-Origin", "http://localhost:1"}}).result(),
+            http::status::no_content);
+  EXPECT_TRUE(wait_until([this] { return warnings_.size() == 3; })) << warnings_.size();
+}
+
+TEST_F(HttpSession, WhatAPageReportsOfItselfIsOneLineOnTheTerminal) {
+  start();
+  for (int i = 0; i < 3; ++i)
+    EXPECT_EQ(get("/session", "localhost", {{"Tact-Trouble", "no WebGL"}}).result(),
+              http::status::no_content);
+  bearer_ = "";
+  get("/session", "localhost", {{"Tact-Trouble", "of a stranger"}});
+  EXPECT_TRUE(wait_until([this] {
+    return warnings_ == std::vector<std::string>{"a page reports: no WebGL"};
+  })) << (warnings_.empty() ? "" : warnings_[0]);
+}
+
 TEST(LiveView, SharesItsFramesAndMeshesWithAllDownloads) {
   host::server::LiveView view;
   view.begin(make_header(3, 1, 3, 1), TinyMeshes{}.bytes(), host::server::Link::kLive);

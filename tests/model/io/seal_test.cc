@@ -18,7 +18,7 @@ class SealTest : public Scratch {
   }
   std::string trouble(const std::string& name) const {
     auto file = SealedFile::open(path(name), "");
-    return file ? file->trouble() : "not opened";
+    return file ? file->damage() : "not opened";
   }
 };
 
@@ -30,7 +30,7 @@ TEST_F(SealTest, OfAWholeFileIsGood) {
   EXPECT_EQ(file->read(bytes.data(), 300), 300u);
   EXPECT_EQ(file->read(bytes.data(), 500), 7u);
   EXPECT_EQ(bytes.substr(0, 7), "the end");
-  EXPECT_EQ(file->trouble(), "");
+  EXPECT_EQ(file->damage(), "");
   EXPECT_EQ(trouble("good"), "") << "read by no other";
 }
 

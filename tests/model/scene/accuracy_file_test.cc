@@ -8,10 +8,13 @@
 #include <fstream>
 
 #include "model/indent/rhombus_patch.h"
+#include "tests/support/measured_files.h"
 #include "tests/support/message.h"
 #include "tests/support/test_scene.h"
 
 namespace tact::model::scene::accuracy_file_test {
+
+using tests::accuracy_text;
 
 class AccuracyFile : public testing::Test {
  protected:

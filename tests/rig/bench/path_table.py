@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The tables of longest paths in firmware/README.md, made from the baseline of the bench."""
+import json
+
 from bench import gate_paths
 from bench.baseline import PHASES, read, read_gate
 
@@ -8,7 +10,9 @@ BEGIN, END = "<!-- made by tests/rig/run --write-baseline -->\n", "<!-- end -->\
 
 def tables(baseline):
     """Of the phases of a tick, and of the stages of the gate."""
-    return table(read(baseline)[0]) + "\n" + gate_paths.table(read_gate(baseline))
+    bounds = json.loads((baseline.parent / "tick_bounds.json").read_text())
+    known = read(baseline)[0]
+    return "\n".join((table(known), bound_table(known, bounds), gate_paths.table(read_gate(baseline))))
 
 
 def table(known):
@@ -17,6 +21,16 @@ def table(known):
     for name, phases in sorted(known.items()):
         lines.append(f"| {name} | " + " | ".join(f"{phases[phase]['longest_ns']:,}".replace(",", " ")
                                                  for phase in PHASES) + " |")
+    return "\n".join(lines) + "\n"
+
+
+def bound_table(known, bounds):
+    """Markdown: the longest of a phase on the bench beside its bound by tests/proof/bound."""
+    lines = ["| back end or law | phase | longest on the bench | bound | ratio |", "|---|---|---|---|---|"]
+    for name, phases in sorted(bounds.items()):
+        for phase, bound in phases.items():
+            seen = known[name][phase]["longest_ns"]
+            lines.append(f"| {name} | {phase} | {seen:,} | {bound:,} ".replace(",", " ") + f"| {bound / seen:.1f} |")
     return "\n".join(lines) + "\n"
 
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The whole tool evaluated: errors as worked by hand, and every sphere felt. Times are never
-// asserted.
+// The whole tool presses: forces as worked by hand, of every sphere. Times are never asserted.
 #include "tools/chart/compare/tool_check.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +10,6 @@
 #include "tests/support/program.h"
 #include "tests/support/test_scene.h"
 #include "tools/chart/compare/chart.h"
-#include "tools/chart/report/tool_report.h"
 
 namespace tact::tools::chart::tool_check_test {
 
@@ -22,6 +20,7 @@ constexpr TimingSettings kShort{.ticks = 100, .rounds = 1, .limit_s = 0.05, .ins
 /// A plate under a linear disc stack, one sphere.
 model::scene::Scene make_scene() {
   model::scene::Scene scene = tests::make_plate_scene();
+  scene.law = "disc_stack";
   scene.described = {"disc_stack"};
   scene.laws.of<model::indent::DiscStackParameters>() = tests::make_linear_discs();
   scene.hand_inward = {0, 0, -1};
@@ -47,72 +46,44 @@ ToolReference linear_truth(const model::scene::Scene& scene, double stiffness_N_
   return data;
 }
 
-TEST(ToolErrors, MatchPenAndPaper) {
-  // Peak 2 N. Errors 0.1, -0.2 and (unseen) -0.4 N.
-  const std::vector<ToolSample> samples{
-      {.place = 0, .depth = 0, .force_N = 1.1, .reference_N = 1.0},
-      {.place = 0, .depth = 1, .force_N = 1.8, .reference_N = 2.0},
-      {.place = 1, .depth = 0, .force_N = 0.6, .reference_N = 1.0}};
-  const ToolErrors e = summarize_tool(samples, {false, true});
-  EXPECT_NEAR(e.rms_ratio, std::sqrt((0.0025 + 0.01 + 0.04) / 3.0), 1e-12);
-  EXPECT_NEAR(e.worst_ratio, 0.2, 1e-12);
-  EXPECT_NEAR(e.unseen_rms_ratio, 0.2, 1e-12);
-  ASSERT_EQ(e.own_worst_ratio.size(), 2U);
-  EXPECT_NEAR(e.own_worst_ratio[0], -0.4, 1e-12) << "the largest in size, with its sign";
-  EXPECT_NEAR(e.own_worst_ratio[1], -0.1, 1e-12);
-  EXPECT_NEAR(e.place_rms_ratio[0], std::sqrt((0.0025 + 0.01) / 2.0), 1e-12);
-  EXPECT_NEAR(e.own_largest_ratio, 0.4, 1e-12);
-  EXPECT_NEAR(e.place_rms_ratio[1], 0.4, 1e-12) << "of its own peak";
-  EXPECT_EQ(e.within_jnd_ratio, 0.0) << "10, 10 and 40 % of the own force: all can be felt";
-  EXPECT_TRUE(std::isnan(summarize_tool({samples[0]}, {false}).unseen_rms_ratio));
+/// k of its linear disc stack.
+double stiffness_of(const model::scene::Scene& scene) {
+  const auto stack =
+      model::indent::make_disc_stack(scene.laws.of<model::indent::DiscStackParameters>());
+  return stack ? stack->respond(0.001).force_N / 0.001 : std::nan("");
 }
 
-TEST(ToolErrors, CountWhatAHandCannotNotice) {
-  const std::vector<ToolSample> samples{{.force_N = 0.931, .reference_N = 1.0},
-                                        {.force_N = 1.069, .reference_N = 1.0},
-                                        {.force_N = 1.071, .reference_N = 1.0},
-                                        {.force_N = 0.929, .reference_N = 1.0}};
-  EXPECT_EQ(summarize_tool(samples, {true}).within_jnd_ratio, 0.5);
-}
-
-TEST(CheckTool, FindsTheErrorOfOneSphereAsWorkedByHand) {
+TEST(PressTool, FindsTheForceOfOneSphereAsWorkedByHand) {
   const model::scene::Scene scene = make_scene();
-  const auto stack =
-      model::indent::make_disc_stack(scene.laws.of<model::indent::DiscStackParameters>());
-  ASSERT_TRUE(stack);
-  const double k = stack->respond(0.001).force_N / 0.001;
-  const auto row = check_tool(scene, "disc_stack", linear_truth(scene, 1.25 * k), kShort);
-  ASSERT_TRUE(row) << row.error().message;
-  EXPECT_EQ(row->failure, "");
-  ASSERT_EQ(row->samples.size(), 4U) << "two places, two depths";
-  for (const ToolSample& s : row->samples) EXPECT_NEAR(s.own_ratio(), -0.2, 1e-6);
-  EXPECT_GT(row->timing.median_us, 0.0);
+  const double k = stiffness_of(scene);
+  const auto force_N = press_tool(scene, linear_truth(scene, k));
+  ASSERT_TRUE(force_N) << force_N.error().message;
+  ASSERT_EQ(force_N->size(), 4U) << "two places, two depths";
+  for (const std::size_t i : {0, 1, 2, 3})
+    EXPECT_NEAR((*force_N)[i], k * static_cast<double>(i % 2 + 1) * 1e-3, 1e-9);
 }
 
-TEST(CheckTool, RendersEverySphereOfTheTool) {
+TEST(PressTool, RendersEverySphereOfTheTool) {
   model::scene::Scene scene = make_scene();
-  const auto stack =
-      model::indent::make_disc_stack(scene.laws.of<model::indent::DiscStackParameters>());
-  ASSERT_TRUE(stack);
-  const double k = stack->respond(0.001).force_N / 0.001;
+  const double k = stiffness_of(scene);
   scene.tool.spheres = {{{0, -0.03, 0}, 0.004}, {{0, 0.03, 0}, 0.004}};  // far from each other
-  const auto row = check_tool(scene, "disc_stack", linear_truth(scene, k), kShort);
-  ASSERT_TRUE(row) << row.error().message;
-  for (const ToolSample& s : row->samples) {
-    EXPECT_GT(s.own_ratio(), 0.5);
-    EXPECT_LT(s.own_ratio(), 1.0 + 1e-6);
+  const auto force_N = press_tool(scene, linear_truth(scene, k));
+  ASSERT_TRUE(force_N) << force_N.error().message;
+  for (const std::size_t i : {0, 1, 2, 3}) {
+    EXPECT_GT((*force_N)[i], 1.5 * k * static_cast<double>(i % 2 + 1) * 1e-3);
+    EXPECT_LT((*force_N)[i], 2.0 * k * static_cast<double>(i % 2 + 1) * 1e-3 + 1e-9);
   }
 }
 
-TEST(CheckTool, IsWithoutFrictionAsTheReferenceIs) {
+TEST(PressTool, IsWithoutFrictionAsTheReferenceIs) {
   model::scene::Scene scene = make_scene();
   ToolReference truth = linear_truth(scene, 20.0);
   for (auto& place : truth.places) place.direction = normalized(model::Vec3{0.3, 0.0, -1.0});
-  const auto rough = check_tool(scene, "disc_stack", truth, kShort);
+  const auto rough = press_tool(scene, truth);
   scene.contact.friction_ratio = 0.0;
-  const auto smooth = check_tool(scene, "disc_stack", truth, kShort);
+  const auto smooth = press_tool(scene, truth);
   ASSERT_TRUE(rough && smooth);
-  EXPECT_EQ(rough->samples.back().force_N, smooth->samples.back().force_N);
+  EXPECT_EQ(*rough, *smooth);
 }
 
 TEST(TimeTool, TimesAToolInContactOrRefuses) {
@@ -123,21 +94,34 @@ TEST(TimeTool, TimesAToolInContactOrRefuses) {
   EXPECT_FALSE(time_tool(scene, kShort).has_value());
 }
 
-TEST(CheckTool, RefusesAReferenceOfAnotherTool) {
+TEST(PressTool, RefusesAReferenceOfAnotherTool) {
   model::scene::Scene scene = make_scene();
-  const ToolReference truth = linear_truth(scene, 20.0);
+  ChartOptions options{
+      .request = {}, .timing = kShort, .tool_reference = linear_truth(scene, 20.0)};
   scene.tool.spheres[0].radius_m = 0.005;
-  const auto row = check_tool(scene, "disc_stack", truth, kShort);
-  ASSERT_FALSE(row);
-  EXPECT_NE(row.error().message.find("spheres"), std::string::npos);
+  const auto rows = measure_tool(scene, options);
+  ASSERT_FALSE(rows);
+  EXPECT_NE(rows.error().message.find("spheres"), std::string::npos);
+  EXPECT_FALSE(press_tool(scene, *options.tool_reference));
 }
 
-TEST(Chart, JudgesEverySizeByTheWholeToolWhereItIsKnown) {
+TEST(MeasureTool, HasEveryWantedLawWithItsTime) {
   const model::scene::Scene scene = make_scene();
-  const auto stack =
-      model::indent::make_disc_stack(scene.laws.of<model::indent::DiscStackParameters>());
-  ASSERT_TRUE(stack);
-  const double k = stack->respond(0.001).force_N / 0.001;
+  ChartOptions options{
+      .request = {}, .timing = kShort, .tool_reference = linear_truth(scene, 20.0)};
+  const auto rows = measure_tool(scene, options);
+  ASSERT_TRUE(rows) << rows.error().message;
+  ASSERT_EQ(rows->size(), 1U);
+  EXPECT_EQ(rows->front().failure, "");
+  EXPECT_EQ(rows->front().tool->size(), 4U);
+  EXPECT_GT(rows->front().timing.median_us, 0.0);
+  options.request.laws = {"rhombus"};
+  EXPECT_FALSE(measure_tool(scene, options)) << "the scene does not describe it";
+}
+
+TEST(Chart, PressesEverySizeWithTheWholeToolWhereItIsKnown) {
+  const model::scene::Scene scene = make_scene();
+  const double k = stiffness_of(scene);
   ground_truth::ReferenceData one_sphere;
   one_sphere.body.youngs_modulus_Pa = 5000.0;
   one_sphere.body.poisson_ratio = 0.45;
@@ -146,43 +130,35 @@ TEST(Chart, JudgesEverySizeByTheWholeToolWhereItIsKnown) {
   one_sphere.sites = {{.vertex = 220, .point_m = {0, 0, 0}, .direction = {0, 0, -1}, .cases = {}}};
   one_sphere.sites[0].cases = {
       {.depth_m = 0.001, .force_N = 1.25 * k * 0.001, .profile_m = {0.001, 0.0}}};
-  ToolReference whole_tool = linear_truth(scene, 0.5 * k);
-  ChartOptions options{
-      .request = {.laws = {}, .quick = true}, .timing = kShort, .tool_reference = &whole_tool};
+  ChartOptions options{.request = {.laws = {}, .quick = true},
+                       .timing = kShort,
+                       .tool_reference = linear_truth(scene, 0.5 * k)};
   const auto rows = measure_chart(scene, one_sphere, options);
   ASSERT_TRUE(rows) << rows.error().message;
   std::size_t linear = 0;
-  for (const ChartRow& row : *rows) {
+  for (const Measured& row : *rows) {
     if (row.variant.sizes.disc_form != "linear") continue;
     ++linear;
     ASSERT_EQ(row.failure, "");
     ASSERT_TRUE(row.tool);
-    EXPECT_NEAR(row.tool->own_largest_ratio, 1.0, 1e-6) << "twice the force of the whole tool";
-    EXPECT_NEAR(row.errors.force_worst_ratio, 0.2, 1e-9) << "one sphere is evaluated by its own";
+    EXPECT_NEAR(row.tool->front(), k * 0.001, 1e-9);
+    EXPECT_NEAR(row.answers.samples.front().force_N, k * 0.001, 1e-9);
     EXPECT_GT(row.timing.median_us, 0.0);
   }
   EXPECT_GT(linear, 0U);
-  whole_tool.sphere[0].radius_m = 0.005;
+  options.tool_reference->sphere[0].radius_m = 0.005;
   EXPECT_FALSE(measure_chart(scene, one_sphere, options)) << "another tool";
 }
 
-TEST(ToolReport, HasARowForEachLawPlaceAndDepthAndASummary) {
+TEST(Chart, NamesThePlacesOfTheWholeTool) {
   const model::scene::Scene scene = make_scene();
-  const ToolReference truth = linear_truth(scene, 20.0);
-  const auto row = check_tool(scene, "disc_stack", truth, kShort);
-  ASSERT_TRUE(row) << row.error().message;
-  const auto j = nlohmann::json::parse(tool_json({*row}, truth, "tact-lab chart x", {}));
-  EXPECT_EQ(j.at("format"), "tact-tool-chart");
-  EXPECT_EQ(j.at("rows").size(), 4U);
-  EXPECT_EQ(j.at("rows")[3].at("place"), "220");
-  const auto& law = j.at("laws")[0];
-  EXPECT_EQ(law.at("law"), "disc_stack");
-  EXPECT_NEAR(law.at("own_worst_ratio_at_mm").at("2").get<double>(), row->errors.own_worst_ratio[1],
-              1e-9);
-  EXPECT_TRUE(law.at("place_rms_ratio").contains("hand's"));
-  const std::string text = tool_text({*row}, truth);
-  for (const char* word : {"disc_stack", "hand's", "220", "1 mm", "2 mm"})
-    EXPECT_NE(text.find(word), std::string::npos) << word;
+  const auto places = to_json(linear_truth(scene, 20.0));
+  ASSERT_EQ(places.size(), 2U);
+  EXPECT_EQ(places[0].at("place"), "hand's");
+  EXPECT_EQ(places[0].at("unseen"), false);
+  EXPECT_EQ(places[1].at("place"), "220");
+  EXPECT_EQ(places[1].at("unseen"), true);
+  EXPECT_EQ(places[1].at("cases")[1].at("reference_N"), 20.0 * 0.002);
 }
 
 TEST(ChartProgram, SaysWhichReferenceItNeeds) {

@@ -82,7 +82,8 @@ TEST_F(Deploy, AnOlderDebianIsRefusedWithTheReleasesThatDo) {
   EXPECT_EQ(checked("ID=arch\nVERSION_ID=1\n"), 0) << content(said);
 }
 
-constexpr std::array kUnits{"tactd@.service", "tact-awake@.service", "tact-view.service"};
+constexpr std::array kUnits{"tactd@.service", "tact-awake@.service", "tact-view.service",
+                            "tact-metrics.service"};
 
 TEST_F(Deploy, NoUnitArms) {
   for (const char* unit : kUnits) {

@@ -110,7 +110,7 @@ TEST_F(OnARealDevice, ACallThatIsNotListedEndsThePlan) {
   EXPECT_TRUE(costs.call_filter);
 }
 
-TEST_F(OnARealDevice, CasesWithoutTroubleKeepTheirEnableLineAndMakeNoCallButSleep) {
+TEST_F(OnARealDevice, CasesWithoutAFaultKeepTheirEnableLineAndMakeNoCallButSleep) {
   auto filter =
       firmware::watch::CallFilter::make(device.loop_calls(), lines.loop_calls(), requests);
   play(filter ? filter->get() : nullptr);

@@ -146,7 +146,7 @@ TEST(RunPlan, ACaseInWhichNothingHappensFails) {
   for (Case c : {all_cases()[0], all_cases()[7], all_cases()[13]}) {
     c.size = 0.0;  // no force
     c.shape = Shape::kHold;
-    c.trouble = Trouble::kNone;  // and no cause
+    c.injected = InjectedFault::kNone;  // and no cause
     const auto report = run_plan(scene, {.cases = {c}});
     ASSERT_TRUE(report);
     EXPECT_FALSE(report->passed()) << c.name;

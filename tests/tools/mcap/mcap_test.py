@@ -15,7 +15,6 @@ import signal
 import struct
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 import zlib
@@ -26,11 +25,10 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path[:0] = [str(ROOT / "tools/client"), str(ROOT / "tests/tools/client")]
 sys.dont_write_bytecode = True
 import tact  # noqa: E402
+from recorded_run import LIVER, TICKS, RecordedRun  # noqa: E402
 from run_bytes import byte_of_tick  # noqa: E402
 
-LIVER = ROOT / "model/scenes/liver.toml"
 BUILD = pathlib.Path(".")
-TICKS = 3000
 SCHEMAS = {"/pose": "geometry_msgs/msg/PoseStamped", "/force": "geometry_msgs/msg/WrenchStamped",
            "/wanted": "geometry_msgs/msg/WrenchStamped", "/state": "tact_msgs/msg/State"}
 
@@ -83,17 +81,11 @@ def rows(messages, under):
     return out
 
 
-class Mcap(unittest.TestCase):
+class Mcap(RecordedRun):
     @classmethod
     def setUpClass(cls):
-        cls.temporary = tempfile.TemporaryDirectory()
-        cls.folder = pathlib.Path(cls.temporary.name)
-        cls.log, cls.mcap = cls.folder / "run.tactlog", cls.folder / "run.mcap"
-        start("tactd", LIVER, "--free-run", "--ticks", TICKS, "--no-telemetry", "--no-black-box", "--record", cls.log).wait(60)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.temporary.cleanup()
+        super().setUpClass()
+        cls.mcap = cls.folder / "run.mcap"
 
     def same_ticks(self, seen, ticks):
         self.assertEqual(len(seen), len(ticks))
@@ -248,5 +240,5 @@ class Mcap(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    BUILD = pathlib.Path(sys.argv.pop(1)).resolve()
+    BUILD = RecordedRun.build = pathlib.Path(sys.argv.pop(1)).resolve()
     unittest.main()

@@ -13,7 +13,6 @@ import pathlib
 import re
 import subprocess
 import sys
-import tempfile
 import unittest
 
 import numpy as np
@@ -22,9 +21,9 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path[:0] = [str(ROOT / "tools/client"), str(ROOT / "tests/tools/client")]
 sys.dont_write_bytecode = True
 import tact  # noqa: E402
+from recorded_run import LIVER, RecordedRun  # noqa: E402
 from run_bytes import byte_of_tick  # noqa: E402
 
-LIVER = ROOT / "model/scenes/liver.toml"
 BUILD = pathlib.Path(".")
 
 
@@ -43,22 +42,14 @@ def module():
     return out
 
 
-class Plot(unittest.TestCase):
+class Plot(RecordedRun):
     @classmethod
     def setUpClass(cls):
-        cls.temporary = tempfile.TemporaryDirectory()
-        cls.folder = pathlib.Path(cls.temporary.name)
-        cls.log, cls.table = cls.folder / "run.tactlog", cls.folder / "run.csv"
-        for command in ([BUILD / "tactd", LIVER, "--free-run", "--ticks", "3000", "--no-telemetry", "--no-black-box",
-                         "--record", cls.log],
-                        [BUILD / "tactd", "--replay", cls.log, "--csv", cls.table]):
-            subprocess.run(list(map(str, command)), check=True, capture_output=True)
-        lines = [line for line in cls.table.read_text().splitlines() if not line.startswith("#")]
+        super().setUpClass()
+        table = cls.folder / "run.csv"
+        cls.tactd("--replay", cls.log, "--csv", table)
+        lines = [line for line in table.read_text().splitlines() if not line.startswith("#")]
         cls.rows = list(csv.DictReader(lines))
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.temporary.cleanup()
 
     def test_depth_is_of_the_sphere_that_presses_most_and_has_gaps(self):
         run = module().Run(self.log)
@@ -145,5 +136,5 @@ class Plot(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    BUILD = pathlib.Path(sys.argv.pop(1)).resolve()
+    BUILD = RecordedRun.build = pathlib.Path(sys.argv.pop(1)).resolve()
     unittest.main()

@@ -3,79 +3,104 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <limits>
-
-#include "model/scene/laws.h"
+#include "model/io/json.h"
 #include "tools/ground_truth/reference_fits.h"
+#include "tools/program/interrupt.h"
 #include "tools/program/run_program.h"
 
 namespace tact::tools::chart {
 namespace {
 
+using ground_truth::ToolReference;
 using model::Error;
 using model::Result;
 using model::scene::Scene;
+using nlohmann::json;
 
-constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
-
-std::string without_commas(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c == ',' || c == '"' || c == '\n'; }, ';');
-  return text;
-}
-
-/// Evaluated without relaxation and at small strain, as the reference is linear elastic; the memory
+/// Pressed without relaxation and at small strain, as the reference is linear elastic; the memory
 /// is that with the scene's relaxation.
-ChartRow check_errors_of(const Scene& scene, const Scene& elastic, const Variant& variant,
-                         const std::vector<ProbeCase>& cases, double pitch_m,
-                         const ground_truth::ToolReference* tool_reference) {
-  ChartRow row{.variant = variant};
+Measured press(const Scene& scene, const Scene& elastic, const Variant& variant,
+               const std::vector<ProbeCase>& cases, double pitch_m, const ChartOptions& options) {
+  Measured out{.variant = variant};
   auto subject = make_subject(elastic, variant.sizes);
   if (subject) {
-    const Accuracy accuracy = measure_accuracy(**subject, cases, pitch_m);
-    row.errors = accuracy.errors;
-    row.settle_ticks = accuracy.settle_ticks;
+    out.answers = measure_answers(**subject, cases, pitch_m);
     if (!scene.relaxation.empty()) subject = make_subject(scene, variant.sizes);
   }
   if (!subject) {
-    row.failure = subject.error().message;
-    return row;
+    out.failure = subject.error().message;
+    return out;
   }
-  row.memory_bytes = (*subject)->memory_bytes();
-  if (tool_reference == nullptr) return row;
-  const auto checked = check_errors(sized(scene, variant.sizes), *tool_reference);
-  row.failure = checked ? checked->failure : checked.error().message;
-  if (row.failure.empty()) row.tool = checked->errors;
-  return row;
-}
-
-std::vector<SpeedAndError> points_of(const report::Table& table,
-                                     const std::vector<std::size_t>& rows) {
-  std::vector<SpeedAndError> out;
-  out.reserve(rows.size());
-  for (const std::size_t i : rows)
-    out.push_back({.tick_us = number(table.rows()[i], "tick_median_us"),
-                   .error_ratio = number(table.rows()[i], "force_rms_ratio")});
+  out.memory_bytes = (*subject)->memory_bytes();
+  if (!options.tool_reference) return out;
+  auto force_N = press_tool(sized(scene, variant.sizes), *options.tool_reference);
+  if (force_N)
+    out.tool = std::move(*force_N);
+  else
+    out.failure = force_N.error().message;
   return out;
 }
 
-std::vector<std::size_t> rows_of(const report::Table& table, const std::string& kind) {
-  std::vector<std::size_t> out;
-  for (std::size_t i = 0; i < table.rows().size(); ++i)
-    if (word(table.rows()[i], "kind") == kind) out.push_back(i);
-  return out;
+void add_time(Measured& row, const Scene& scene, const TimingSettings& settings) {
+  if (!row.failure.empty()) return;
+  if (const auto timing = time_tool(sized(scene, row.variant.sizes), settings))
+    row.timing = *timing;
+  else
+    row.failure = timing.error().message;
 }
 
 }  // namespace
 
-Result<std::vector<ChartRow>> measure_chart(const Scene& scene,
+json to_json(const Measured& m) {
+  const model::scene::LawSizes& sizes = m.variant.sizes;
+  json samples = json::array();
+  for (const Sample& s : m.answers.samples)
+    samples.push_back({{"site", s.site},
+                       {"held_out", s.held_out},
+                       {"depth_m", s.depth_m},
+                       {"force_N", s.force_N},
+                       {"reference_N", s.reference_N},
+                       {"ring_m", s.ring_m},
+                       {"reference_ring_m", s.reference_ring_m}});
+  return {{"family", sizes.law},
+          {"size", m.variant.size()},
+          {"form", sizes.disc_form},
+          {"table_knots", sizes.table_knots},
+          {"size_count", sizes.size},
+          {"failure", m.failure},
+          {"samples", std::move(samples)},
+          {"tool_N", m.tool ? json(*m.tool) : json()},
+          {"settle_ticks", m.answers.settle_ticks},
+          {"memory_bytes", m.memory_bytes},
+          {"tick_median_us", m.timing.median_us},
+          {"tick_p999_us", m.timing.p999_us},
+          {"instructions", m.timing.instructions},
+          {"ticks", m.timing.ticks},
+          {"paused", m.timing.paused}};
+}
+
+json to_json(const ToolReference& reference) {
+  json out = json::array();
+  for (const ground_truth::ToolPoint& place : reference.places) {
+    json cases = json::array();
+    for (const ground_truth::ToolCase& c : place.cases)
+      cases.push_back({{"depth_m", c.depth_m},
+                       {"reference_N", c.force_N},
+                       {"reference_error_ratio", c.force_error_ratio}});
+    out.push_back({{"place", name_of(place)},
+                   {"unseen", place.vertex.has_value()},
+                   {"cases", std::move(cases)}});
+  }
+  return out;
+}
+
+Result<std::vector<Measured>> measure_chart(const Scene& scene,
                                             const ground_truth::ReferenceData& reference,
                                             const ChartOptions& options) {
   const auto cases = cases_of(scene, reference);
   if (!cases) return cases.error();
   const std::vector<Variant> variants = variants_of(scene, options.request);
-  if (options.tool_reference != nullptr)
+  if (options.tool_reference)
     if (auto differs = check_tool_reference_fits(*options.tool_reference, scene))
       return std::move(*differs);
   if (variants.empty())
@@ -86,103 +111,63 @@ Result<std::vector<ChartRow>> measure_chart(const Scene& scene,
   Scene elastic = scene;
   elastic.relaxation.clear();
   elastic.compliance.large_strain = false;
-  std::vector<ChartRow> all(variants.size());
-  const program::SweepOptions sweep_options{.label = options.label + ", accuracy"};
-  const bool checked = run_jobs(variants.size(), sweep_options, [&](std::size_t job) {
-    all[job] = check_errors_of(scene, elastic, variants[job], *cases, reference.ring_pitch_m,
-                               options.tool_reference);
+  std::vector<Measured> all(variants.size());
+  const program::SweepOptions on_all_cores{.label = options.label + ", accuracy"};
+  const bool pressed = run_jobs(variants.size(), on_all_cores, [&](std::size_t job) {
+    all[job] = press(scene, elastic, variants[job], *cases, reference.ring_pitch_m, options);
   });
-  if (!checked) return program::interruption();
+  if (!pressed) return program::interruption();
   // One after the other: a second one on another core would share cache and memory with the first.
   const program::SweepOptions one_by_one{.label = options.label + ", time", .threads = 1};
-  const bool timed = run_jobs(variants.size(), one_by_one, [&](std::size_t job) {
-    if (!all[job].failure.empty()) return;
-    if (const auto timing = time_tool(sized(scene, variants[job].sizes), options.timing))
-      all[job].timing = *timing;
-    else
-      all[job].failure = timing.error().message;
-  });
+  const bool timed = run_jobs(variants.size(), one_by_one,
+                              [&](std::size_t job) { add_time(all[job], scene, options.timing); });
   if (!timed) return program::interruption();
   return all;
 }
 
-// NOLINTNEXTLINE(readability-function-size): a table of columns
-report::Row table_row(const ChartRow& row, const Provenance& provenance) {
-  const model::scene::LawSizes& sizes = row.variant.sizes;
-  // A row that failed has NaN: a zero would look like the best of all.
-  const auto measured = [&](auto value) {
-    return row.failure.empty() ? static_cast<double>(value) : kNotMeasured;
-  };
-  const ErrorSummary& e = row.errors;
-  const auto or_dash = [](const std::string& text) {
-    return text.empty() ? "-" : without_commas(text);
-  };
-  return {{"kind", "tact"},
-          {"family", sizes.law},
-          {"size", row.variant.size()},
-          {"form", or_dash(sizes.disc_form)},
-          {"table_knots", sizes.table_knots},
-          {"size_count", sizes.size},
-          {"force_rms_ratio", measured(e.force_rms_ratio)},
-          {"force_worst_ratio", measured(e.force_worst_ratio)},
-          {"press_rms_ratio", measured(e.press_rms_ratio)},
-          {"pull_rms_ratio", measured(e.pull_rms_ratio)},
-          {"held_out_rms_ratio", measured(e.held_out_rms_ratio)},
-          {"worst_site_rms_ratio", measured(e.worst_site_rms_ratio)},
-          {"own_worst_1mm_ratio", measured(e.own_worst_ratio[0])},
-          {"own_worst_2mm_ratio", measured(e.own_worst_ratio[1])},
-          {"own_worst_5mm_ratio", measured(e.own_worst_ratio[2])},
-          {"own_worst_10mm_ratio", measured(e.own_worst_ratio[3])},
-          {"own_worst_ratio", measured(e.own_largest_ratio)},
-          {"within_jnd_ratio", measured(e.within_jnd_ratio)},
-          {"tool_rms_ratio", measured(row.tool ? row.tool->rms_ratio : kNotMeasured)},
-          {"tool_own_worst_ratio", measured(row.tool ? row.tool->own_largest_ratio : kNotMeasured)},
-          {"shape_rms_ratio", measured(e.shape_rms_ratio)},
-          {"shape_worst_ratio", measured(e.shape_worst_ratio)},
-          {"cases", measured(e.cases)},
-          {"settle_ticks", measured(row.settle_ticks)},
-          {"memory_bytes", measured(row.memory_bytes)},
-          {"given", "parameters of the scene"},
-          {"failure", or_dash(row.failure)},
-          {"scene_hash", provenance.scene_hash},
-          {"reference_hash", provenance.reference_hash},
-          {"revision", or_dash(provenance.revision)},
-          {"machine", or_dash(provenance.machine)},
-          {"tick_median_us", measured(row.timing.median_us)},
-          {"tick_p999_us", measured(row.timing.p999_us)},
-          {"instructions", measured(row.timing.instructions)},
-          {"ticks", measured(row.timing.ticks)},
-          {"paused", measured(row.timing.paused)}};
+Result<std::vector<Measured>> measure_tool(const Scene& scene, const ChartOptions& options) {
+  std::vector<Measured> all;
+  for (const std::string& law : wanted_laws(scene, options.request)) {
+    Measured row{.variant = {{.law = law}}};
+    if (auto differs = check_tool_reference_fits(*options.tool_reference, scene))
+      return std::move(*differs);
+    auto force_N = press_tool(sized(scene, row.variant.sizes), *options.tool_reference);
+    if (program::is_interrupted()) return program::interruption();
+    if (force_N)
+      row.tool = std::move(*force_N);
+    else
+      row.failure = force_N.error().message;
+    add_time(row, scene, options.timing);
+    all.push_back(std::move(row));
+  }
+  if (all.empty()) return Error{"none of the wanted laws is described; leave out --laws"};
+  return all;
 }
 
-std::vector<std::size_t> front_rows(const report::Table& table) {
-  const auto rows = rows_of(table, "tact");
-  const auto points = points_of(table, rows);
-  const auto front = front_of(points);
-  std::vector<std::size_t> out;  // from the slow end: each against the last that stayed
-  double kept_us = std::numeric_limits<double>::infinity();
-  for (auto k = front.rbegin(); k != front.rend(); ++k) {
-    if ((1.0 + kSameTime_ratio) * points[*k].tick_us >= kept_us) continue;
-    kept_us = points[*k].tick_us;
-    out.insert(out.begin(), rows[*k]);
-  }
-  return out;
+Result<json> read_chart(const std::string& path) {
+  constexpr const char* kRemedy = "make it: tact-lab chart SCENE --reference FILE --out DIR";
+  auto document = model::io::read_json(path, kRemedy);
+  if (!document) return document.error();
+  const auto& d = *document;
+  if (!d.is_object() || !d.contains("rows") || !d["rows"].is_array() ||
+      d.value("format", json()) != "tact-chart" || d.value("version", json()) != kChartVersion)
+    return Error{fmt::format("{}: is no chart of this version; {}", path, kRemedy)};
+  return d["rows"];
 }
 
-std::vector<std::size_t> peers_ahead(const report::Table& table) {
-  const auto laws = points_of(table, rows_of(table, "tact"));
-  const auto front = front_of(laws);
-  const auto peers = rows_of(table, "peer");
-  const auto points = points_of(table, peers);
-  std::vector<std::size_t> out;
-  for (std::size_t i = 0; i < peers.size(); ++i) {
-    const bool faster_and_better = std::any_of(front.begin(), front.end(), [&](std::size_t k) {
-      // Without kSameTime_ratio: the promise has no allowance.
-      return points[i].tick_us < laws[k].tick_us && points[i].error_ratio < laws[k].error_ratio;
-    });
-    if (faster_and_better) out.push_back(peers[i]);
+Result<json> peers_of(const std::string& path, const std::string& reference_hash) {
+  if (path.empty()) return json::array();
+  auto rows = read_chart(path);
+  if (!rows) return rows;
+  for (std::size_t i = 0; i < rows->size(); ++i) {
+    const json& row = (*rows)[i];
+    if (!row.is_object() || row.value("kind", json()) != "peer" ||
+        row.value("reference_hash", json()) != reference_hash)
+      return Error{fmt::format(
+          "{}: row {} is no peer that was measured against this --reference; leave out --peers",
+          path, i)};
   }
-  return out;
+  return rows;
 }
 
 }  // namespace tact::tools::chart

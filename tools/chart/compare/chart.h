@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// chart.h - speed against accuracy: one row for every law and size of a scene. Rows of kind "peer",
-// other ways to do the same, come from a file alone (report.h).
+// chart.h - what every law and size of a scene answers, and its time: numbers for chart.py, which
+// compares them with the reference.
 //
-// First all rows are made and evaluated on all cores, then timed one after the other, so that they
-// do not disturb each other. The errors are the same on every machine; times belong to the row's
-// machine. The time of a law is the tick that a user gets: detect, render and limit of the scene's
-// whole tool (tool_check.h).
+// First all rows are made and pressed on all cores, then timed one after the other, so that they
+// do not disturb each other. Forces are the same on every machine; times belong to the machine.
+// The time of a law is the tick that a user gets: detect, render and limit of the scene's whole
+// tool (tool_check.h).
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,7 +17,6 @@
 #include "tools/chart/compare/tool_check.h"
 #include "tools/chart/measure/measure.h"
 #include "tools/program/sweep.h"
-#include "tools/report/table.h"
 
 namespace tact::tools::chart {
 
@@ -39,40 +39,40 @@ std::vector<std::string> wanted_laws(const model::scene::Scene& scene,
 /// Every family there is, for --laws.
 std::vector<std::string> all_families();
 
-struct ChartRow {
+/// A law and size, or a law as the scene has it.
+struct Measured {
   Variant variant{};
-  std::string failure{};             // empty: it was measured
-  ErrorSummary errors{};             // of one sphere
-  std::optional<ToolErrors> tool{};  // of the whole tool; none: no reference
-  int settle_ticks = 0;
+  std::string failure{};                      // empty: it was measured
+  Answers answers{};                          // of one sphere
+  std::optional<std::vector<double>> tool{};  // forces of the whole tool; none: no reference
   Timing timing{};
   std::size_t memory_bytes = 0;
 };
-
-/// Where numbers come from; part of every row.
-struct Provenance {
-  std::string scene_hash, reference_hash, revision, machine;
-};
+nlohmann::json to_json(const Measured& measured);
+/// The places of a reference and their depths, in the order of press_tool().
+nlohmann::json to_json(const ground_truth::ToolReference& reference);
 
 struct ChartOptions {
   std::string label = "tact-lab chart";  // before the progress
   VariantRequest request;
   TimingSettings timing;
-  const ground_truth::ToolReference* tool_reference = nullptr;  // laws are evaluated by it too
+  std::optional<ground_truth::ToolReference> tool_reference{};  // laws are evaluated by it, too
 };
 
-/// One row a variant. An error names what does not fit together, or says that Ctrl-C
-/// ended it.
-model::Result<std::vector<ChartRow>> measure_chart(const model::scene::Scene& scene,
+/// Every variant. An error names what does not fit together, or says that Ctrl-C ended it.
+model::Result<std::vector<Measured>> measure_chart(const model::scene::Scene& scene,
                                                    const ground_truth::ReferenceData& reference,
                                                    const ChartOptions& options);
+/// The laws that are wanted, as the scene has them, with its whole tool.
+model::Result<std::vector<Measured>> measure_tool(const model::scene::Scene& scene,
+                                                  const ChartOptions& options);
 
-/// A row of the table "chart".
-report::Row table_row(const ChartRow& row, const Provenance& provenance);
-/// The rows on the front of tact's laws, fastest first. Times within 10 % are the
-/// same time: of two such laws the nearer one stays.
-std::vector<std::size_t> front_rows(const report::Table& table);
-/// Peers that beat a law of the front in both, by however little; empty is what tact promises.
-std::vector<std::size_t> peers_ahead(const report::Table& table);
+/// Of chart.json; read_chart() takes this one alone, as an older chart has other columns.
+inline constexpr int kChartVersion = 4;
+/// The rows of a chart.json. What they lack, chart.py reports.
+model::Result<nlohmann::json> read_chart(const std::string& path);
+/// The rows of kind "peer" of another chart.json; none without a path. An error: they were measured
+/// against another reference.
+model::Result<nlohmann::json> peers_of(const std::string& path, const std::string& reference_hash);
 
 }  // namespace tact::tools::chart

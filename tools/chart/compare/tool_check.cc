@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/chart/compare/tool_check.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "firmware/loop/controller.h"
@@ -10,7 +9,6 @@
 #include "tools/ground_truth/reference_fits.h"
 #include "tools/program/interrupt.h"
 #include "tools/program/run_program.h"
-#include "tools/report/just_noticeable.h"
 
 namespace tact::tools::chart {
 namespace {
@@ -125,75 +123,20 @@ Result<Timing> time_tool(const Scene& scene, const TimingSettings& settings) {
       settings);
 }
 
-ToolErrors summarize_tool(const std::vector<ToolSample>& samples, const std::vector<bool>& unseen) {
-  ToolErrors out;
-  double peak_N = 0.0;
-  std::vector<double> place_peak_N(unseen.size(), 0.0);
-  for (const ToolSample& s : samples) {
-    peak_N = std::max(peak_N, std::abs(s.reference_N));
-    place_peak_N[s.place] = std::max(place_peak_N[s.place], std::abs(s.reference_N));
-  }
-  Rms all, others;
-  std::vector<Rms> of_place(unseen.size());
-  std::size_t rendered_right = 0;
-  for (const ToolSample& s : samples) {
-    const double e_N = s.force_N - s.reference_N, e = e_N / peak_N;
-    all.add(e);
-    if (unseen[s.place]) others.add(e);
-    of_place[s.place].add(e_N / place_peak_N[s.place]);
-    out.worst_ratio = std::max(out.worst_ratio, std::abs(e));
-    if (out.own_worst_ratio.size() <= s.depth) out.own_worst_ratio.resize(s.depth + 1, 0.0);
-    double& own = out.own_worst_ratio[s.depth];
-    if (std::abs(s.own_ratio()) > std::abs(own)) own = s.own_ratio();
-    out.own_largest_ratio = std::max(out.own_largest_ratio, std::abs(own));
-    if (std::abs(s.own_ratio()) <= report::kJustNoticeable_ratio) ++rendered_right;
-  }
-  out.rms_ratio = all.value();
-  out.within_jnd_ratio = static_cast<double>(rendered_right) / static_cast<double>(samples.size());
-  out.unseen_rms_ratio = others.value();
-  for (const Rms& rms : of_place) out.place_rms_ratio.push_back(rms.value());
-  return out;
-}
-
-Result<ToolRow> check_errors(const Scene& scene, const ToolReference& reference) {
+Result<std::vector<double>> press_tool(const Scene& scene, const ToolReference& reference) {
   if (auto differs = check_tool_reference_fits(reference, scene)) return std::move(*differs);
-  ToolRow row;
-  row.law = scene.law;
   const Scene elastic = reference_scene(scene);
   const auto tissue = make_tissue(elastic);
-  if (!tissue) {
-    row.failure = tissue.error().message;
-    return row;
-  }
-  std::vector<bool> unseen;
-  for (std::size_t i = 0; i < reference.places.size(); ++i) {
-    const ToolPoint& place = reference.places[i];
-    unseen.push_back(place.vertex.has_value());
+  if (!tissue) return tissue.error();
+  std::vector<double> force_N;
+  for (const ToolPoint& place : reference.places) {
     Press press(elastic, **tissue, place);
-    for (std::size_t k = 0; k < place.cases.size(); ++k) {
+    for (const ground_truth::ToolCase& at : place.cases) {
       if (program::is_interrupted()) return program::interruption();
-      row.samples.push_back({.place = i,
-                             .depth = k,
-                             .force_N = press.force_at(place.cases[k].depth_m),
-                             .reference_N = place.cases[k].force_N});
+      force_N.push_back(press.force_at(at.depth_m));
     }
   }
-  row.errors = summarize_tool(row.samples, unseen);
-  return row;
-}
-
-Result<ToolRow> check_tool(const Scene& scene, const std::string& law,
-                           const ToolReference& reference, const TimingSettings& timing) {
-  Scene own = scene;
-  own.law = law;
-  auto row = check_errors(own, reference);
-  if (!row || !row->failure.empty()) return row;
-  const auto timed = time_tool(own, timing);
-  if (timed)
-    row->timing = *timed;
-  else
-    row->failure = timed.error().message;
-  return row;
+  return force_N;
 }
 
 }  // namespace tact::tools::chart

@@ -19,7 +19,6 @@
 #include "model/scene/plan_file.h"
 #include "model/scene/scene.h"
 #include "model/scene/tissue_law.h"
-#include "tools/chart/measure/errors.h"
 #include "tools/ground_truth/reference_data.h"
 
 namespace tact::tools::chart {
@@ -75,12 +74,19 @@ struct SettledForce {
 };
 SettledForce settle(bool is_stepped, const std::function<double()>& tick_force_N);
 
-struct Accuracy {
+/// One depth at one site.
+struct Sample {
+  std::size_t site = 0;
+  bool held_out = false;  // no law was fitted to this site
+  double depth_m = 0.0;   // press above 0
+  double force_N = 0.0, reference_N = 0.0;
+  std::vector<double> ring_m, reference_ring_m;  // NaN: not known, not compared
+};
+struct Answers {
   std::vector<Sample> samples;
-  ErrorSummary errors;
   int settle_ticks = 0;  // the longest; 1 of a law without inertia
 };
-Accuracy measure_accuracy(Subject& subject, const std::vector<ProbeCase>& cases, double pitch_m);
+Answers measure_answers(Subject& subject, const std::vector<ProbeCase>& cases, double pitch_m);
 
 struct TimingSettings {
   std::size_t ticks = 20000;  // a round

@@ -152,7 +152,7 @@ CaseRun::CaseRun(const Case& c, const LimitsBench& bench)
         bench.scene.device.of<hal::sim::SimDeviceSettings>(), hand_of(c, limits_)));
     device = simulated_device_.get();
     // without lines the watch of the loop is alone: with them a paused heartbeat stops it before
-    if (c.trouble == Trouble::kLateTick)
+    if (c.injected == InjectedFault::kLateTick)
       lines = &no_lines_;
     else
       lines = &simulated_lines_;
@@ -192,7 +192,7 @@ bool CaseRun::play() {
   while (going && waited < most_wait_ticks_ && open < lead_ticks_ + ticks) {
     moment_.playing = open >= lead_ticks_;
     moment_.ticks = open - lead_ticks_;
-    const bool cause = in_trouble(case_, moment_);
+    const bool cause = is_injected(case_, moment_);
     loop_->step();
     while (ring_->pop(record)) keep(record, cause);
     if (!has_contact && record.input.sample.fresh) {

@@ -22,7 +22,7 @@ struct TickRow {
   model::Tool tool;  // as the gate saw it
   bool fresh = false;
   bool armed = false;
-  bool cause = false;                 // the case makes its trouble in this tick
+  bool cause = false;                 // the case injects its fault in this tick
   std::uint32_t skipped_periods = 0;  // before this tick
   std::uint32_t acted = 0;            // one bit a stage
   Fault limit = Fault::kNone, fault = Fault::kNone;

@@ -38,16 +38,16 @@ constexpr Expected ends(Stage stage, Fault fault, double least_peak_ratio = 0.0,
 }
 
 /// Something goes wrong for so many ticks while the limit is commanded.
-constexpr Case goes_wrong(const char* name, const char* what, Trouble trouble, int ticks,
+constexpr Case goes_wrong(const char* name, const char* what, InjectedFault injected, int ticks,
                           const Expected& expected, Grip grip = Grip::kCentre) {
   return {.name = name,
           .what = what,
           .shape = Shape::kRamp,
           .size = 1.0,
-          .trouble = trouble,
-          .trouble_ticks = ticks,
+          .injected = injected,
+          .injected_ticks = ticks,
           .grip = grip,
-          .duration_s = trouble == Trouble::kLateTick ? 0.5 : 0.4,
+          .duration_s = injected == InjectedFault::kLateTick ? 0.5 : 0.4,
           .expected = expected};
 }
 
@@ -117,30 +117,30 @@ constexpr std::array kCases{
          .what = "The device reports NaN as its position in mid-force.",
          .shape = Shape::kHold,
          .size = 0.5,
-         .trouble = Trouble::kNanSample,
-         .trouble_ticks = 1,
+         .injected = InjectedFault::kNanSample,
+         .injected_ticks = 1,
          .expected = ends(Stage::kFinite, Fault::kSampleNotFinite)},
     goes_wrong("stale-samples",
                "The device gives no new sample for 15 ticks, then goes on. With torque.",
-               Trouble::kNoSample, 15, ends(Stage::kFresh, Fault::kNone, 0.0, kStale_s, kFadeTicks),
-               Grip::kLever),
+               InjectedFault::kNoSample, 15,
+               ends(Stage::kFresh, Fault::kNone, 0.0, kStale_s, kFadeTicks), Grip::kLever),
     goes_wrong("lost-device", "The device gives no new sample any more. With torque.",
-               Trouble::kNoSample, kForGood,
+               InjectedFault::kNoSample, kForGood,
                ends(Stage::kFresh, Fault::kDeviceLost, 0.0, kStale_s, kFadeTicks), Grip::kLever),
     goes_wrong("late-ticks",
                "Every tick takes one and a half periods: the loop is too slow for its rate.",
-               Trouble::kLateTick, kForGood,
+               InjectedFault::kLateTick, kForGood,
                ends(Stage::kArmed, Fault::kLoopLate, 0.0, kAtOnce_s, kLateTicks)),
     goes_wrong("e-stop", "The emergency stop opens in mid-force, and in mid-torque.",
-               Trouble::kEmergencyStop, kForGood, ends(Stage::kArmed, Fault::kEmergencyStop),
+               InjectedFault::kEmergencyStop, kForGood, ends(Stage::kArmed, Fault::kEmergencyStop),
                Grip::kLever),
     goes_wrong("e-stop-released",
                "The emergency stop opens for 50 ticks and closes again: nothing moves by itself.",
-               Trouble::kEmergencyStop, 50, ends(Stage::kArmed, Fault::kEmergencyStop)),
-    goes_wrong("dead-man", "The dead-man switch is let go in mid-force.", Trouble::kDeadMan,
+               InjectedFault::kEmergencyStop, 50, ends(Stage::kArmed, Fault::kEmergencyStop)),
+    goes_wrong("dead-man", "The dead-man switch is let go in mid-force.", InjectedFault::kDeadMan,
                kForGood, ends(Stage::kArmed, Fault::kDeadManReleased)),
     goes_wrong("device-fault", "The device reports a fault of its own in mid-force.",
-               Trouble::kDeviceFault, 1, ends(Stage::kArmed, Fault::kDeviceFailed)),
+               InjectedFault::kDeviceFault, 1, ends(Stage::kArmed, Fault::kDeviceFailed)),
     Case{.name = "speed",
          .what = "The hand tears the tool sideways, faster than permitted.",
          .shape = Shape::kHold,
@@ -205,13 +205,15 @@ constexpr std::array kCases{
 }  // namespace
 
 Case at_rate(Case c, double period_s, bool hard_real_time) {
-  if (c.trouble == Trouble::kLateTick && !hard_real_time) c.expected.and_ticks = kLateTicksNonRt;
+  if (c.injected == InjectedFault::kLateTick && !hard_real_time)
+    c.expected.and_ticks = kLateTicksNonRt;
   const double more_s = c.expected.and_ticks * period_s;
   if (c.expected.zero_within_s) *c.expected.zero_within_s += more_s;
   c.expected.and_ticks = 0.0;
   // Samples that come back before the fade is over: at high rates, so many do not make 10 ms.
   // Then no zero is asked for; that the stage acted still is.
-  if (c.trouble == Trouble::kNoSample && c.trouble_ticks * period_s < c.expected.zero_within_s)
+  if (c.injected == InjectedFault::kNoSample &&
+      c.injected_ticks * period_s < c.expected.zero_within_s)
     c.expected.zero_within_s.reset();
   // Slow rates need longer to show that the force stays zero; 1.2: a fifth of it to look on.
   c.duration_s = std::max(c.duration_s, kCause_s + 1.2 * more_s);

@@ -21,8 +21,8 @@ namespace tact::tools::limits {
 
 /// How the commanded force goes with time; along z if nothing else is said.
 enum class Shape : std::uint8_t {
-  kHold,      // size from 0.1 s on; with a trouble from the start
-  kRamp,      // 0 to size in 0.8 s; with a trouble size from the start
+  kHold,      // size from 0.1 s on; with an injected fault from the start
+  kRamp,      // 0 to size in 0.8 s; with an injected fault size from the start
   kImpulse,   // 10^6 N in one tick, at 0.1 s
   kNan,       // size, then NaN from 0.1 s on
   kInfinity,  // the same with infinity
@@ -34,7 +34,7 @@ enum class Shape : std::uint8_t {
 };
 
 /// What goes wrong, from 0.1 s on.
-enum class Trouble : std::uint8_t {
+enum class InjectedFault : std::uint8_t {
   kNone,
   kNoSample,
   kNanSample,
@@ -77,8 +77,8 @@ struct Case {
   const char* what;  // for a reader who knows no code
   Shape shape = Shape::kHold;
   double size = 0.0;  // of the shape: share of force_N, or with kPump N s/m, with kWall N/m
-  Trouble trouble = Trouble::kNone;
-  int trouble_ticks = 0;
+  InjectedFault injected = InjectedFault::kNone;
+  int injected_ticks = 0;
   HandMove hand = HandMove::kStill;
   Grip grip = Grip::kCentre;
   double duration_s = 0.4;
@@ -107,7 +107,7 @@ bool names_wall(const std::string& names);
 
 /// True for cases in which a safety line opens.
 inline bool opens_line(const Case& c) {
-  return c.trouble == Trouble::kEmergencyStop || c.trouble == Trouble::kDeadMan;
+  return c.injected == InjectedFault::kEmergencyStop || c.injected == InjectedFault::kDeadMan;
 }
 /// Said of such a case on a real device with the line.
 inline constexpr const char* kReportedInSoftware = "set in software: the contact was not opened";

@@ -27,10 +27,10 @@ Vec3 command_at(const Case& c, const Moment& now, const model::Tool& tool, doubl
   const bool after = now.after_cause();
   switch (c.shape) {
     case Shape::kHold:
-      // A trouble needs a force to stop: it lasts from the start.
-      return {0, 0, after || c.trouble != Trouble::kNone ? size_N : 0.0};
+      // An injected fault needs a force to stop: it lasts from the start.
+      return {0, 0, after || c.injected != InjectedFault::kNone ? size_N : 0.0};
     case Shape::kRamp:
-      if (c.trouble != Trouble::kNone) return {0, 0, size_N};
+      if (c.injected != InjectedFault::kNone) return {0, 0, size_N};
       return {0, 0, size_N * std::fmin(now.t_s() / kRampTime_s, 1.0)};
     case Shape::kImpulse:
       return {0, 0, now.ticks == now.cause_tick() ? kImpulse_N : 0.0};
@@ -52,9 +52,9 @@ Vec3 command_at(const Case& c, const Moment& now, const model::Tool& tool, doubl
   return {};
 }
 
-bool in_trouble(const Case& c, const Moment& now) RT_SAFE {
-  if (!now.playing || c.trouble == Trouble::kNone) return false;
-  return now.after_cause() && now.ticks - now.cause_tick() < c.trouble_ticks;
+bool is_injected(const Case& c, const Moment& now) RT_SAFE {
+  if (!now.playing || c.injected == InjectedFault::kNone) return false;
+  return now.after_cause() && now.ticks - now.cause_tick() < c.injected_ticks;
 }
 
 model::contact::ContactLawResponse CommandLaw::respond(
@@ -72,18 +72,18 @@ model::contact::ContactLawResponse CommandLaw::respond(
 Fault PlayedDevice::read(hal::Sample& sample, std::int64_t now_ns) RT_SAFE {
   const Fault fault = device_.read(sample, now_ns);
   if (sample.fresh) tool_ = sample.tool;
-  if (!in_trouble(case_, now_)) return fault;
-  switch (case_.trouble) {
-    case Trouble::kNoSample:
+  if (!is_injected(case_, now_)) return fault;
+  switch (case_.injected) {
+    case InjectedFault::kNoSample:
       sample.fresh = false;
       break;
-    case Trouble::kNanSample:
+    case InjectedFault::kNanSample:
       sample.tool.position_m.z = std::numeric_limits<double>::quiet_NaN();
       break;
-    case Trouble::kLateTick:
+    case InjectedFault::kLateTick:
       clock_.sleep_until_ns(now_ns + std::llround(1.5e9 * now_.period_s));
       break;
-    case Trouble::kDeviceFault:
+    case InjectedFault::kDeviceFault:
       return Fault::kDeviceFailed;
     default:
       break;
@@ -92,9 +92,9 @@ Fault PlayedDevice::read(hal::Sample& sample, std::int64_t now_ns) RT_SAFE {
 }
 
 Fault PlayedLines::read(std::int64_t now_ns) RT_SAFE {
-  const bool trouble = in_trouble(case_, now_);
-  const bool stop = trouble && case_.trouble == Trouble::kEmergencyStop;
-  const bool let_go = trouble && case_.trouble == Trouble::kDeadMan;
+  const bool active = is_injected(case_, now_);
+  const bool stop = active && case_.injected == InjectedFault::kEmergencyStop;
+  const bool let_go = active && case_.injected == InjectedFault::kDeadMan;
   if (simulated_ != nullptr) {
     simulated_->inputs().estop_a.store(!stop, std::memory_order_relaxed);
     simulated_->inputs().estop_b.store(!stop, std::memory_order_relaxed);

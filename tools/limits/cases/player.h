@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// player.h - plays a case to the loop: its command as a law, its troubles between loop and device.
+// player.h - plays a case to the loop: its command as a law, its faults between loop and device.
 //
 // The loop is the real one (firmware/loop/rt_loop.h). What is played comes from the place of
 // the real parts, so the commanded force takes the way of every force: law, contact, gate, device.
@@ -36,8 +36,8 @@ struct Moment {
 
 /// What a case commands: force on the tool, by shape. Forces are shares of `limit_N`.
 Vec3 command_at(const Case& c, const Moment& now, const model::Tool& tool, double limit_N) RT_SAFE;
-/// True in the ticks in which the case makes its trouble.
-bool in_trouble(const Case& c, const Moment& now) RT_SAFE;
+/// True in the ticks in which the case injects its fault.
+bool is_injected(const Case& c, const Moment& now) RT_SAFE;
 
 /// One spring, always in contact, that pushes as commanded.
 class CommandLaw final : public model::contact::ContactLaw {
@@ -62,7 +62,7 @@ class CommandLaw final : public model::contact::ContactLaw {
   const model::Tool& tool_;
 };
 
-/// The device of the bench, with the case's troubles and a witness of what is written.
+/// The device of the bench, with the case's injected faults and a witness of what is written.
 class PlayedDevice final : public hal::Device {
  public:
   PlayedDevice(const Case& c, const Moment& now, hal::Device& device, firmware::loop::Clock& clock)
@@ -81,7 +81,7 @@ class PlayedDevice final : public hal::Device {
     device_.set_grip_force(opening_N);
   }
   void between_ticks(double elapsed_s) RT_SAFE override { device_.between_ticks(elapsed_s); }
-  std::string trouble() const override { return device_.trouble(); }
+  std::string fault_detail() const override { return device_.fault_detail(); }
   void stop() override { device_.stop(); }
 
   const model::Tool& tool() const { return tool_; }
@@ -111,7 +111,7 @@ class PlayedLines final : public hal::SafetyLines {
   bool enabled() const RT_SAFE override { return lines_.enabled(); }
   void scope(bool up) RT_SAFE override { lines_.scope(up); }
   void drop() RT_SAFE override { lines_.drop(); }
-  std::string trouble() const override { return lines_.trouble(); }
+  std::string fault_detail() const override { return lines_.fault_detail(); }
   void stop() override { lines_.stop(); }
 
  private:

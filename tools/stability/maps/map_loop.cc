@@ -19,7 +19,7 @@ namespace tact::tools::stability {
 namespace {
 
 // Of a limit: HL-1 is exact for low frequencies alone, and the search ends within 1 %.
-constexpr double kAccepted = 0.95;
+constexpr double kMinStableRatio = 0.95;
 
 struct Hand {
   const char* name;
@@ -109,17 +109,17 @@ std::vector<Finding> check(const report::Table& t) {
     }
   }
   return {
-      {grow.low > kAccepted,
+      {grow.low > kMinStableRatio,
        fmt::format(
            "no cell grows below {} K, K = b / (T/2 + t_d): {} of {} grow below K, the least "
            "measured limit is {:.3f} K",
-           kAccepted, below, t.rows().size(), grow.low),
+           kMinStableRatio, below, t.rows().size(), grow.low),
        {{"below", below}, {"least_ratio", grow.low}}},
-      {rest.low > kAccepted,
+      {rest.low > kMinStableRatio,
        fmt::format("every cell below {} min(K, 2 c / D) comes to rest: the least measured limit is "
                    "{:.3f} of min(K, 2 c / D)",
-                   kAccepted, rest.low)},
-      {bare_grow.low > kAccepted && bare_grow.high < 1.25,
+                   kMinStableRatio, rest.low)},
+      {bare_grow.low > kMinStableRatio && bare_grow.high < 1.25,
        fmt::format("in the {} cells without hand and friction the measured limit is {:.3f} to "
                    "{:.3f} K",
                    bare, bare_grow.low, bare_grow.high),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // hand_control.ts - the mouse as the hand of a simulated device: drag moves it in the picture's
-// plane, the wheel or two fingers into the picture, Ctrl and drag turn the tool, G closes the grip.
+// plane, the wheel or two fingers into the picture, Ctrl and drag turn the tool, G closes the grip; or keys (key_moves.ts).
 // Only a request is sent; forces stay in tactd.
 // The request is repeated until a few seconds after the last move, or as long as the mode is on.
 
@@ -65,6 +65,16 @@ export class HandControl {
     if (!this.allowed()) return;
     this.grip_ratio = ratio;
     this.move(new THREE.Vector3());
+  }
+
+  /** To the right, up and into the picture. False when there is no hand to move. */
+  step([right_m, up_m, into_m]: Vec): boolean {
+    if (!this.allowed() || !this.tool_m) return false;
+    const camera = this.stage.camera;
+    const by_m = camera.getWorldDirection(new THREE.Vector3()).multiplyScalar(into_m);
+    by_m.addScaledVector(new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 0), right_m);
+    this.move(by_m.addScaledVector(new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 1), up_m));
+    return true;
   }
 
   /** About the tool's own axis. */

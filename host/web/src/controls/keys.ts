@@ -28,13 +28,35 @@ function takes(target: EventTarget | null, key: string): boolean {
   return key === " " && (target instanceof HTMLButtonElement || target instanceof HTMLAnchorElement);
 }
 
-/** `first` takes what a timeline knows; `actions` are by key, and by name where a button has none. */
-export function bind_keys(first: (key: string, shift: boolean) => boolean, actions: Record<string, () => unknown>): void {
+/** Whether arrows and page keys already mean something there: a slider, or a panel or page that scrolls. */
+function scrolls(target: EventTarget | null): boolean {
+  if (target instanceof HTMLInputElement) return true;
+  for (let one = target instanceof Element ? target : null; one; one = one.parentElement) {
+    const fixed = one !== document.scrollingElement && !/auto|scroll/.test(getComputedStyle(one).overflowY);
+    if (!fixed && one.scrollHeight > one.clientHeight + 1) return true;
+  }
+  return false;
+}
+
+type Take = (key: string, shift: boolean) => boolean;
+
+/**
+ * `timeline` and `moves` take what they know: at the picture `moves` is asked first, elsewhere the timeline. `actions` are by
+ * key, and by name where a button has none.
+ */
+export function bind_keys(timeline: Take, moves: Take, actions: Record<string, () => unknown>): void {
+  const picture = by_id("view");
+  // The mouse does not bring the keys to the picture: who clicks there goes on with the timeline.
+  picture.addEventListener("mousedown", (event) => {
+    event.preventDefault();
+    if (document.activeElement instanceof HTMLElement) document.activeElement.blur();
+  });
   window.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || takes(event.target, event.key)) return;
     if (event.key === " ") event.preventDefault();
     const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
-    if (first(key, event.shiftKey)) return event.preventDefault(); // held down it goes on
+    const takers = event.target === picture ? [moves, timeline] : scrolls(event.target) ? [timeline] : [timeline, moves];
+    if (takers.some((take) => take(key, event.shiftKey))) return event.preventDefault(); // held down it goes on
     if (event.repeat) return;
     actions[key === " " ? "p" : key]?.();
   });

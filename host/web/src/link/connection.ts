@@ -20,12 +20,16 @@ export interface ConnectionEvents {
   scene(scene: Scene, organ: Mesh, tool: Mesh): void;
   frame(frame: Frame): void;
   figure(figure: FigureFrame): void;
-  /** `refused`: it is there, but the token is missing or of another tact-view. */
-  server_gone(refused: boolean): void;
+  /** `why`: it is there, and refuses this page; empty: it is not there. */
+  server_gone(why: string): void;
 }
 
 const kRetry_ms = 1000;
 const kToken = "tact-token"; // in this tab's own storage, which is of one port
+const kNoToken = "this page has no token, or an old one: open the whole link that tact-view printed";
+const kNoSocket =
+  "tact-view is there, but its WebSocket is refused; a proxy between must pass Upgrade and Connection on. The terminal of " +
+  "tact-view has the reason";
 
 export class Connection {
   frames = 0;
@@ -50,8 +54,13 @@ export class Connection {
   }
 
   /** A file of the server, with the token of this page. */
-  fetch(path: string): Promise<Response> {
-    return fetch(path, { headers: this.token ? { Authorization: `Bearer ${this.token}` } : {} });
+  fetch(path: string, headers: Record<string, string> = {}): Promise<Response> {
+    return fetch(path, { headers: this.token ? { Authorization: `Bearer ${this.token}`, ...headers } : headers });
+  }
+
+  /** One line of ASCII for the terminal of tact-view. */
+  async report(trouble: string): Promise<boolean> {
+    return (await this.fetch("session", { "Tact-Trouble": trouble })).ok;
   }
 
   /** Where a simulated hand shall go. Dropped when no device listens. */
@@ -78,29 +87,35 @@ export class Connection {
   }
 
   private async open(): Promise<void> {
-    const status = await this.enter();
-    if (status < 200 || status > 299) return this.retry(status === 401);
+    const why = await this.enter();
+    if (why !== null) return this.retry(why);
     const scheme = location.protocol === "https:" ? "wss" : "ws";
     this.socket = new WebSocket(`${scheme}://${location.host}/live`, ["tact", `token.${this.token}`]);
     this.seen = 0;
+    let opened = false;
+    this.socket.onopen = () => (opened = true);
     this.socket.onmessage = (message) => this.take(String(message.data));
-    this.socket.onclose = () => this.retry(false);
+    this.socket.onclose = () => this.retry(opened ? "" : kNoSocket);
   }
 
-  private retry(refused: boolean): void {
-    this.events.server_gone(refused);
+  private retry(why: string): void {
+    this.events.server_gone(why);
     setTimeout(() => void this.open(), kRetry_ms);
   }
 
-  /** Whether the token is right; HTTP status; 0: no answer. */
-  private async enter(): Promise<number> {
+  /** Null: it lets this page in; else why not; empty: no answer. */
+  private async enter(): Promise<string | null> {
     const token = this.token;
     try {
-      const { status } = await this.fetch("session");
-      if (status === 204 && token) sessionStorage.setItem(kToken, token);
-      return status;
+      // A browser sends no Origin here, and says nothing of a refused WebSocket.
+      const answer = await this.fetch("session", { "Tact-Origin": location.origin });
+      if (answer.ok && token) sessionStorage.setItem(kToken, token);
+      if (answer.ok) return null;
+      if (answer.status === 401) return kNoToken;
+      const reason = /^\d{3}: (.*)/.exec(await answer.text()); // that of a proxy before a tact-view that is gone is HTML
+      return reason ? `tact-view refuses this page: ${reason[1]}` : "";
     } catch {
-      return 0;
+      return "";
     }
   }
 

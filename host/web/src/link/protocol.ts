@@ -34,6 +34,13 @@ export function time_s_of(frame: Frame): number {
   return frame.time_ns * 1e-9;
 }
 
+const kLongestGap_s = 1;
+
+/** A recording that was sought, or another run: what was true before is not of this time. */
+export function is_jump(before_s: number, now_s: number): boolean {
+  return now_s < before_s || now_s > before_s + kLongestGap_s;
+}
+
 /** A round cone between two joints of the operator's figure. */
 export interface Capsule {
   a: number;

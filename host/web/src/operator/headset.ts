@@ -36,6 +36,7 @@ export class Headset {
   /** `draw` is the page's picture, as the stage calls it. */
   constructor(
     private readonly stage: Stage,
+    private readonly renderer: THREE.WebGLRenderer,
     private readonly draw: (now_ms: number) => void,
   ) {
     this.camera = new THREE.PerspectiveCamera(90, 1, 0.02, 12); // the session says its angles
@@ -44,9 +45,9 @@ export class Headset {
     this.place.matrix.setPosition(kBack_m, 0, kUp_m);
     this.place.matrixAutoUpdate = false;
     this.place.add(this.camera);
-    stage.renderer.xr.setReferenceSpaceType("local");
-    stage.renderer.xr.addEventListener("sessionstart", () => this.begin());
-    stage.renderer.xr.addEventListener("sessionend", () => this.end());
+    renderer.xr.setReferenceSpaceType("local");
+    renderer.xr.addEventListener("sessionstart", () => this.begin());
+    renderer.xr.addEventListener("sessionend", () => this.end());
     navigator.xr?.addEventListener("devicechange", () => void this.offer());
   }
 
@@ -79,7 +80,7 @@ export class Headset {
 
   /** For tests: what the panel says, and each eye's matrices, column by column. */
   get numbers() {
-    const { cameras } = this.stage.renderer.xr.getCamera();
+    const { cameras } = this.renderer.xr.getCamera();
     return {
       on: this.on,
       shown: this.panel.shown,
@@ -90,7 +91,7 @@ export class Headset {
   }
 
   private async enter(): Promise<void> {
-    const { xr } = this.stage.renderer;
+    const { xr } = this.renderer;
     let session: XRSession | undefined;
     try {
       session = await navigator.xr!.requestSession("immersive-vr");
@@ -106,7 +107,7 @@ export class Headset {
 
   /** The headset may be gone already: then its end is reported all the same. */
   private async leave(): Promise<void> {
-    await this.stage.renderer.xr
+    await this.renderer.xr
       .getSession()
       ?.end()
       .catch(() => undefined);
@@ -128,7 +129,7 @@ export class Headset {
     clearInterval(this.watch);
     this.stage.scene.background = null;
     this.stage.scene.remove(this.place, this.panel.object);
-    this.stage.renderer.xr.enabled = false;
+    this.renderer.xr.enabled = false;
     this.stage.wear(null);
     this.show("Enter VR");
     this.say("");

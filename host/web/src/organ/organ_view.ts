@@ -64,7 +64,7 @@ export class OrganView {
     this.lines = new THREE.Mesh(this.geometry, OrganView.line_material());
     this.lines.visible = false;
     this.lines.frustumCulled = false;
-    this.wound = new Wound(mesh.triangle);
+    this.wound = new Wound(mesh.triangle, mesh.vertex_m, this.material);
     this.object.add(this.lines, this.wound.object);
     this.object.frustumCulled = false; // its bounds move; it is nearly always in view
     const rest_normal = (this.geometry.getAttribute("normal").array as Float32Array).slice();
@@ -99,6 +99,11 @@ export class OrganView {
     return this.cuts.triangles.size;
   }
 
+  /** How far the two sides of a cut are apart, m. */
+  get cut_gap_m(): number {
+    return this.wound.gap_m;
+  }
+
   show(contacts: readonly Contact[], patch?: Patch): void {
     if (patch && this.cuts.learn(patch)) this.open();
     const position = this.geometry.getAttribute("position") as THREE.BufferAttribute;
@@ -107,14 +112,15 @@ export class OrganView {
     if (!this.deformer.apply(contacts, moved, vertex_m, this.deformed)) return;
     position.needsUpdate = true;
     this.geometry.computeVertexNormals();
-    this.wound.follow(vertex_m, this.geometry.getAttribute("normal").array as Float32Array);
-    if (!this.made_of.alive) return;
     const tint = this.geometry.getAttribute("tint") as THREE.BufferAttribute;
-    this.pale(tint.array as Float32Array);
-    tint.needsUpdate = true;
+    if (this.made_of.alive) {
+      this.pale(tint.array as Float32Array);
+      tint.needsUpdate = true;
+    }
+    this.wound.follow(vertex_m, this.geometry.getAttribute("normal").array as Float32Array, tint.array as Float32Array);
   }
 
-  /** Cut triangles are no longer surface: their corners fall together. */
+  /** Cut triangles are no longer surface: their corners fall together, and their pieces are the wound's. */
   private open(): void {
     const index = this.geometry.getIndex() as THREE.BufferAttribute;
     const corner = index.array as Uint32Array;

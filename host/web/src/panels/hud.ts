@@ -5,6 +5,7 @@ import { by_id } from "../document/dom";
 import { describe, describe_past_state, describe_state, latches } from "./faults";
 import { LimitNews } from "./limit_news";
 import { Pace } from "../link/pace";
+import { kFailing, type Part } from "./troubles";
 import { kContactInside, length_of, type FigureFrame, type Frame, type Scene, type Status } from "../link/protocol";
 
 const kRewrite_ms = 100; // numbers that change faster cannot be read
@@ -40,8 +41,11 @@ export class Hud {
   private continuous_force_N = 0;
   private energy_budget_J = 0;
   private status: Status | null = null;
-  private refused = false;
+  private why_gone = "";
   private silent = false;
+  private has_frame = false; // of this run
+  private is_drawn = false; // it was: only what is seen is live
+  private failing: Part | null = null;
   private scene_known: Scene | null = null;
 
   private get is_replay(): boolean {
@@ -82,20 +86,40 @@ export class Hud {
     write("banner", notes.join(" · "));
   }
 
-  /** No status: tact-view is gone, or it `refused` this page. */
-  link(status: Status | null, refused = false): void {
+  /** No status: tact-view is gone, or refuses this page, and says why. */
+  link(status: Status | null, why = ""): void {
+    const { link, scene_number } = this.status ?? {};
+    if (link !== status?.link || scene_number !== status?.scene_number) this.has_frame = this.is_drawn = false;
     this.status = status;
-    this.refused = refused;
+    this.why_gone = why;
+    this.write_link(status, why);
+  }
+
+  /** Once a picture of the last frame is drawn. */
+  drawn(): void {
+    if (this.is_drawn || !this.has_frame) return;
+    this.is_drawn = true;
+    this.write_link(this.status, this.why_gone);
+  }
+
+  /** The part of the page that fails; null: none. */
+  fails(part: Part | null): void {
+    this.failing = part;
+    this.write_link(this.status, this.why_gone);
+  }
+
+  private write_link(status: Status | null, why: string): void {
     this.report_kind();
     const detail = status?.detail ? ` (${status.detail})` : "";
-    if (!status && refused) {
+    if (!status && why) {
       pill("link", "not allowed", "bad");
-      this.notice("this page has no token, or an old one: open the whole link that tact-view printed");
+      this.notice(why);
     } else if (!status) {
       pill("link", "viewer gone", "bad");
       this.notice("connection to tact-view lost; trying again …");
     } else if (status.link === "live") {
-      pill("link", "live", "good");
+      if (this.failing) pill("link", kFailing[this.failing], "bad");
+      else pill("link", this.is_drawn ? "live" : "no picture yet", this.is_drawn ? "good" : "wait");
       this.notice("");
     } else if (status.link === "replay") {
       pill("link", `replay: ${status.detail}`, "plain");
@@ -113,7 +137,8 @@ export class Hud {
   }
 
   frame(frame: Frame, now_ms: number): void {
-    this.limits.frame(frame, now_ms);
+    this.has_frame = true;
+    this.limits.frame(frame, now_ms, this.is_replay);
     this.unwritten.add(frame);
   }
 
@@ -150,7 +175,7 @@ export class Hud {
     if (silent !== this.silent) {
       this.silent = silent;
       for (const id of ["now", "plots"]) by_id(id).classList.toggle("old", silent);
-      this.link(this.status, this.refused);
+      this.write_link(this.status, this.why_gone);
     }
     if (!silent) return;
     pill("state", `no news for ${seconds.toFixed(1)} s`, "bad");
@@ -167,6 +192,7 @@ export class Hud {
     const warnings: Said["warnings"] = [];
     const warn = (words: string, of: string): void => void (words && warnings.push({ text: words, tone: of }));
     if (frozen) warn("the display is frozen: what is shown is old", "wait");
+    warn(text("trouble"), "bad");
     warn(text("notice"), tone("link"));
     if (!by_id("fault").hidden) {
       warn(text("fault_name"), tone("fault"));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// limit_news.ts - which fault or limit is shown, and for how long.
+// limit_news.ts - which fault or limit is shown, and for how long: of a recording none of another time.
 
 import { describe, kStopped, latches } from "./faults";
-import { kContactInside, type Frame } from "../link/protocol";
+import { is_jump, kContactInside, time_s_of, type Frame } from "../link/protocol";
 
 const kHold_ms = 1500; // a limit that acted for one tick stays readable this long
 const kLoss_ms = 4000; // lost contact is over in one tick: it is looked for after it has happened
@@ -14,8 +14,16 @@ export class LimitNews {
   private seen_ms = -Infinity;
   private losses: number | null = null; // so far, of the last frame
   private lost_ms = -Infinity;
+  private last_s = -Infinity; // time of the last frame
 
-  frame(frame: Frame, now_ms: number): void {
+  /** `sought`: of a recording, where a jump leads to another time; a live run goes on. */
+  frame(frame: Frame, now_ms: number, sought = false): void {
+    if (sought && is_jump(this.last_s, time_s_of(frame))) {
+      this.number = 0;
+      this.losses = null;
+      this.lost_ms = -Infinity;
+    }
+    this.last_s = time_s_of(frame);
     const over = latches(this.number) && frame.fault === 0 && frame.state !== kStopped;
     if (over) this.number = 0; // reset, or a replay went back
     const inside = frame.contacts.some((contact) => contact.state === kContactInside);

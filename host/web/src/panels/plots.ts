@@ -2,12 +2,12 @@
 // plots.ts - depth, force and time left before the deadline over the last ten seconds.
 
 import { largest, Plot } from "./plot";
-import { length_of, time_s_of, type Frame } from "../link/protocol";
+import { History, sample_of, samples_of, type Sample } from "./history";
+import { is_jump, time_s_of, type Frame } from "../link/protocol";
 import { robust_range, whole_range } from "./scale";
 
 const kSpan_s = 10;
 const kRedraw_ms = 80; // plots need fewer pictures than the tissue
-const kLongestGap_s = 1; // more is a jump of a replay, or another run
 const kSites = ["#7fd1c7", "#e2907f", "#b9a3f0", "#d8c46a"];
 
 export class Plots {
@@ -21,8 +21,12 @@ export class Plots {
   private drawn_ms = 0;
   /** What the time axis calls zero: where a recording begins. */
   zero_s = 0;
+  /** Ticks per second of a recording, whose frames before a sought one are asked for; 0: nothing is replayed. */
+  replay_Hz = 0;
+  private readonly history: History;
 
-  constructor(byId: (id: string) => HTMLElement) {
+  constructor(byId: (id: string) => HTMLElement, fetch: (path: string) => Promise<Response>) {
+    this.history = new History(fetch, (of, table) => this.prepend(of, samples_of(table, kSites.length)));
     this.depth = new Plot(byId("plot_depth"), {
       title: "depth",
       unit: "mm",
@@ -52,20 +56,41 @@ export class Plots {
     });
   }
 
+  /** For tests: what is drawn, s since zero, and the force written. */
+  get drawn(): { time_s: number[]; force_N: number[] } {
+    return { time_s: this.times_s.map((time_s) => time_s - this.zero_s), force_N: this.force_N[1].slice() };
+  }
+
   /** Probe spheres in use; the lines of the others stay away. */
   set spheres(count: number) {
     this.depth.use(count);
   }
 
   add(frame: Frame): void {
-    const last_s = this.times_s[this.times_s.length - 1] ?? time_s_of(frame);
-    if (time_s_of(frame) < last_s || time_s_of(frame) > last_s + kLongestGap_s) this.clear();
-    this.times_s.push(time_s_of(frame));
-    this.depth_mm.forEach((line, i) => line.push((frame.contacts.find((contact) => contact.contact === i)?.depth_m ?? 0) * 1e3));
-    this.force_N[0].push(length_of(frame.wanted_force_N));
-    this.force_N[1].push(length_of(frame.force_N));
-    this.margin_us[0].push(frame.worst_margin_us ?? 0);
+    const last_s = this.times_s[this.times_s.length - 1];
+    if (time_s_of(frame) === last_s) return; // a recording that rests was sought where it is
+    if (last_s === undefined || is_jump(last_s, time_s_of(frame))) {
+      this.clear();
+      if (this.replay_Hz > 0) this.history.before(frame, kSpan_s * this.replay_Hz);
+    }
+    this.push(sample_of(frame, kSites.length));
     if (this.times_s[0] < time_s_of(frame) - 1.5 * kSpan_s) this.forget(time_s_of(frame) - kSpan_s);
+  }
+
+  private push(sample: Sample): void {
+    this.times_s.push(sample.time_s);
+    this.depth_mm.forEach((line, i) => line.push(sample.depth_mm[i]));
+    this.force_N.forEach((line, i) => line.push(sample.force_N[i]));
+    this.margin_us[0].push(sample.margin_us);
+  }
+
+  /** Before what has come since this frame; nothing if the recording was sought again meanwhile. */
+  private prepend(of: Frame, samples: readonly Sample[]): void {
+    if (this.times_s[0] !== time_s_of(of)) return;
+    const since = this.all().map((line) => line.slice());
+    this.clear();
+    for (const sample of samples) if (sample.time_s < time_s_of(of)) this.push(sample);
+    this.all().forEach((line, i) => line.push(...since[i]));
   }
 
   draw(now_ms: number): void {

@@ -8,21 +8,36 @@ import { follow_share, type Eyes } from "./eyes";
 import { make_ground } from "./ground";
 import { kSteel, look_material, paint } from "./look";
 import { snapshot } from "./snapshot";
+import type { Vec } from "../link/protocol";
 
 const kSlow_fps = 40; // below this the picture gets coarser, because smooth matters more than sharp
 const kCoarsest = 0.6;
 const kSight_deg = 32;
 const kHome_aspect = 0.95; // in a narrower picture the first view is from farther off, and shows the same
+const kNarrow_aspect = 1.2; // of a phone
+const kInside_ratio = 0.8; // of the way from the middle of the picture to its edge
+const kStepBack_ratio = 1.04;
+const kMaxStepsBack = 60; // to ten times the distance
+const kPole_rad = 0.02; // as near as the view comes to straight down
 const kEyes_deg = 48; // a person sees more at once
 const kEyes_s = 0.15; // in which the eyes' camera goes two thirds of the way to the head
 
-/** True where a processor draws instead of a graphics card. */
-function draws_in_software(): boolean {
+/** True where a processor draws instead of a graphics card; null where nothing draws in three dimensions. */
+function draws_in_software(): boolean | null {
   const gl = document.createElement("canvas").getContext("webgl2");
-  const info = gl?.getExtension("WEBGL_debug_renderer_info");
-  const name = gl && info ? String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)) : "";
-  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  if (!gl) return null;
+  const info = gl.getExtension("WEBGL_debug_renderer_info");
+  const name = info ? String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)) : "";
+  gl.getExtension("WEBGL_lose_context")?.loseContext();
   return /swiftshader|llvmpipe|softpipe|software/i.test(name);
+}
+
+/** What becomes of the picture. */
+export interface StageEvents {
+  draw(now_ms: number): void; // once per picture, also where there is none
+  drawn(): void;
+  /** There is no picture, and why; empty: there is one again. */
+  missing(words: string, remedy: string): void;
 }
 
 export class Stage {
@@ -32,12 +47,14 @@ export class Stage {
 
   readonly steel: THREE.Texture;
   fps = 0;
-  readonly renderer: THREE.WebGLRenderer;
+  /** Null: this browser draws nothing in three dimensions, and the page shows numbers alone. */
+  readonly renderer: THREE.WebGLRenderer | null;
   /** In a headset: the camera of its wearer's eyes. The desk's own stays as it is meanwhile. */
   wearer: THREE.PerspectiveCamera | null = null;
   private home = new THREE.Sphere(new THREE.Vector3(), 0.1);
   private ground: THREE.Object3D | null = null;
   private with_operator = false;
+  private kept_m: Vec | null = null;
   private at_home = true; // the view was not turned yet
   private eyes: Eyes | null = null;
   private readonly looks_at = new THREE.Vector3();
@@ -47,23 +64,17 @@ export class Stage {
   private frames = 0;
   private counted_since_ms = performance.now();
 
-  constructor(canvas: HTMLCanvasElement, draw: (now_ms: number) => void) {
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    private readonly events: StageEvents,
+  ) {
     // #sharp in the address is for still pictures: full quality at any cost.
     const sharp = location.hash.slice(1).split("&").includes("sharp");
     const software = draws_in_software();
     this.adapts = !sharp;
     if (software && !sharp) this.sharpness = 0.8;
-    this.renderer = new THREE.WebGLRenderer({
-      canvas,
-      alpha: true, // the page's own gradient is the background
-      antialias: sharp || !software,
-      powerPreference: "high-performance",
-    });
     this.steel = paint(kSteel);
-    // Compiled while the scene is on its way; kept, for else the program goes with it.
-    const warm = new THREE.Mesh(new THREE.BufferGeometry(), look_material(this.steel));
-    this.renderer.compile(warm, this.camera);
-    this.scene.userData.warm = warm;
+    this.renderer = software === null ? null : this.open_renderer(sharp || !software);
     this.add_lights();
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
@@ -74,14 +85,48 @@ export class Stage {
     this.go_home();
     this.resize();
     new ResizeObserver(() => this.resize()).observe(canvas);
-    this.renderer.setAnimationLoop((now_ms) => {
-      draw(now_ms);
-      if (this.eyes) this.see_with(this.eyes, follow_share((now_ms - this.drawn_ms) / 1000, kEyes_s));
-      else if (!this.wearer) this.controls.update();
-      this.drawn_ms = now_ms;
-      this.renderer.render(this.scene, this.wearer ?? this.camera);
-      this.count(now_ms);
-    });
+  }
+
+  /** Pictures from now on. */
+  start(): void {
+    if (this.renderer) return this.renderer.setAnimationLoop((now_ms) => this.next_picture(now_ms));
+    this.events.missing("no 3D picture: this browser has no WebGL 2", "switch on its hardware acceleration, or take another");
+    const next = (now_ms: number): void => {
+      requestAnimationFrame(next);
+      this.next_picture(now_ms);
+    };
+    requestAnimationFrame(next);
+  }
+
+  private open_renderer(antialias: boolean): THREE.WebGLRenderer | null {
+    const { canvas } = this;
+    let renderer: THREE.WebGLRenderer;
+    try {
+      // alpha: the page's own gradient is the background
+      renderer = new THREE.WebGLRenderer({ canvas, alpha: true, antialias, powerPreference: "high-performance" });
+    } catch {
+      return null;
+    }
+    canvas.addEventListener("webglcontextlost", () =>
+      this.events.missing("no 3D picture: the browser took the graphics away", "it comes back, or reload the page"),
+    );
+    canvas.addEventListener("webglcontextrestored", () => this.events.missing("", ""));
+    // Compiled while the scene is on its way; kept, for else the program goes with it.
+    const warm = new THREE.Mesh(new THREE.BufferGeometry(), look_material(this.steel));
+    renderer.compile(warm, this.camera);
+    this.scene.userData.warm = warm;
+    return renderer;
+  }
+
+  private next_picture(now_ms: number): void {
+    this.events.draw(now_ms);
+    if (this.eyes) this.see_with(this.eyes, follow_share((now_ms - this.drawn_ms) / 1000, kEyes_s));
+    else if (!this.wearer) this.controls.update();
+    this.drawn_ms = now_ms;
+    this.count(now_ms);
+    if (!this.renderer || this.renderer.getContext().isContextLost()) return;
+    this.renderer.render(this.scene, this.wearer ?? this.camera);
+    this.events.drawn();
   }
 
   /** Puts an organ in the middle of the picture. */
@@ -109,7 +154,7 @@ export class Stage {
 
   /** What is drawn now, with these lines under it; null while that is in a headset. */
   async picture(lines: readonly string[]): Promise<Blob | null> {
-    if (this.wearer) return null;
+    if (this.wearer || !this.renderer) return null;
     this.renderer.render(this.scene, this.camera); // the browser forgets what it has shown
     return snapshot(this.renderer.domElement, lines);
   }
@@ -127,6 +172,35 @@ export class Stage {
     }
     this.camera.position.sub(this.controls.target).multiplyScalar(farther).add(this.controls.target);
     this.controls.update();
+    this.keep_in_view(this.kept_m);
+  }
+
+  /** In the first view of a narrow picture: goes so far off that this place is in it. */
+  keep_in_view(place_m: Vec | null): void {
+    this.kept_m = place_m;
+    if (!place_m || !this.at_home || this.eyes || this.wearer || this.camera.aspect > kNarrow_aspect) return;
+    const { position } = this.camera;
+    for (let i = 0; i < kMaxStepsBack; ++i) {
+      this.camera.updateMatrixWorld();
+      const { x, y, z } = new THREE.Vector3(...place_m).project(this.camera);
+      if (z < 1 && Math.max(Math.abs(x), Math.abs(y)) < kInside_ratio) return;
+      position.sub(this.controls.target).multiplyScalar(kStepBack_ratio).add(this.controls.target);
+    }
+  }
+
+  /** As a drag to the right and up, and so many times the distance. False while the view is not the desk's own. */
+  turn(right_rad: number, up_rad: number, distance_ratio: number): boolean {
+    if (!this.controls.enabled) return false;
+    const from = this.camera.position.clone().sub(this.controls.target);
+    const r = from.length();
+    const azimuth_rad = Math.atan2(from.y, from.x) - right_rad;
+    const polar_rad = Math.min(Math.max(Math.acos(from.z / r) + up_rad, kPole_rad), Math.PI - kPole_rad);
+    const across = Math.sin(polar_rad);
+    from.set(across * Math.cos(azimuth_rad), across * Math.sin(azimuth_rad), Math.cos(polar_rad));
+    this.at_home = false;
+    this.camera.position.copy(this.controls.target).addScaledVector(from, r * distance_ratio);
+    this.controls.update();
+    return true;
   }
 
   /** The camera where the operator's eyes are; null gives it back to the mouse. */
@@ -162,13 +236,13 @@ export class Stage {
 
   private resize(): void {
     if (this.wearer) return; // the headset has its own size
-    this.renderer.setPixelRatio(this.sharpness);
-    const { clientWidth, clientHeight } = this.renderer.domElement;
-    this.renderer.setSize(clientWidth, clientHeight, false);
+    const { clientWidth, clientHeight } = this.canvas;
+    this.renderer?.setPixelRatio(this.sharpness);
+    this.renderer?.setSize(clientWidth, clientHeight, false);
     this.camera.aspect = clientWidth / Math.max(1, clientHeight);
     this.camera.updateProjectionMatrix();
     if (this.at_home && !this.eyes) this.go_home();
-    this.renderer.render(this.scene, this.camera); // a resized canvas is empty
+    this.renderer?.render(this.scene, this.camera); // a resized canvas is empty
   }
 
   private count(now_ms: number): void {

@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Where the intervals of a trial are presented: at the tactd that runs, or to an observer that is simulated."""
+import math
+import pathlib
+import random
+import re
+import subprocess
+import tempfile
+import time
+
+import numpy as np
+import tact
+from methods import weibull
+from protocol import Wrong
+
+MARKS = {"interval_1": 1, "interval_2": 2, "interval_end": 3, "answer_1": 4, "answer_2": 5}
+
+
+class Running:
+    """The tactd that runs the scene, by tactctl; the answers are lines of `lines`."""
+
+    def __init__(self, protocol, tactctl, lines, show):
+        self.protocol, self.tactctl, self.lines, self.show = protocol, [*tactctl, str(protocol.scene)], lines, show
+        self.begun_ns = None
+        self.ask("status")
+
+    def ask(self, *words):
+        """What tactd answers; a refusal is an error."""
+        done = subprocess.run([*self.tactctl, *words], capture_output=True, text=True)
+        if done.returncode:
+            raise Wrong(f"tactctl {self.protocol.scene} {' '.join(words)}: {(done.stderr or done.stdout).strip()}")
+        return done.stdout.strip()
+
+    def use(self, values):
+        """These numbers of the law, in use when it returns: the loop takes them while the tool is out of contact."""
+        words = [f"{key}={value:.9g}" for key, value in values.items()]
+        asked = False
+        while not self.ask("set", *words).endswith(": set"):
+            if not asked:
+                self.show("lift the tool out of the tissue")
+            asked = True
+
+    def mark(self, name):
+        """The tick that carries the mark, and s since the first mark."""
+        now_ns = time.monotonic_ns()
+        self.begun_ns = self.begun_ns or now_ns
+        said = self.ask("event", str(MARKS[name]))
+        found = re.search(r"in tick (\d+)", said)
+        if not found:
+            raise Wrong(f"tactctl {self.protocol.scene} event: answered {said!r}, which names no tick")
+        return int(found[1]), 1e-9 * (now_ns - self.begun_ns)
+
+    def line(self):
+        line = self.lines.readline()
+        if not line:
+            raise Wrong("the answers have ended before the protocol; what was answered is in the table")
+        return line.strip()
+
+    def interval(self, number, values):
+        self.use(values)
+        tick, onset_s = self.mark(f"interval_{number}")
+        self.show(f"interval {number}" + ("" if self.protocol.interval_s else ": a line (Enter) ends it"))
+        if self.protocol.interval_s:
+            time.sleep(self.protocol.interval_s)
+        else:
+            self.line()
+        _, end_s = self.mark("interval_end")
+        return {"tick": tick, "onset_s": onset_s, "end_s": end_s}
+
+    def answer(self, intervals):
+        """1 or 2, and s since the last interval."""
+        self.show(self.protocol.question)
+        while (said := self.line()) not in ("1", "2"):
+            self.show("answer 1 or 2")
+        _, at_s = self.mark(f"answer_{said}")
+        return int(said), at_s - intervals[-1]["end_s"]
+
+    def pause(self):
+        time.sleep(self.protocol.pause_s)
+
+    def force_ratio(self, block, level):
+        """Of a person's hand it is in the tick log."""
+        return None
+
+
+class Simulated:
+    """An observer without a person. It answers by the forces of the scene's own hand, from a log that tactd --replay has found
+    to be the same bit for bit: right with the probability of a Weibull curve, at `threshold` more force with `probability`."""
+
+    def __init__(self, protocol, tactd, threshold, ticks, slope=3.5, probability=0.75):
+        self.protocol, self.tactd, self.threshold, self.ticks = protocol, tactd, threshold, ticks
+        self.slope, self.probability, self.known = slope, probability, {}
+        self.random, self.at_s = random.Random(f"observer {protocol.seed}"), 0.0
+
+    def force_N(self, values):
+        """RMS of the force over the run, in simulated time."""
+        words = tuple(f"{key}={value:.9g}" for key, value in values.items())
+        if words not in self.known:
+            with tempfile.TemporaryDirectory() as folder:
+                log = pathlib.Path(folder, "run.tactlog")
+                sets = [word for each in words for word in ("--set", each)]
+                self.run(self.protocol.scene, *sets, "--free-run", "--ticks", self.ticks, "--no-telemetry", "--no-black-box",
+                         "--record", log)
+                self.run(self.protocol.scene, "--replay", log)
+                self.known[words] = float(np.sqrt((tact.read_ticks(log).ticks["force_N"]**2).sum(axis=1).mean()))
+        return self.known[words]
+
+    def run(self, *arguments):
+        done = subprocess.run([*self.tactd, *map(str, arguments)], capture_output=True, text=True)
+        if done.returncode:
+            raise Wrong(f"tactd {' '.join(map(str, arguments))}: {(done.stderr or done.stdout).strip()[-300:]}")
+
+    def interval(self, number, values):
+        force_N, onset_s = self.force_N(values), self.at_s
+        self.at_s += 1.0
+        return {"tick": "n/a", "onset_s": onset_s, "end_s": self.at_s, "force_N": force_N}
+
+    def answer(self, intervals):
+        first, second = (interval["force_N"] for interval in intervals)
+        if min(first, second) <= 0.0:
+            raise Wrong(f"{self.protocol.scene}: its hand finds no force in {self.ticks} ticks; give more by --ticks")
+        more = abs(math.log(second / first))
+        stronger = 2 if second > first else 1
+        share = weibull(math.log10(more / math.log1p(self.threshold)), self.slope, self.probability) if more > 0.0 else 0.5
+        return (stronger if self.random.random() < share else 3 - stronger), 0.0
+
+    def pause(self):
+        self.at_s += self.protocol.pause_s
+
+    def force_ratio(self, block, level):
+        """How much more force the level gives than the reference."""
+        values = ({**block.set, self.protocol.parameter: block.reference * more} for more in (1.0 + level, 1.0))
+        return self.force_N(next(values)) / self.force_N(next(values)) - 1.0
