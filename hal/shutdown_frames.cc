@@ -22,49 +22,49 @@ void wait_ns(long pause_ns) {
   clock_nanosleep(CLOCK_MONOTONIC, 0, &pause, nullptr);
 }
 
-int send_datagrams(const ShutdownFrames& words, std::size_t first, std::size_t last) {
+int send_datagrams(const ShutdownFrames& frames, std::size_t first, std::size_t last) {
   // Copies on the stack: an iovec takes no const, and the guardian uses no heap.
   std::array<ShutdownFrames::LongBytes, ShutdownFrames::kMax> bytes{};
   std::array<iovec, ShutdownFrames::kMax> place{};
   std::array<mmsghdr, ShutdownFrames::kMax> message{};
   for (std::size_t i = first; i < last; ++i) {
-    bytes[i] = words.word[i];
-    place[i] = {.iov_base = bytes[i].data(), .iov_len = words.bytes_of(i).size()};
+    bytes[i] = frames.frame[i];
+    place[i] = {.iov_base = bytes[i].data(), .iov_len = frames.bytes_of(i).size()};
     message[i].msg_hdr.msg_iov = &place[i];
     message[i].msg_hdr.msg_iovlen = 1;
   }
   const auto wanted = static_cast<unsigned>(last - first);
-  const int sent = sendmmsg(words.fd, &message[first], wanted, MSG_DONTWAIT | MSG_NOSIGNAL);
+  const int sent = sendmmsg(frames.fd, &message[first], wanted, MSG_DONTWAIT | MSG_NOSIGNAL);
   if (sent == static_cast<int>(wanted)) return 0;
-  // Some went and some did not: the queue is full, and the step is said again as a whole.
+  // Some went and some did not: the queue is full, and the step is sent again as a whole.
   return sent < 0 ? errno : ENOBUFS;
 }
 
-int send_bulk(const ShutdownFrames& words, std::size_t first, std::size_t last) {
+int send_bulk(const ShutdownFrames& frames, std::size_t first, std::size_t last) {
   for (std::size_t i = first; i < last; ++i) {
-    ShutdownFrames::LongBytes bytes = words.word[i];
+    ShutdownFrames::LongBytes bytes = frames.frame[i];
     usbdevfs_bulktransfer transfer{};
-    transfer.ep = words.endpoint;
-    transfer.len = static_cast<unsigned>(words.bytes_of(i).size());
+    transfer.ep = frames.endpoint;
+    transfer.len = static_cast<unsigned>(frames.bytes_of(i).size());
     transfer.timeout = kTransferWait_ms;
     transfer.data = bytes.data();
-    if (ioctl(words.fd, USBDEVFS_BULK, &transfer) >= 0) continue;
+    if (ioctl(frames.fd, USBDEVFS_BULK, &transfer) >= 0) continue;
     const int error = errno;
-    unsigned halted = words.endpoint;
+    unsigned halted = frames.endpoint;
     // A stalled endpoint would refuse the zeros for ever; the next try then gets through.
-    if (error == EPIPE) ioctl(words.fd, USBDEVFS_CLEAR_HALT, &halted);
+    if (error == EPIPE) ioctl(frames.fd, USBDEVFS_CLEAR_HALT, &halted);
     return error;
   }
   return 0;
 }
 
 template <class Bytes>
-bool add(ShutdownFrames& to, std::span<const Bytes> words) {
-  if (to.count + words.size() > ShutdownFrames::kMax) return false;
-  for (const Bytes& one : words) {
+bool add(ShutdownFrames& to, std::span<const Bytes> frames) {
+  if (to.count + frames.size() > ShutdownFrames::kMax) return false;
+  for (const Bytes& one : frames) {
     to.step[to.count] = static_cast<std::uint8_t>(to.steps);
     to.size[to.count] = static_cast<std::uint8_t>(one.size());
-    std::ranges::copy(one, to.word[to.count++].begin());
+    std::ranges::copy(one, to.frame[to.count++].begin());
   }
   ++to.steps;
   return true;
@@ -72,29 +72,29 @@ bool add(ShutdownFrames& to, std::span<const Bytes> words) {
 
 }  // namespace
 
-bool ShutdownFrames::add_step(std::span<const Bytes> words) { return add(*this, words); }
-bool ShutdownFrames::add_step(std::span<const LongBytes> words) { return add(*this, words); }
+bool ShutdownFrames::add_step(std::span<const Bytes> frames) { return add(*this, frames); }
+bool ShutdownFrames::add_step(std::span<const LongBytes> frames) { return add(*this, frames); }
 
-int say_step(const ShutdownFrames& words, std::uint32_t step) {
-  const auto all = std::span(words.step).first(std::min<std::size_t>(words.count, words.kMax));
+int send_step(const ShutdownFrames& frames, std::uint32_t step) {
+  const auto all = std::span(frames.step).first(std::min<std::size_t>(frames.count, frames.kMax));
   const auto of_step = std::ranges::equal_range(all, step);
   const auto first = static_cast<std::size_t>(of_step.begin() - all.begin());
   const auto last = first + of_step.size();
   if (first == last) return 0;
-  return words.carrier == ShutdownFrames::Carrier::kUsbBulk ? send_bulk(words, first, last)
-                                                            : send_datagrams(words, first, last);
+  return frames.carrier == ShutdownFrames::Carrier::kUsbBulk ? send_bulk(frames, first, last)
+                                                             : send_datagrams(frames, first, last);
 }
 
-int say_all(const ShutdownFrames& words) {
+int send_all(const ShutdownFrames& frames) {
   int first_error = 0;
-  for (std::uint32_t step = 0; step < words.steps; ++step) {
+  for (std::uint32_t step = 0; step < frames.steps; ++step) {
     if (step > 0) wait_ns(kBetweenSteps_ns);
-    int error = say_step(words, step);
+    int error = send_step(frames, step);
     for (int tries = 1; error != 0 && tries < kTries; ++tries) {
       wait_ns(kBetweenTries_ns);
-      error = say_step(words, step);
+      error = send_step(frames, step);
     }
-    // The steps after it are said all the same: power off may get through where zero did not.
+    // The steps after it are sent all the same: power off may get through where zero did not.
     if (first_error == 0) first_error = error;
   }
   return first_error;

@@ -28,25 +28,25 @@ struct ShutdownFrames {
   std::uint8_t endpoint = 0;  // of kUsbBulk
   int fd = -1;                // the device's own, open as long as the device
   std::uint32_t count = 0, steps = 0;
-  std::array<LongBytes, kMax> word{};
-  std::array<std::uint8_t, kMax> size{};  // of each word
+  std::array<LongBytes, kMax> frame{};
+  std::array<std::uint8_t, kMax> size{};  // of each frame
   std::array<std::uint8_t, kMax> step{};  // ascending; a millisecond lies between two steps
 
-  /// Set-up: words of the next step. False: there is no room for them.
-  bool add_step(std::span<const Bytes> words);
-  bool add_step(std::span<const LongBytes> words);
+  /// Set-up: frames of the next step. False: there is no room for them.
+  bool add_step(std::span<const Bytes> frames);
+  bool add_step(std::span<const LongBytes> frames);
   /// As it leaves.
   std::span<const std::uint8_t> bytes_of(std::size_t i) const {
-    return std::span(word[i]).first(size[i] > sizeof(LongBytes) ? 0 : size[i]);
+    return std::span(frame[i]).first(size[i] > sizeof(LongBytes) ? 0 : size[i]);
   }
 };
 
-/// The words of one step, over `words.fd`. 0: all are with the kernel; else an errno. Neither heap
-/// nor lock.
-int say_step(const ShutdownFrames& words, std::uint32_t step);
+/// The frames of one step, over `frames.fd`. 0: all are with the kernel; else an errno. Neither
+/// heap nor lock.
+int send_step(const ShutdownFrames& frames, std::uint32_t step);
 /// All of them: zero force at once, the last after `steps` ms and what a full queue takes, 2 ms a
 /// step (22 ms where a USB device does not answer). 0, or the errno of the first step that a device
 /// did not take.
-int say_all(const ShutdownFrames& words);
+int send_all(const ShutdownFrames& frames);
 
 }  // namespace tact::hal

@@ -13,13 +13,13 @@ constexpr std::array kTable{
     FaultEntry{Fault::kSampleHeld, "sample held", "the device gave no new sample this tick",
                "harmless when rare; if it repeats, check cable, hub and bus load"},
     FaultEntry{Fault::kSampleStale, "sample stale",
-               "two or more samples in a row are missing; the force fades to zero",
+               "two or more samples in a row are missing; the force ramps down to zero",
                "check cable, hub and bus load"},
     FaultEntry{Fault::kNotArmed, "not armed", "the controller is not armed, the force is zero",
                "a simulated device arms by itself once its samples are good; hold a real one, then "
                "tactctl SCENE arm"},
     FaultEntry{Fault::kOutsideWorkspace, "outside workspace",
-               "the tool left the permitted workspace, the force fades to zero",
+               "the tool left the permitted workspace, the force ramps down to zero",
                "bring the tool back, or widen limits.workspace_* in the scene"},
     FaultEntry{Fault::kForceLimited, "force limited", "the wanted force is above limits.force_N",
                "press less, or soften the law in the scene"},
@@ -28,16 +28,17 @@ constexpr std::array kTable{
     FaultEntry{Fault::kSlewLimited, "slew limited",
                "the force changes faster than limits.slew_N_per_s",
                "harmless at a tear or a release; if it stays, soften the law"},
-    FaultEntry{Fault::kRampingUp, "ramping up", "the force is being faded in after arming",
+    FaultEntry{Fault::kRampingUp, "ramping up", "the force ramps up after arming",
                "wait for limits.ramp_s"},
     FaultEntry{
         Fault::kLawSaturated, "beyond the law",
         "the tissue is pressed or pulled beyond what its law answers: the force stays at its "
         "limit, or follows slowly where it would jump",
         "press less, or give the law more range in the scene"},
-    FaultEntry{Fault::kTooFast, "too fast",
-               "the tool is faster than limits.speed_mps or turn_radps, the force fades to zero",
-               "move slower, or raise the limit in the scene"},
+    FaultEntry{
+        Fault::kTooFast, "too fast",
+        "the tool is faster than limits.speed_mps or turn_radps, the force ramps down to zero",
+        "move slower, or raise the limit in the scene"},
     FaultEntry{Fault::kEnergyLimited, "energy limited",
                "the device has given its energy budget to the hand; the force is damped",
                "soften the law, raise rate_Hz or take a device with more damping; a larger "
@@ -53,14 +54,15 @@ constexpr std::array kTable{
         "the tool was found inside the organ: no contact and no force until it has once been "
         "outside",
         "take it out of the organ"},
-    FaultEntry{Fault::kContactLost, "contact lost",
-               "the tool moved unseen, farther than limits.speed_mps allows for the pause; contact "
-               "ends, held tissue is let go",
-               "check for lost samples and long pauses"},
+    FaultEntry{
+        Fault::kContactLost, "contact lost",
+        "while samples were missing the tool moved farther than limits.speed_mps allows; contact "
+        "ends, held tissue is released",
+        "check for lost samples and long pauses"},
     FaultEntry{
         Fault::kClutchPressed, "clutch pressed",
         "the tool stays where it is, without a force, while the handle moves; held tissue is "
-        "let go",
+        "released",
         "release the clutch: contact begins again where the tool is. If it is not pressed, its "
         "line "
         "flaps: repair it (device.lines.clutch)"},
@@ -101,9 +103,8 @@ constexpr std::array kTable{
         Fault::kBusOff, "bus off", "the CAN controller is error passive, or has left the bus",
         "check bit rate, termination and cable, then start tactd again: it says how to set the "
         "interface up again"},
-    FaultEntry{
-        Fault::kDriveFault, "drive fault", "a drive reported an error",
-        "the sentence beside it says which and why; repair the cause, then start tactd again"},
+    FaultEntry{Fault::kDriveFault, "drive fault", "a drive reported an error",
+               "the message after it says which and why; repair the cause, then start tactd again"},
     FaultEntry{Fault::kDriveSilent, "drive silent", "a drive's heartbeat is missing",
                "check its supply and its cable, then start tactd again"},
     FaultEntry{Fault::kDeviceUnplugged, "device unplugged", "the USB device is gone",
@@ -114,7 +115,7 @@ constexpr std::array kTable{
     FaultEntry{Fault::kHomingLost, "homing lost", "the device no longer knows where it is",
                "start tactd again and home it"},
     FaultEntry{Fault::kForceOff, "force off", "the device itself switched its forces off",
-               "the sentence beside it says why; repair the cause, then start tactd again"},
+               "the message after it says why; repair the cause, then start tactd again"},
     FaultEntry{Fault::kPowerLost, "power lost",
                "the motors lost their power while armed: the enable line fell, as after a pause of "
                "the heartbeat, or the device switched them off",

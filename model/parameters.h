@@ -26,8 +26,8 @@ namespace tact::model {
 
 inline constexpr bool kHard = true;
 
-/// What a scene may say, both ends included: it keeps out slips of the pen. Beyond hard ends the
-/// law has no meaning, beyond others a program may go, up to the next change of sign.
+/// What a scene may say, both ends included: it rejects typing errors. A hard range holds for
+/// make_* too; of any other, make_* checks the sign alone.
 struct Range {
   double low = 0.0, high = 0.0;
   bool is_hard = false;

@@ -71,20 +71,20 @@ Press fastest_press(const model::scene::Scene& scene, const model::indent::Elast
 }  // namespace
 
 std::string inertia_note(const model::scene::Scene& scene, const model::scene::TissueLaw& law) {
-  constexpr double kNoticedForceRatio =
+  constexpr double kNoticedForce_ratio =
       0.07;  // smallest relative change of force that people notice
   // A stepped law has masses of its own.
   if (law.curve() == nullptr) return {};
   const auto tip = half_space_of(scene, law);
   if (!tip) return {};
-  const Press press = fastest_press(scene, *tip, kNoticedForceRatio);
+  const Press press = fastest_press(scene, *tip, kNoticedForce_ratio);
   if (!(press.speed_mps > press.limit_mps)) return {};
   return fmt::format(
       "{}: a stroke of the hand presses with {:.0f} mm/s at a depth of {:.1f} mm; from {:.0f} mm/s "
       "on the inertia of tissue, which this law leaves out, is more than {:.0f} % of the force "
       "there: give the stroke more time, or expect less force than tissue has",
       scene.path, 1e3 * press.speed_mps, 1e3 * press.depth_m, 1e3 * press.limit_mps,
-      100.0 * kNoticedForceRatio);
+      100.0 * kNoticedForce_ratio);
 }
 
 }  // namespace tact::firmware::admission

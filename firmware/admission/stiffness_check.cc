@@ -85,9 +85,9 @@ double stiffest_sideways_N_per_m(const model::scene::Scene& scene,
   // A value set in the scene replaces the tissue's own (contact/contact_scene.h).
   if (scene.contact.sliding_stiffness_N_per_m > 0.0) return scene.contact.sliding_stiffness_N_per_m;
   double most_N_per_m = 0.0;
-  const auto ask = [&](const model::contact::SurfacePoint& place,
-                       const model::contact::Axes& axes) {
-    const model::contact::TangentCompliance compliance = law.tangent_compliance(place, true, axes);
+  const auto visit_point = [&](const model::contact::SurfacePoint& point,
+                               const model::contact::Axes& axes) {
+    const model::contact::TangentCompliance compliance = law.tangent_compliance(point, true, axes);
     for (const model::contact::ProbeSphere& sphere : scene.tool.spheres) {
       const double compliance_m_per_N = compliance.at(sphere.radius_m).least_eigenvalue();
       if (compliance_m_per_N > 0.0) most_N_per_m = std::max(most_N_per_m, 1.0 / compliance_m_per_N);
@@ -97,9 +97,9 @@ double stiffest_sideways_N_per_m(const model::scene::Scene& scene,
   for (std::uint32_t t = 0; t < scene.organ_mesh.triangle.size(); ++t) {
     const model::contact::Axes axes = model::contact::axes_of(scene.organ_mesh.face_normal[t]);
     for (std::size_t corner = 0; corner < 3; ++corner) {
-      model::contact::SurfacePoint place{.triangle = t, .weight = {}};
-      place.weight[corner] = 1.0;
-      ask(place, axes);
+      model::contact::SurfacePoint point{.triangle = t, .weight = {}};
+      point.weight[corner] = 1.0;
+      visit_point(point, axes);
     }
   }
   return most_N_per_m;

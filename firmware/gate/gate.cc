@@ -18,7 +18,7 @@ constexpr std::int64_t kLostAfter = 20;  // missed samples in a row
 // The margin of 1/4 lets the tool accelerate while the force falls at the slew limit:
 //
 //     GT-5   power   F . v + T . w <= 3/4 P
-constexpr double kPowerAimRatio = 0.75;
+constexpr double kPowerAim_ratio = 0.75;
 
 Wrench operator*(double share, const Wrench& w) RT_SAFE {
   return {share * w.force_N, share * w.torque_Nm};
@@ -198,7 +198,7 @@ void Gate::limit_power(const model::Tool& tool, const Magnitude& most, double pe
                        LimitedForce& limited) RT_SAFE {
   Wrench& w = limited.wrench;
   if (limit_surplus(w, tool.velocity_mps, tool.angular_velocity_radps,
-                    kPowerAimRatio * limits_.power_W)) {
+                    kPowerAim_ratio * limits_.power_W)) {
     note(Stage::kPower, Fault::kPowerLimited, limited);
     step_towards(w, periods, most);
   }

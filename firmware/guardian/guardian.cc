@@ -58,7 +58,7 @@ bool is_hung_up(const pollfd& file) { return (file.revents & (POLLHUP | POLLERR 
 
 }  // namespace
 
-model::Result<std::unique_ptr<Guardian>> Guardian::start(const hal::ShutdownFrames& words,
+model::Result<std::unique_ptr<Guardian>> Guardian::start(const hal::ShutdownFrames& frames,
                                                          const GuardianSettings& settings) {
   const std::string program = settings.program.empty() ? beside_this_program() : settings.program;
   auto liveness = LivenessLock::make();
@@ -79,7 +79,7 @@ model::Result<std::unique_ptr<Guardian>> Guardian::start(const hal::ShutdownFram
   // regular end.
   guardian->held_.acquire();
   // getpid() appears only in a message; no signal is sent to that number.
-  const Orders orders{.words = words,
+  const Orders orders{.frames = frames,
                       .priority = settings.priority,
                       .process = getpid(),
                       .silence_ns = settings.silence_ns,

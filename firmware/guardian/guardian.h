@@ -35,7 +35,7 @@ struct GuardianSettings {
 class Guardian {
  public:
   /// Returns when the guardian is ready. The device must stay open until the destructor ends.
-  static model::Result<std::unique_ptr<Guardian>> start(const hal::ShutdownFrames& words,
+  static model::Result<std::unique_ptr<Guardian>> start(const hal::ShutdownFrames& frames,
                                                         const GuardianSettings& settings);
   ~Guardian();
   Guardian(const Guardian&) = delete;

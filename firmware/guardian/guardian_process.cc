@@ -127,11 +127,11 @@ int stand_guard(int socket) {
                                               {orders.process, kHeld, kSent}}};
   outlive_short_memory();
   enter_real_time(orders.priority);
-  filter_calls(orders.words.fd, socket);
+  filter_calls(orders.frames.fd, socket);
   write_all(socket, "r");
   const LivenessLock::End end = liveness->await(orders.silence_ns, orders.period_ns);
   if (end == LivenessLock::End::kLetGo) return 0;
-  const std::size_t sent = hal::say_all(orders.words) == 0 ? 1 : 0;
+  const std::size_t sent = hal::send_all(orders.frames) == 0 ? 1 : 0;
   write_all(STDERR_FILENO,
             messages[sent + (end == LivenessLock::End::kSilent ? 2 : 0)].text.data());
   return 1;

@@ -22,13 +22,13 @@ LivenessPage* map(int fd) {
   return memory == MAP_FAILED ? nullptr : static_cast<LivenessPage*>(memory);
 }
 
-/// Halfway between two deadlines of the loop, so that a look falls into no tick (RT-14).
-timespec next_look(std::int64_t after_ns, std::int64_t period_ns) {
+/// Halfway between two deadlines of the loop, so that a check falls into no tick (RT-14).
+timespec next_check(std::int64_t after_ns, std::int64_t period_ns) {
   timespec at{};
   clock_gettime(CLOCK_MONOTONIC, &at);
   const std::int64_t now_ns = at.tv_sec * model::kSecond_ns + at.tv_nsec;
-  const std::int64_t look_ns = loop::next_half_way_ns(now_ns + after_ns, period_ns);
-  return {.tv_sec = look_ns / model::kSecond_ns, .tv_nsec = look_ns % model::kSecond_ns};
+  const std::int64_t check_ns = loop::next_half_way_ns(now_ns + after_ns, period_ns);
+  return {.tv_sec = check_ns / model::kSecond_ns, .tv_nsec = check_ns % model::kSecond_ns};
 }
 
 model::Error refused(int fd, int error) {
@@ -78,10 +78,10 @@ void LivenessLock::let_go() { pthread_mutex_unlock(&page_->mutex); }
 
 // The kernel reports the death as EOWNERDEAD; any other error of the lock counts as a death, too.
 LivenessLock::End LivenessLock::await(std::int64_t silence_ns, std::int64_t period_ns) {
-  constexpr int kLooks = 2;  // in the time of a silence
+  constexpr int kChecks = 2;  // in the time of a silence
   std::uint64_t before = 0;
   for (int same = 0;;) {
-    const timespec until = next_look(silence_ns / kLooks, period_ns);
+    const timespec until = next_check(silence_ns / kChecks, period_ns);
     const int ended = pthread_mutex_clocklock(&page_->mutex, CLOCK_MONOTONIC, &until);
     if (ended == 0) {
       pthread_mutex_unlock(&page_->mutex);
@@ -92,7 +92,7 @@ LivenessLock::End LivenessLock::await(std::int64_t silence_ns, std::int64_t peri
     const std::uint64_t now = page_->holder_count.load(std::memory_order_relaxed);
     same = now == before && now != 0 ? same + 1 : 0;
     before = now;
-    if (same >= kLooks) return End::kSilent;
+    if (same >= kChecks) return End::kSilent;
   }
 }
 

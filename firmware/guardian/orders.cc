@@ -41,7 +41,7 @@ bool give_orders(int socket, const Orders& orders, int liveness_fd) {
   header->cmsg_level = SOL_SOCKET;
   header->cmsg_type = SCM_RIGHTS;
   header->cmsg_len = CMSG_LEN(kFds * sizeof(int));
-  const std::array<int, kFds> fds{liveness_fd, orders.words.fd};
+  const std::array<int, kFds> fds{liveness_fd, orders.frames.fd};
   std::memcpy(CMSG_DATA(header), fds.data(), sizeof fds);
   return sendmsg(socket, message.header(), MSG_NOSIGNAL) == static_cast<ssize_t>(sizeof copy);
 }
@@ -61,7 +61,7 @@ std::optional<TakenOrders> take_orders(int socket) {
   std::memcpy(fds.data(), CMSG_DATA(header), sizeof fds);
   taken.liveness_fd = fds[0];
   // The fd number inside the datagram is valid in tactd only; the received descriptor replaces it.
-  taken.orders.words.fd = fds[1];
+  taken.orders.frames.fd = fds[1];
   return taken;
 }
 

@@ -16,7 +16,7 @@ inline constexpr const char* kProgram = "tact-guardian";
 
 struct Orders {
   std::uint64_t magic = 0x7461'6374'6775'6133;
-  hal::ShutdownFrames words;    // its fd is valid only in the sender; the datagram carries another
+  hal::ShutdownFrames frames;   // its fd is valid only in the sender; the datagram carries another
   std::int32_t priority = 0;    // SCHED_FIFO
   std::int32_t process = 0;     // process id of tactd, for the message
   std::int64_t silence_ns = 0;  // tactd counts no further for so long: as if it had died

@@ -19,7 +19,7 @@ bool lets_go(Fault limit) RT_SAFE {
 constexpr std::uint32_t kMaxPeriods = 20;
 // Margins on the distance that the speed limit permits: 5 % for the jitter of the device's
 // samples, 0.1 mm for noise and resolution of the encoders.
-constexpr double kReachRatio = 1.05;
+constexpr double kReach_ratio = 1.05;
 constexpr double kReachMargin_m = 1e-4;
 
 // v + w l: speed limit of the tool, turn limit times the distance of the farthest sphere.
@@ -46,7 +46,7 @@ Controller::Controller(const model::contact::ContactScene& scene, const gate::Ga
 double Controller::reach_m(std::uint64_t periods, std::int64_t stamp_ns) const RT_SAFE {
   const double by_ticks_s = static_cast<double>(periods) * gate_.period_s();
   const double by_stamps_s = seen_ ? 1e-9 * static_cast<double>(stamp_ns - stamp_ns_) : 0.0;
-  return kReachRatio * fastest_mps_ * std::max(by_ticks_s, by_stamps_s) + kReachMargin_m;
+  return kReach_ratio * fastest_mps_ * std::max(by_ticks_s, by_stamps_s) + kReachMargin_m;
 }
 
 // Contact follows the tool from the first sample on, armed or not. While samples are missing the

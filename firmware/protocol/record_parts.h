@@ -15,7 +15,7 @@ namespace tact::firmware::protocol {
 inline constexpr std::size_t kMaxContacts = 16;  // probe spheres on the tool
 
 // kInside: the sphere is inside the organ and gives no force until it has once been outside.
-enum class ContactState : std::uint8_t { kFree = 0, kTouching = 1, kHeld = 2, kInside = 3 };
+enum class ContactState : std::uint8_t { kFree = 0, kInContact = 1, kHeld = 2, kInside = 3 };
 
 /// `table` with so many elements in its field "contact".
 template <const auto& table>

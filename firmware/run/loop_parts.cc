@@ -87,10 +87,10 @@ Result<LoopParts> open_loop_parts(const model::scene::Scene& scene, const PartsS
 
 Result<std::unique_ptr<guardian::Guardian>> start_guardian(hal::Device& device,
                                                            const guardian::GuardianSettings& s) {
-  const auto words = device.shutdown_frames();
+  const auto frames = device.shutdown_frames();
   // Null: simulated, or the vendor's handle cannot be shared (hal/shutdown_frames.h).
-  if (!words) return std::unique_ptr<guardian::Guardian>();
-  return guardian::Guardian::start(*words, s);
+  if (!frames) return std::unique_ptr<guardian::Guardian>();
+  return guardian::Guardian::start(*frames, s);
 }
 
 }  // namespace tact::firmware::run

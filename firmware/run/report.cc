@@ -160,8 +160,8 @@ std::string make_summary(const RunFacts& facts, const loop::LoopStatistics& loop
     out += fmt::format(", {} allocations, {} page faults", facts.costs.heap_calls,
                        facts.costs.minor_faults + facts.costs.major_faults);
   if (loop.contact_losses > 0)
-    out += fmt::format("\n  contact lost {} times: the tool moved unseen; {}", loop.contact_losses,
-                       model::describe(model::Fault::kContactLost).remedy);
+    out += fmt::format("\n  contact lost {} times: the tool moved too far between two samples; {}",
+                       loop.contact_losses, model::describe(model::Fault::kContactLost).remedy);
   if (loop.inside_ticks > 0)
     out += fmt::format("\n  the tool was inside the organ, without force, in {} of {} ticks",
                        loop.inside_ticks, loop.ticks);

@@ -128,8 +128,8 @@ void FrameBuilder::add(const loop::TickRecord& record) {
   newest_ = record;
 }
 
-Frame frame_of_tick(const Frame& picture, const LoggedTick& tick, std::int64_t time_ns) {
-  Frame frame = picture;
+Frame frame_of_tick(const Frame& previous, const LoggedTick& tick, std::int64_t time_ns) {
+  Frame frame = previous;
   frame.tick = tick.tick;
   frame.time_ns = time_ns;
   frame.due_ns = tick.due_ns;
@@ -206,7 +206,7 @@ void FrameBuilder::add_contact(const model::contact::SphereContact& sphere_conta
   // Only the sphere's own indentation, because the page adds up all indentations. A sphere within
   // the indentation of another has none.
   const bool is_held = sphere_contact.state == model::contact::ContactState::kHeld;
-  const bool presses = sphere_contact.state == model::contact::ContactState::kTouching &&
+  const bool presses = sphere_contact.state == model::contact::ContactState::kInContact &&
                        sphere_contact.indentation_m > 0.0;
   if (!is_held && !presses) return;
   std::array<double, protocol::kMaxProfilePoints> ring_m{};

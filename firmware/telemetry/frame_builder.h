@@ -30,8 +30,8 @@ std::vector<std::byte> mesh_bytes(const model::scene::Scene& scene);
 /// A sealed memory file.
 model::Result<int> make_memory_file(const std::string& bytes);
 
-/// One tick as a frame: what the tick does not hold comes from `picture`, the frame before it.
-Frame frame_of_tick(const Frame& picture, const LoggedTick& tick, std::int64_t time_ns);
+/// One tick as a frame: what the tick does not hold comes from `previous`, the frame before it.
+Frame frame_of_tick(const Frame& previous, const LoggedTick& tick, std::int64_t time_ns);
 
 /// Collects records; a frame has the newest values, and the extremes since the last frame.
 class FrameBuilder {

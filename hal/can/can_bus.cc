@@ -120,7 +120,7 @@ std::string can_bus_fault_detail(const FaultCause& cause, const std::string& int
       return fmt::format("{}: {}", interface,
                          CanError{.classes = cause.code & 0xFFFFu,
                                   .controller = static_cast<std::uint8_t>(cause.code >> 16)}
-                             .words());
+                             .text());
     default:
       return {};
   }

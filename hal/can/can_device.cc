@@ -108,13 +108,13 @@ class CanDevice final : public Device {
   }
 
   std::optional<ShutdownFrames> shutdown_frames() override {
-    ShutdownFrames words{.fd = bus_->socket().fd()};
+    ShutdownFrames frames{.fd = bus_->socket().fd()};
     bool more = true;
     for (int step = 0; more; ++step) {
       more = drives_.push_stop(loop_, step);
-      if (!words.add_step(bus_->take_batch())) return std::nullopt;
+      if (!frames.add_step(bus_->take_batch())) return std::nullopt;
     }
-    return words;
+    return frames;
   }
 
   std::string fault_detail() const override {
@@ -126,7 +126,7 @@ class CanDevice final : public Device {
     if (auto words = homing_fault_detail(cause, delta_settings_); !words.empty()) return words;
     if (cause.kind == static_cast<std::uint8_t>(CanCause::kForeign))
       return foreign_commands_.text(cause.code, can_.interface);
-    return fmt::format("{}: {}", can_arm_name(cause.axis, can_), words(cause));
+    return fmt::format("{}: {}", can_arm_name(cause.axis, can_), text_of(cause));
   }
 
   std::vector<DeviceCount> counters() const override {
@@ -245,12 +245,12 @@ class CanDevice final : public Device {
     const FaultCause wait = loop_.waits.cause();
     if (wait.kind == 0 || wait.axis > 2) return {};
     return fmt::format("waiting for power of {}: {}", can_arm_name(wait.axis, can_),
-                       drives_.words(wait));
+                       drives_.text_of(wait));
   }
 
-  std::string words(const FaultCause& cause) const {
+  std::string text_of(const FaultCause& cause) const {
     auto text = silence_fault_detail(cause, start_.position);
-    return text.empty() ? drives_.words(cause) : text;
+    return text.empty() ? drives_.text_of(cause) : text;
   }
 
   std::unique_ptr<BasicCanBus<Frame>> bus_;

@@ -109,7 +109,7 @@ struct BasicCanLoop {
   }
 };
 
-/// The rules of one kind of drives. All but words(), counters() and the two of
+/// The rules of one kind of drives. All but text_of(), counters() and the two of
 /// the end, push_stop() and push_leave(), belong to the loop.
 template <class Frame>
 class BasicCanDrives {
@@ -142,7 +142,7 @@ class BasicCanDrives {
   /// After those, so that drives do not miss a host that has left.
   virtual void push_leave(Loop& loop) { (void)loop; }
   /// What a cause of their own means, with the remedy. Any thread.
-  virtual std::string words(const FaultCause& cause) const = 0;
+  virtual std::string text_of(const FaultCause& cause) const = 0;
   /// What they counted.
   virtual std::vector<DeviceCount> counters() const = 0;
 };

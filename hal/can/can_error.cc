@@ -12,7 +12,7 @@ constexpr std::uint32_t kErrorFlag = 1u << 29;
 
 }  // namespace
 
-const char* CanError::words() const {
+const char* CanError::text() const {
   if (has(CanErrorClass::kBusOff)) {
     return "The controller left the bus after too many errors: check wiring, termination and bit "
            "rate, then start again.";

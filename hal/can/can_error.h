@@ -61,7 +61,7 @@ struct CanError {
            has(CanControllerState::kRxPassive) || has(CanControllerState::kTxPassive);
   }
   /// Why the bus is gone, with the remedy.
-  const char* words() const;
+  const char* text() const;
 };
 
 /// Of the 16 bytes of a `struct can_frame`. Nothing if they are no error frame, are damaged (other

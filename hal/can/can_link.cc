@@ -17,7 +17,7 @@ constexpr std::uint16_t kLinkInfo = 18, kInfoKind = 1, kInfoData = 2;
 constexpr std::uint16_t kMtu = 4;
 constexpr std::uint16_t kCanBitTiming = 1, kCanState = 4, kCanRestartMs = 6, kCanFastTiming = 9;
 constexpr std::uint16_t kCanHardware = 280;  // ARPHRD_CAN
-constexpr double kMaxLoadRatio = 0.95;
+constexpr double kMaxLoad_ratio = 0.95;
 
 struct Attribute {
   std::uint16_t type = 0;
@@ -151,7 +151,7 @@ std::optional<CanLink> decode_can_link(std::span<const std::uint8_t> message) {
 std::optional<Refusal> check_can_link(const CanLink& link, const std::string& name, int cycle_bits,
                                       double rate_Hz) {
   if (auto refusal = check_interface(link, name, CanFrame::kLinkType)) return refusal;
-  if (link.bitrate && bus_time_s(cycle_bits, link.rate()) * rate_Hz > kMaxLoadRatio)
+  if (link.bitrate && bus_time_s(cycle_bits, link.rate()) * rate_Hz > kMaxLoad_ratio)
     return too_slow(name, std::to_string(*link.bitrate), rate_Hz, CanFrame::kLinkType);
   return std::nullopt;
 }
@@ -166,7 +166,7 @@ std::optional<Refusal> check_can_link(const CanLink& link, const std::string& na
   if (link.has_controller && !link.fast_bitrate)
     return Refusal{name + " has no fast bit rate", command};
   if (!link.bitrate || !link.fast_bitrate) return std::nullopt;
-  if (bus_time_s(cycle, link.rate()) * rate_Hz <= kMaxLoadRatio) return std::nullopt;
+  if (bus_time_s(cycle, link.rate()) * rate_Hz <= kMaxLoad_ratio) return std::nullopt;
   return too_slow(name, fmt::format("{} and {}", *link.bitrate, *link.fast_bitrate), rate_Hz,
                   CanFdFrame::kLinkType);
 }

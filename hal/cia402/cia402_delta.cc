@@ -136,7 +136,9 @@ class Cia402s final : public can::CanDrives {
     }
   }
 
-  std::string words(const FaultCause& cause) const override { return text_of_cia402_cause(cause); }
+  std::string text_of(const FaultCause& cause) const override {
+    return text_of_cia402_cause(cause);
+  }
 
   std::vector<DeviceCount> counters() const override { return {{"old", old_}, {"extra", extra_}}; }
 

@@ -210,12 +210,12 @@ std::string FalconDevice::fault_detail() const {
 
 std::optional<ShutdownFrames> FalconDevice::shutdown_frames() {
   const std::array<ShutdownFrames::Bytes, 1> zero{encode(kLastCommand)};
-  ShutdownFrames words{.carrier = ShutdownFrames::Carrier::kUsbBulk,
-                       .endpoint = kFalconEndpointOut,
-                       .fd = pipe_->descriptor()};
-  bool fits = words.fd >= 0;
-  for (int i = 0; i < kLastCommands && fits; ++i) fits = words.add_step(zero);
-  return fits ? std::optional(words) : std::nullopt;
+  ShutdownFrames frames{.carrier = ShutdownFrames::Carrier::kUsbBulk,
+                        .endpoint = kFalconEndpointOut,
+                        .fd = pipe_->descriptor()};
+  bool fits = frames.fd >= 0;
+  for (int i = 0; i < kLastCommands && fits; ++i) fits = frames.add_step(zero);
+  return fits ? std::optional(frames) : std::nullopt;
 }
 
 void FalconDevice::stop() {

@@ -98,7 +98,7 @@ class GpioLines final : public SafetyLines {
 
   std::string notice() const override { return logic_.notice(); }
   std::string fault_detail() const override {
-    return words(is_lost() ? LinesCause::kChipLost : logic_.cause());
+    return text_of(is_lost() ? LinesCause::kChipLost : logic_.cause());
   }
 
   void stop() override { release(); }

@@ -8,7 +8,7 @@ namespace tact::hal::gpio {
 
 using model::Fault;
 
-const char* words(LinesCause cause) {
+const char* text_of(LinesCause cause) {
   static constexpr std::array kWords{
       // in the order of LinesCause
       "",

@@ -64,7 +64,7 @@ enum class LinesCause : std::uint8_t {
 };
 
 /// One message for a person; empty for kNone.
-const char* words(LinesCause cause);
+const char* text_of(LinesCause cause);
 
 class SafetyLogic {
  public:
@@ -84,8 +84,8 @@ class SafetyLogic {
   }
   /// One message for a person while the clutch flaps, else empty. Any thread.
   const char* notice() const {
-    return words(clutch_flaps_.load(std::memory_order_relaxed) ? LinesCause::kClutchFlaps
-                                                               : LinesCause::kNone);
+    return text_of(clutch_flaps_.load(std::memory_order_relaxed) ? LinesCause::kClutchFlaps
+                                                                 : LinesCause::kNone);
   }
   bool enabled() const RT_SAFE { return outputs_.enable && fault_ == model::Fault::kNone; }
   /// The most specific cause of the present fault, or of the last one. Any thread.

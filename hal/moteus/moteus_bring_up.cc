@@ -17,8 +17,8 @@ using model::Result;
 
 constexpr int kAsk_ms = 5;
 constexpr int kHear_ms = 1000, kKind_ms = 300, kStop_ms = 500, kRest_ms = 200;
-constexpr double kRest_turns = 0.02;       // of a motor while the arms shall rest
-constexpr double kMinAnsweredRatio = 0.8;  // of the questions
+constexpr double kRest_turns = 0.02;        // of a motor while the arms shall rest
+constexpr double kMinAnswered_ratio = 0.8;  // of the questions
 constexpr std::uint8_t kReplyBytes = 24;
 
 /// One axis, as its frames report it.
@@ -123,7 +123,7 @@ class BringUp {
     run_until(moteus_stop_and_ask, [](const Heard&) { return false; }, kRest_ms);
     for (std::size_t i = 0; i < 3; ++i) {
       const Heard& axis = axes_[i];
-      if (axis.replies >= kMinAnsweredRatio * axis.asked) continue;
+      if (axis.replies >= kMinAnswered_ratio * axis.asked) continue;
       return Error{
           fmt::format("{} answers {} of {} questions: check the CAN cable and both 120 "
                       "ohm terminators, and that no other program asks it",

@@ -118,7 +118,7 @@ class Moteuses final : public can::CanFdDrives {
     return step < 1;
   }
 
-  std::string words(const FaultCause& cause) const override {
+  std::string text_of(const FaultCause& cause) const override {
     switch (static_cast<MoteusCause>(cause.kind)) {
       case MoteusCause::kFault:
       case MoteusCause::kLowSupply:

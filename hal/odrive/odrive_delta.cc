@@ -140,7 +140,7 @@ class Odrives final : public can::CanDrives {
     return step < 2;
   }
 
-  std::string words(const FaultCause& cause) const override {
+  std::string text_of(const FaultCause& cause) const override {
     switch (static_cast<OdriveCause>(cause.kind)) {
       case OdriveCause::kErrors05:
         return odrive_error_message(OdriveGeneration::k05, cause.code, 0);

@@ -72,7 +72,7 @@ std::optional<Error> PhantomWorker::wait_until_calibrated() {
   if (calibrated_ && first_cause().fault == Fault::kNone) return std::nullopt;
   // False: the library hangs, with its forces off, and the device stays open until tactd ends.
   static_cast<void>(stop());
-  if (const std::string why = words(monotonic_ns()); !why.empty()) return Error{why};
+  if (const std::string why = fault_text(monotonic_ns()); !why.empty()) return Error{why};
   const std::string device = session_.model.empty() ? "PHANTOM" : session_.model;
   if (calibration_ == 0)
     return Error{fmt::format(

@@ -46,7 +46,7 @@ class SimLines final : public SafetyLines {
   void scope(bool) RT_SAFE override {}
   std::string notice() const override { return logic_.notice(); }
   std::string fault_detail() const override {
-    return words(lost_ ? gpio::LinesCause::kChipLost : logic_.cause());
+    return text_of(lost_ ? gpio::LinesCause::kChipLost : logic_.cause());
   }
   void stop() override { outputs_ = {}, lost_ = true; }
 

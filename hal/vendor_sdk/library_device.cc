@@ -79,7 +79,7 @@ Fault LibraryDevice::write(const Wrench& wrench) RT_SAFE {
 }
 
 std::string LibraryDevice::fault_detail() const {
-  const std::string said = worker_->words(monotonic_ns()), left = why_not_off();
+  const std::string said = worker_->fault_text(monotonic_ns()), left = why_not_off();
   return said.empty() || left.empty() ? said + left : said + "; " + left;
 }
 

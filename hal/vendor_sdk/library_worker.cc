@@ -77,7 +77,7 @@ bool LibraryWorker::powered_for_sure() const {
   return powered_cycles_.load(std::memory_order_relaxed) * cycle_ns_ >= kPoweredForSure_ns;
 }
 
-std::string LibraryWorker::words(std::int64_t now_ns) const {
+std::string LibraryWorker::fault_text(std::int64_t now_ns) const {
   std::string said = cause_text();
   const std::int64_t cycle_ns = last_cycle_ns_;
   // Always the same message, as a reader reports each one that is new.

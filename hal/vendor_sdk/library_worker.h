@@ -63,7 +63,7 @@ class LibraryWorker {
   /// Its kind is that of the device's folder, its code the library's.
   FaultCause first_cause() const RT_SAFE { return cause_.cause(); }
   /// For a person: the first fault, and a library that has fallen silent; empty without either.
-  std::string words(std::int64_t now_ns) const;
+  std::string fault_text(std::int64_t now_ns) const;
 
   /// Ends the threads, zeroes the force and closes the device; false when the library did not
   /// return within `timeout`: then it is not closed, its last force may stay, and the process,

@@ -108,10 +108,12 @@ std::optional<Error> check_mesh(const RunHeader& header, std::span<const std::by
 std::optional<Error> check_frame(const Frame& frame, const RunHeader& header) {
   // Enums are the only values of a frame on which code branches.
   if (frame.state > firmware::loop::State::kStopped)
-    return Error{"a frame has a state that is none"};
+    return Error{fmt::format("frame: state {} is unknown (0 to {})", static_cast<int>(frame.state),
+                             static_cast<int>(firmware::loop::State::kStopped))};
   for (const firmware::protocol::FrameContact& contact : frame.contact)
     if (contact.state > firmware::protocol::ContactState::kInside)
-      return Error{"a frame has a site whose state is none"};
+      return Error{fmt::format("frame: a contact has the unknown state {}",
+                               static_cast<int>(contact.state))};
   return check_patch(frame.patch, header);
 }
 

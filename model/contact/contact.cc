@@ -38,7 +38,7 @@ Contact::Contact(const ContactScene& scene)
 }
 
 void Contact::reset() RT_SAFE {
-  forget();
+  end_contacts();
   rest_.reset();
   moved_.reset();
   closed_ = closing_ = is_lost_ = was_unsettled_ = false;
@@ -62,7 +62,7 @@ void Contact::continue_from(const Contact& before) RT_SAFE {
 }
 
 // Positions of spheres and blade become unknown, so that the blade cuts nothing in between.
-void Contact::forget() RT_SAFE {
+void Contact::end_contacts() RT_SAFE {
   for (Sphere& sphere : spheres()) {  // bound: spheres
     leave(scene_, organ(), sphere, ContactState::kFree);
     sphere = {.index = sphere.index, .radius_m = sphere.radius_m};
@@ -75,25 +75,25 @@ void Contact::forget() RT_SAFE {
 void Contact::detect_contact(const Tool& tool, std::uint32_t periods, double reach_m) RT_SAFE {
   is_lost_ = was_unsettled_ = false;
   // A pose with NaN ends all contacts, so that no NaN enters the state.
-  if (!is_finite(tool)) return forget();
-  place(tool);
+  if (!is_finite(tool)) return end_contacts();
+  place_spheres(tool);
   if (tool_before_ && !is_reached(tool, reach_m)) {
     is_lost_ = true;
-    forget();
+    end_contacts();
   }
   const Tool from = tool_before_.value_or(tool);
   for (std::uint32_t k = 1; k < periods; ++k) {  // bound: skipped (periods)
     const Tool way = between(from, tool, static_cast<double>(k) / periods);
-    place(way);
+    place_spheres(way);
     detect(way);
     if (respond(way).is_unsettled) was_unsettled_ = true;
-    place(tool);
+    place_spheres(tool);
   }
   detect(tool);
   tool_before_ = tool;
 }
 
-void Contact::place(const Tool& tool) RT_SAFE {
+void Contact::place_spheres(const Tool& tool) RT_SAFE {
   for (std::size_t i = 0; i < scene_.spheres.size(); ++i)  // bound: spheres
     goal_m_[i] = tool.position_m + rotate(tool.orientation, scene_.spheres[i].offset_m);
 }
@@ -145,7 +145,7 @@ ContactResponse Contact::respond(const Tool& tool) RT_SAFE {
   }
   if (closing_)
     for (Sphere& sphere : spheres())  // bound: spheres
-      if (sphere.state == ContactState::kTouching && organ().hold(sphere.index)) {
+      if (sphere.state == ContactState::kInContact && organ().hold(sphere.index)) {
         sphere.state = ContactState::kHeld;
         sphere.lets_go = false;
       }
@@ -175,7 +175,7 @@ void Contact::report(Sphere& sphere, const Tool& tool, double way_m,
     sphere.was_held = false;
     return;
   }
-  const OrganForce answer = ask(sphere);
+  const OrganForce answer = response_of(sphere);
   follow_force(sphere, answer.elastic_N, way_m);
   if (!sphere.is_in_contact() && sphere.reported_N != Vec3{}) sphere_contact.normal = last_normal;
   sphere_contact.force_N = sphere.reported_N + resistance_N(sphere, answer.resistance_N);
@@ -196,7 +196,7 @@ void Contact::watch_grip(double grip_ratio) RT_SAFE {
 
 // Shrinks the depth to 0. While the depth is beyond the law's range, the force is the law's limit.
 void Contact::let_go(Sphere& sphere) RT_SAFE {
-  if (sphere.state != ContactState::kTouching) return;
+  if (sphere.state != ContactState::kInContact) return;
   if (!sphere.lets_go) {
     sphere.lets_go = organ().must_let_go(sphere);
     if (!sphere.lets_go) return;
@@ -213,7 +213,7 @@ bool Contact::release_first() RT_SAFE {
     // NaN tears, so that it cannot hold the tool.
     if (closed_ && organ().pull_N(sphere.index) <= scene_.parameters.tear_force_N) continue;
     if (organ().release(sphere.index))
-      sphere.state = ContactState::kTouching;
+      sphere.state = ContactState::kInContact;
     else
       leave(scene_, organ(), sphere, ContactState::kFree);
     return true;
@@ -222,7 +222,7 @@ bool Contact::release_first() RT_SAFE {
 }
 
 // Without a solution the last force is kept and ramps down within 0.1 s or one radius of motion.
-OrganForce Contact::ask(Sphere& sphere) RT_SAFE {
+OrganForce Contact::response_of(Sphere& sphere) RT_SAFE {
   if (!sphere.is_in_contact()) return {};
   SphereContact& sphere_contact = contact_[sphere.index];
   if (organ().is_solved())
@@ -237,7 +237,8 @@ OrganForce Contact::ask(Sphere& sphere) RT_SAFE {
   return {share * answer.elastic_N, share * answer.resistance_N};
 }
 
-// While the force lags, the resistance must not pull a sphere into the organ unless it is held.
+// FR-2  R' = R min(1, -P . R / |R|^2)   where P . R < 0
+// While the force lags, resistance must not pull a sphere into the organ unless it is held.
 Vec3 Contact::resistance_N(const Sphere& sphere, const Vec3& answer_N) const RT_SAFE {
   const double size_N = norm(answer_N);
   if (!(sphere.lag_N > 0.0) || sphere.state == ContactState::kHeld || !(size_N > 0.0))
@@ -246,11 +247,10 @@ Vec3 Contact::resistance_N(const Sphere& sphere, const Vec3& answer_N) const RT_
   return along_N > 0.0 ? answer_N : std::min(-along_N / size_N, 1.0) * answer_N;
 }
 
+// FR-1  |P' - P| <= n + 10 K w + (2 q + r) P_max + J T / T_r
 // The wanted force may jump when the organ snaps to another shape, a solution is found again, or
-// the proxy reaches another side. The reported force follows. Largest change per tick: ten times
-// the stiffest slope times the displacement, plus twice the largest relaxation in a tick, plus the
-// jump times period / 0.1 s. While it lags behind a lost force, the hand gets at most a tenth of
-// the energy that was lost.
+// the proxy reaches another side. The reported force P follows. While it lags behind a lost force,
+// the hand gets at most a tenth of the energy that was lost.
 void Contact::follow_force(Sphere& sphere, const Vec3& wanted_N, double way_m) RT_SAFE {
   constexpr double kSteepest_ratio = 10.0, kFade_ratio = 2.0, kLetGo_ratio = 2.0;
   constexpr double kNoise_N = 1e-3;  // numerical noise of a solution

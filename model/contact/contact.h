@@ -81,8 +81,8 @@ class Contact {
     return scene_.organ != nullptr ? static_cast<OrganContact&>(moved_) : rest_;
   }
   std::span<Sphere> spheres() RT_SAFE { return {sphere_.data(), scene_.spheres.size()}; }
-  void forget() RT_SAFE;
-  void place(const Tool& tool) RT_SAFE;
+  void end_contacts() RT_SAFE;
+  void place_spheres(const Tool& tool) RT_SAFE;
   bool is_reached(const Tool& tool, double reach_m) const RT_SAFE;
   void detect(const Tool& tool) RT_SAFE;
   ContactResponse respond(const Tool& tool) RT_SAFE;
@@ -90,7 +90,7 @@ class Contact {
   void let_go(Sphere& sphere) RT_SAFE;
   bool release_first() RT_SAFE;
   void report(Sphere& sphere, const Tool& tool, double way_m, ContactResponse& rendered) RT_SAFE;
-  OrganForce ask(Sphere& sphere) RT_SAFE;
+  OrganForce response_of(Sphere& sphere) RT_SAFE;
   Vec3 resistance_N(const Sphere& sphere, const Vec3& answer_N) const RT_SAFE;
   void follow_force(Sphere& sphere, const Vec3& wanted_N, double way_m) RT_SAFE;
   void use_blade(const Tool& tool, bool may_cut) RT_SAFE;

@@ -14,7 +14,7 @@ constexpr int kMaxSteps = 16;
 constexpr double kTolerance_m = 1e-10;  // 1e-7 N on a tissue of 1 kN/m
 // Below this pivot the matrix is nearly singular, and a Newton step would be too long.
 constexpr double kMinPivot = 1e-6;
-constexpr double kMaxCouplingRatio = 0.95;  // of the largest coupling that is positive definite
+constexpr double kMaxCoupling_ratio = 0.95;  // of the largest coupling that is positive definite
 
 using Vector = std::array<double, kMaxSpheres>;
 
@@ -25,7 +25,7 @@ bool is_coupled(const Coupling& c, std::size_t i) RT_SAFE {
 }
 
 // Calls the law. A sphere that is not held gets no force at an indentation <= 0.
-void ask(ContactLaw& law, PressingSphere& sphere) RT_SAFE {
+void respond(ContactLaw& law, PressingSphere& sphere) RT_SAFE {
   const double indentation_m = sphere.in.indentation_m;
   const bool is_off = !sphere.in.held && !(indentation_m > 0.0);
   if (is_off) sphere.in.indentation_m = 0.0;
@@ -74,7 +74,7 @@ bool is_solved(ContactLaw& law, const Coupling& c, std::span<PressingSphere> sph
     }
     // Without coupling e is exactly d: no iteration and no rounding error.
     if (!is_coupled(c, i)) sphere.in.indentation_m = sphere.depth_m;
-    ask(law, sphere);
+    respond(law, sphere);
   }
   for (int step = 0; step <= kMaxSteps; ++step) {  // bound: kMaxSteps + 1 (and the last look)
     const Vector miss_m = miss_of(c, spheres);
@@ -86,7 +86,7 @@ bool is_solved(ContactLaw& law, const Coupling& c, std::span<PressingSphere> sph
     for (std::size_t i = 0; i < spheres.size(); ++i) {  // bound: spheres
       if (!spheres[i].presses || change_m[i] == 0.0) continue;
       spheres[i].in.indentation_m += change_m[i];
-      ask(law, spheres[i]);
+      respond(law, spheres[i]);
     }
   }
   return false;
@@ -133,7 +133,7 @@ double definite_share(const Coupling& c,
   const auto is_definite = [&](double factor) RT_SAFE {
     SmallLu<kMaxSpheres> lu;
     for (std::size_t i = 0; i < n; ++i) {  // bound: spheres
-      lu.at(i, i) = kMaxCouplingRatio;
+      lu.at(i, i) = kMaxCoupling_ratio;
       for (std::size_t j = 0; j < i; ++j) {  // bound: spheres - 1; pairs in all
         const double stiffness_N_per_m = std::sqrt(stiffest_N_per_m[i] * stiffest_N_per_m[j]);
         lu.at(i, j) = lu.at(j, i) = factor * c[i][j] * stiffness_N_per_m;

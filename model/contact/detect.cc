@@ -27,7 +27,7 @@ void begin_from_outside(const ContactScene& scene, OrganContact& organ, Sphere& 
   const double explained_m =
       is_new_place ? std::max(0.0, -dot(moved_m, contact_point.normal)) : kAnywhere_m;
   sphere.clear_m = 0.0;
-  sphere.state = ContactState::kTouching;
+  sphere.state = ContactState::kInContact;
   organ.begin(sphere, contact_point, std::min(explained_m, norm(moved_m)));
 }
 
@@ -51,7 +51,7 @@ void step(const ContactScene& scene, OrganContact& organ, Sphere& sphere,
     case ContactState::kInside:
       if (is_outside(scene, sphere)) leave(scene, organ, sphere, ContactState::kFree);
       return;
-    case ContactState::kTouching:
+    case ContactState::kInContact:
     case ContactState::kHeld:
       const Step done = organ.step(sphere, moved_m);
       if (done == Step::kStays) return;

@@ -162,7 +162,7 @@ bool MovedContact::solve_sliding() RT_SAFE {
 }
 
 bool MovedContact::solve_fixed() RT_SAFE {
-  constexpr double kMaxResidualRatio = 0.7;
+  constexpr double kMaxResidual_ratio = 0.7;
   status_.is_fixed = true;
   organ_.has_slope = false;
   for (std::size_t i = 0; i < organ_.count; ++i) organ_.sphere[i].slides = false;  // bound: spheres
@@ -171,7 +171,7 @@ bool MovedContact::solve_fixed() RT_SAFE {
     const double residual_m = evaluate(organ_);
     if (residual_m < kSolved_m) return true;
     // Without damping a sphere could alternate for ever between touching and not touching.
-    share = residual_m < kMaxResidualRatio * before_m ? std::min(2.0 * share, 1.0) : 0.5 * share;
+    share = residual_m < kMaxResidual_ratio * before_m ? std::min(2.0 * share, 1.0) : 0.5 * share;
     before_m = residual_m;
     if (i == kMaxFixedSteps || !find_slope(organ_) || !newton_step(organ_, kMaxFixedStep_m, share))
       break;

@@ -16,14 +16,14 @@ namespace tact::model::contact {
 inline constexpr double kAnywhere_m = std::numeric_limits<double>::infinity();
 
 /// Transitions: detect.h. kInside: located inside the organ, without contact.
-enum class ContactState : std::uint8_t { kFree, kTouching, kHeld, kInside };
+enum class ContactState : std::uint8_t { kFree, kInContact, kHeld, kInside };
 
 /// Reported contact of one sphere in a tick.
 struct SphereContact {
   ContactState state = ContactState::kFree;
   law::LawStatus law_status = law::LawStatus::kNoContact;
   SurfacePoint surface_point;  // of surface_point_m
-  Vec3 surface_point_m{};      // nearest (touching) or held point of the undeformed surface
+  Vec3 surface_point_m{};      // nearest (in contact) or held point of the undeformed surface
   Vec3 normal{};               // outward, unit; free: of its last contact
   Vec3 shift_m{};              // t
   double depth_m = 0.0;        // d
@@ -58,7 +58,7 @@ struct Sphere {
   bool was_held = false;
 
   bool is_in_contact() const RT_SAFE {
-    return state == ContactState::kTouching || state == ContactState::kHeld;
+    return state == ContactState::kInContact || state == ContactState::kHeld;
   }
 };
 

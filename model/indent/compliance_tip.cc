@@ -54,13 +54,13 @@ double ElasticTip::sideways_stiffness_N_per_m() const RT_SAFE {
 
 double ElasticTip::stiffest_press_N_per_m() const {
   if (!large_strain) return 2.0 * contact_modulus_Pa() * radius_m;
-  constexpr double kMaxStretchRatio = 5.0;  // s: a is R within 1e-4
+  constexpr double kMaxStretch_ratio = 5.0;  // s: a is R within 1e-4
   // CT-9 need not grow with s: sampled, as set-up has the time.
   constexpr int kSteps = 500;
   double most_N_per_m = 0.0;
   for (int i = 1; i <= kSteps; ++i)
     most_N_per_m =
-        std::fmax(most_N_per_m, tip_state(*this, kMaxStretchRatio * i / kSteps).stiffness_N_per_m);
+        std::fmax(most_N_per_m, tip_state(*this, kMaxStretch_ratio * i / kSteps).stiffness_N_per_m);
   return most_N_per_m;
 }
 

@@ -41,7 +41,7 @@ namespace tact::model::indent {
 
 struct ElasticTip {
   double youngs_modulus_Pa = 0.0;  // E, > 0
-  double poisson_ratio = 0.0;      // nu, 0 .. 0.5
+  double poisson_ratio = 0.0;      // nu
   double radius_m = 0.0;           // R, > 0
   bool large_strain = false;       // CT-8 instead of CT-2
 

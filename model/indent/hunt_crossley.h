@@ -24,7 +24,7 @@ namespace tact::model::indent {
 struct HuntCrossleyParameters {
   double force_N = 0.0;              // F_w, > 0
   double working_depth_m = 0.0;      // d_w, > 0
-  double exponent = 1.5;             // n, 1 .. 4
+  double exponent = 1.5;             // n
   double dissipation_s_per_m = 0.0;  // lambda, >= 0
 };
 void visit(ParameterVisitor& v, HuntCrossleyParameters& p);

@@ -21,13 +21,11 @@ void visit(ParameterVisitor& v, RhombusChainParameters& p) {
   v.number("tangential_stiffness_N_per_m", {0.0, 1e5}, "kT of the first unit, along the surface",
            p.tangential_stiffness_N_per_m);
   v.number("growth", {0.1, 100.0}, "beta: unit i has kT exp((i - 1) / beta)", p.growth);
-  v.count("units", {1, 31, false}, "rhombus units in series", p.units);
+  v.count("units", {1, kMaxUnits, kHard}, "rhombus units in series", p.units);
 }
 
 Result<RhombusChain> make_rhombus_chain(const RhombusChainParameters& p) {
   if (auto wrong = check_meaning("rhombus chain", p)) return *wrong;
-  if (p.units > kMaxUnits) return Error{"rhombus chain: units must be 1 .. 64"};
-  static_assert(kMaxUnits == 64);
   RhombusChain chain;
   chain.count_ = p.units;
   for (std::size_t i = 0; i < p.units; ++i) {

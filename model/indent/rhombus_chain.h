@@ -27,12 +27,12 @@ namespace tact::model::indent {
 inline constexpr std::size_t kMaxUnits = 64;
 
 struct RhombusChainParameters {
-  double rod_length_m = 0.0;                  // a, > 0
-  double initial_angle_rad = 0.0;             // theta0, 0 .. pi/2
-  double normal_stiffness_N_per_m = 0.0;      // kN, > 0
-  double tangential_stiffness_N_per_m = 0.0;  // kT1, >= 0
-  double growth = 0.0;                        // beta, > 0
-  std::size_t units = 0;                      // N, 1 .. kMaxUnits
+  double rod_length_m = 0.0;                  // a
+  double initial_angle_rad = 0.0;             // theta0
+  double normal_stiffness_N_per_m = 0.0;      // kN
+  double tangential_stiffness_N_per_m = 0.0;  // kT1
+  double growth = 0.0;                        // beta
+  std::size_t units = 0;                      // N
 };
 void visit(ParameterVisitor& v, RhombusChainParameters& p);
 

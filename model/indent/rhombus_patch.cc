@@ -11,10 +11,10 @@ namespace tact::model::indent {
 namespace {
 
 // Both chosen. kRings: of its own displacements, which tact-lab fit compares (LW-2).
-// kTabulatedRangeRatio: beyond the limit of one chain those in the middle keep their force, while
+// kTabulatedRange_ratio: beyond the limit of one chain those in the middle keep their force, while
 // those at the rim still press.
 constexpr std::size_t kRings = 24;
-constexpr double kTabulatedRangeRatio = 2.0;  // of the chain's range
+constexpr double kTabulatedRange_ratio = 2.0;  // of the chain's range
 
 }  // namespace
 
@@ -23,7 +23,7 @@ RhombusPatch::RhombusPatch(const RhombusChain& chain, const RhombusPatchParamete
     : chain_(chain),
       tip_radius_m_(p.tip_radius_m),
       chains_per_m_(2.0 * std::numbers::pi * p.tip_radius_m / p.area_m2),
-      press_(kTabulatedRangeRatio * chain.range().press_m / (law::kMaxKnots - 1), law::kMaxKnots,
+      press_(kTabulatedRange_ratio * chain.range().press_m / (law::kMaxKnots - 1), law::kMaxKnots,
              [this](double depth_m) RT_SAFE { return under_tip(depth_m); }) {
   ring_pitch_m_ = std::sqrt(2.0 * p.tip_radius_m * press_.end()) / kRings;
 }

@@ -25,7 +25,8 @@ std::size_t LinearPull::profile(double depth_m, std::span<double> ring_m) const 
 }
 
 void visit(ParameterVisitor& v, LinearPullParameters& p) {
-  v.number("stiffness_N_per_m", {0.01, 1e5}, "of a held site pulled outward", p.stiffness_N_per_m);
+  v.number("stiffness_N_per_m", {0.01, 1e5}, "of a held sphere pulled outward",
+           p.stiffness_N_per_m);
   v.number("limit_m", kDepth_m, "beyond it the force stays", p.limit_m);
 }
 

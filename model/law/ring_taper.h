@@ -14,9 +14,9 @@ namespace tact::model::law {
 
 /// The taper of CL-4: 1 inside, 0 at the last ring, with zero slope at both ends.
 inline double ring_taper(std::size_t ring, std::size_t rings) RT_SAFE {
-  constexpr double kTaperStartRatio = 0.7;  // of the outermost radius
+  constexpr double kTaperStart_ratio = 0.7;  // of the outermost radius
   const double x = static_cast<double>(ring) / static_cast<double>(rings);
-  const double t = std::fmax(0.0, (x - kTaperStartRatio) / (1.0 - kTaperStartRatio));
+  const double t = std::fmax(0.0, (x - kTaperStart_ratio) / (1.0 - kTaperStart_ratio));
   return 1.0 - t * t * (3.0 - 2.0 * t);
 }
 

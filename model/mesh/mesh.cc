@@ -15,7 +15,7 @@ constexpr std::size_t kMaxTriangles = 1'000'000'000;  // 3 m must fit 32 bits
 
 // Collinear corners leave a cross product of pure rounding, about 1e-14 of the longest edge squared
 // for coordinates a hundred edges away from the origin. Honest slivers are far above this.
-constexpr double kFlatRatio = 1e-10;
+constexpr double kFlat_ratio = 1e-10;
 
 // One triangle's edge, filed under the vertex where it starts.
 struct HalfEdge {
@@ -46,7 +46,7 @@ std::optional<MeshFlaw> corner_flaw(const std::vector<Vec3>& vertex_m,
     longest2_m2 = std::max(longest2_m2, dot(edge_m, edge_m));
   }
   const double doubled_m2 = norm(doubled_area_m2(vertex_m, t));
-  if (!(doubled_m2 > kFlatRatio * longest2_m2)) return MeshFlaw::kZeroArea;
+  if (!(doubled_m2 > kFlat_ratio * longest2_m2)) return MeshFlaw::kZeroArea;
   return std::nullopt;
 }
 

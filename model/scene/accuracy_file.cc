@@ -62,7 +62,7 @@ std::string hash_of_forces(const Scene& scene, const TissueLaw& law) {
   // changes some force, few enough for every --check.
   constexpr std::size_t kPlaces = 9;
   constexpr double kDepths_m[] = {0.0005, 0.002, 0.005, 0.01};
-  contact::ContactLaw& site = law.contact_law();
+  contact::ContactLaw& contact_law = law.contact_law();
   const mesh::SurfaceMesh& organ = scene.organ_mesh;
   reader::TextHash hash;
   for (const contact::ProbeSphere& s : scene.tool.spheres)
@@ -78,12 +78,13 @@ std::string hash_of_forces(const Scene& scene, const TissueLaw& law) {
       at.indentation_m = depth_m;
       // Six digits: the last bits may differ between compilers,
       // a law that is another one differs before.
-      hash.add(fmt::format("{:.6g}", site.respond(at).law.force_N));
+      hash.add(fmt::format("{:.6g}", contact_law.respond(at).law.force_N));
       // A law that relaxes must not remember the depth before.
-      site.leave(0);
+      contact_law.leave(0);
     }
     if (k > 0) {
-      const auto [near, structural] = site.coupling(before, at, scene.tool.spheres[0].radius_m);
+      const auto [near, structural] =
+          contact_law.coupling(before, at, scene.tool.spheres[0].radius_m);
       hash.add(fmt::format("{:.6g} {:.6g}", near, structural));
     }
     before = at;

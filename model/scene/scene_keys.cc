@@ -85,17 +85,16 @@ void visit_contact(Keys& k, Scene& scene) {
            c.friction_ratio);
   k.number("sliding_stiffness_N_per_m", {0.0, 5000.0}, "of tissue along the surface; 0: its own",
            c.sliding_stiffness_N_per_m, kOptional);
-  k.number("tear_force_N", {0.01, 20.0}, "a held site lets go above it, for each sphere",
-           c.tear_force_N);
+  k.number("tear_force_N", {0.01, 20.0}, "above it a held sphere is released", c.tear_force_N);
   k.number("grip_close_ratio", {0.05, 1.0}, "closing the grip above it holds the tissue",
            c.grip_close_ratio, kOptional);
-  k.number("grip_open_ratio", {0.0, 0.95}, "opening the grip below it lets go; < grip_close_ratio",
+  k.number("grip_open_ratio", {0.0, 0.95}, "opening the grip below it releases; < grip_close_ratio",
            c.grip_open_ratio, kOptional);
   constexpr std::array kGrips{Choice{"hold", "the jaws are closed while the hand presses"},
                               Choice{"toggle", "one press closes them, the next opens them"}};
   k.choice("grip", kGrips, "what a press of the grip, button or switch does", scene.grip_toggles,
            kOptional);
-  // Without a gap between them a trembling hand would grip and let go many times a second.
+  // Without a gap between them a trembling hand would grip and release many times a second.
   if (!(c.grip_open_ratio < c.grip_close_ratio)) {
     k.refuse(
         {"grip_open_ratio", "grip_close_ratio"},

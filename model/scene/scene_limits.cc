@@ -20,10 +20,10 @@ void visit_keys(Keys& k, Limits& limits) {
            limits.workspace_radius_m);
   k.number("workspace_half_length_m", {0.01, 0.5}, "of the cylinder, from the origin of W",
            limits.workspace_half_length_m);
-  k.number("speed_mps", {0.05, 10.0}, "faster, the force fades to zero", limits.speed_mps,
+  k.number("speed_mps", {0.05, 10.0}, "faster, the force ramps down to zero", limits.speed_mps,
            kOptional);
-  k.number("turn_radps", {0.5, 100.0}, "turning faster, the force fades to zero", limits.turn_radps,
-           kOptional);
+  k.number("turn_radps", {0.5, 100.0}, "turning faster, the force ramps down to zero",
+           limits.turn_radps, kOptional);
   k.number("energy_J", {1e-3, 10.0}, "given to the hand since arming beyond what was taken",
            limits.energy_J, kOptional);
   k.number("recovery_W", {0.0, 1.0}, "of that budget; shaking that takes no more is not damped",

@@ -35,7 +35,7 @@ constexpr std::array kPivots{
 };
 
 // A grip that opened on the way home would pull at the tissue before it lets go.
-constexpr double kOpeningRatio = 0.25;
+constexpr double kOpening_ratio = 0.25;
 
 constexpr Range kDurations_s{0.05, 60.0};
 constexpr Range kHeights_m{0.0, 0.1};
@@ -83,7 +83,7 @@ class Writer {
         next.grip_ratio = 1.0;
         break;
       case Action::kRelease:
-        if (is_closed()) open(kOpeningRatio * stroke.duration_s);
+        if (is_closed()) open(kOpening_ratio * stroke.duration_s);
         next.grip_ratio = 0.0;
         next.position_m = script_.home_m + script_.handle_m;
         next.rotation_rad = {};

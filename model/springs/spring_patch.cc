@@ -99,14 +99,14 @@ void SpringPatch::leave(std::size_t sphere) RT_SAFE {
   if (sphere >= contact::kMaxSpheres) return;
   contact_[sphere] = {};
   if (organ() != nullptr) organ()->leave(sphere);
-  if (std::none_of(contact_.begin(), contact_.end(), [](const Touch& t) { return t.active; }))
+  if (std::none_of(contact_.begin(), contact_.end(), [](const SphereState& t) { return t.active; }))
     broke_ = false;
 }
 
 contact::ContactLawResponse SpringPatch::respond(const contact::Indentation& in) RT_SAFE {
   if (in.sphere >= contact::kMaxSpheres) return {.law = {.status = law::LawStatus::kInvalid}};
   // Input that gives no force below is not stepped either.
-  Touch& sphere_contact = contact_[in.sphere];
+  SphereState& sphere_contact = contact_[in.sphere];
   sphere_contact = {};
   const contact::SurfaceView& mesh = region_.surface().mesh;
   if (!std::isfinite(in.indentation_m) || !is_on_surface(in.surface_point, mesh))
@@ -204,7 +204,7 @@ std::span<const ProbeSpring> SpringPatch::probes() RT_SAFE {
   const contact::SurfaceView& mesh = region_.surface().mesh;
   const double q = parameters_.coupling_stiffness_N_per_m;
   std::size_t count = 0;
-  for (const Touch& sphere_contact : contact_) {
+  for (const SphereState& sphere_contact : contact_) {
     if (!sphere_contact.active) continue;
     ProbeSpring& probe = probe_[count];
     probe = {.weight = sphere_contact.surface_point.weight,

@@ -51,8 +51,8 @@ struct SpringPatchParameters {
   std::size_t spheres = 1;  // of the tool, 1 .. kMaxSpheres
   std::size_t nodes = 500;  // 16 .. kMaxPatchNodes
   Method method{};
-  std::size_t iterations = 10;   // of implicit Euler, 1 .. 100
-  std::size_t substeps = 1;      // 1 .. 16
+  std::size_t iterations = 10;  // of implicit Euler
+  std::size_t substeps = 1;
   law::Relaxation relaxation{};  // made for tick_s; of springs and anchors, not of the coupling
   contact::ContactLaw* organ = nullptr;  // the organ under the tool; outlives the patch
 };
@@ -92,7 +92,7 @@ class SpringPatch final : public contact::ContactLaw {
  private:
   friend Result<std::unique_ptr<SpringPatch>> make_spring_patch(const contact::SurfaceView&,
                                                                 const SpringPatchParameters&);
-  struct Touch {
+  struct SphereState {
     bool active = false;
     bool held = false;
     double depth_m = 0.0;
@@ -108,7 +108,7 @@ class SpringPatch final : public contact::ContactLaw {
   SpringPatchParameters parameters_;
   PatchRegion region_;
   SpringStepper stepper_;
-  std::array<Touch, contact::kMaxSpheres> contact_{};
+  std::array<SphereState, contact::kMaxSpheres> contact_{};
   std::array<ProbeSpring, contact::kMaxSpheres> probe_{};
   std::array<std::uint32_t, contact::kMaxSpheres> gathered_{};  // triangles of the last gathering
   double network_energy_J_ = 0.0;

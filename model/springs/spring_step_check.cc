@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kUnlimited_s = std::numeric_limits<double>::infinity();
 // MA-20 bounds the fastest mode from above; of the step that it allows this much is taken.
-constexpr double kStableStepRatio = 0.8;
+constexpr double kStableStep_ratio = 0.8;
 
 /// What the modes of a network lie between.
 struct Bounds {
@@ -79,7 +79,7 @@ StepLimit limit_of(const Bounds& bounds, const Method& method) {
     // zeta of a mode lies between both; z_max is not monotone in it, so five are asked.
     for (int share = 0; share <= 4; ++share) {
       const double zeta = low + 0.25 * share * (std::max(low, high) - low);
-      const double step_s = kStableStepRatio * largest_stable_z(method, zeta) / omega;
+      const double step_s = kStableStep_ratio * largest_stable_z(method, zeta) / omega;
       if (step_s >= out.step_s) continue;
       out.step_s = step_s;
       out.critical_radps = omega;

@@ -18,6 +18,6 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     require(packed.has_value());
     require(hal::can::unpack_can_frame(*packed) == frame);
   }
-  if (error) require(error->classes != 0 && error->words()[0] != '\0');
+  if (error) require(error->classes != 0 && error->text()[0] != '\0');
   return 0;
 }

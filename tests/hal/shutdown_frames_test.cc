@@ -39,33 +39,33 @@ struct Ends {
   int fd[2] = {-1, -1};
 };
 
-ShutdownFrames three_words(int fd) {
-  ShutdownFrames words{.fd = fd};
-  EXPECT_TRUE(words.add_step(std::array{Bytes{1}, Bytes{2}}));
-  EXPECT_TRUE(words.add_step(std::array<Bytes, 1>{Bytes{3}}));
-  return words;
+ShutdownFrames three_frames(int fd) {
+  ShutdownFrames frames{.fd = fd};
+  EXPECT_TRUE(frames.add_step(std::array{Bytes{1}, Bytes{2}}));
+  EXPECT_TRUE(frames.add_step(std::array<Bytes, 1>{Bytes{3}}));
+  return frames;
 }
 
 TEST(ShutdownFrames, AStepLeavesAloneAndAllLeaveInOrderWithoutHeap) {
   const Ends ends;
-  const ShutdownFrames words = three_words(ends.fd[0]);
+  const ShutdownFrames frames = three_frames(ends.fd[0]);
   const tests::NoAlloc guard;
-  EXPECT_EQ(say_step(words, 0), 0);
+  EXPECT_EQ(send_step(frames, 0), 0);
   EXPECT_EQ(guard.calls(), 0u);
   EXPECT_EQ(ends.heard(), (std::vector<Bytes>{{1}, {2}}));
-  EXPECT_EQ(say_all(words), 0);
+  EXPECT_EQ(send_all(frames), 0);
   EXPECT_EQ(ends.heard(), (std::vector<Bytes>{{1}, {2}, {3}}));
-  EXPECT_EQ(say_step(words, 7), 0) << "nothing to say";
+  EXPECT_EQ(send_step(frames, 7), 0) << "nothing to send";
 }
 
 TEST(ShutdownFrames, AWordOfACanFdFrameLeavesWholeBesideShortOnes) {
   const Ends ends;
-  ShutdownFrames words{.fd = ends.fd[0]};
+  ShutdownFrames frames{.fd = ends.fd[0]};
   ShutdownFrames::LongBytes one{};
   one.front() = 7, one.back() = 9;
-  EXPECT_TRUE(words.add_step(std::array<ShutdownFrames::LongBytes, 1>{one}));
-  EXPECT_TRUE(words.add_step(std::array<Bytes, 1>{Bytes{1}}));
-  EXPECT_EQ(say_all(words), 0);
+  EXPECT_TRUE(frames.add_step(std::array<ShutdownFrames::LongBytes, 1>{one}));
+  EXPECT_TRUE(frames.add_step(std::array<Bytes, 1>{Bytes{1}}));
+  EXPECT_EQ(send_all(frames), 0);
   ShutdownFrames::LongBytes heard{};
   ASSERT_EQ(recv(ends.fd[1], heard.data(), heard.size(), MSG_DONTWAIT), 72);
   EXPECT_EQ(heard, one);
@@ -73,32 +73,32 @@ TEST(ShutdownFrames, AWordOfACanFdFrameLeavesWholeBesideShortOnes) {
 }
 
 TEST(ShutdownFrames, WhatDoesNotFitIsRefused) {
-  ShutdownFrames words;
+  ShutdownFrames frames;
   const std::vector<Bytes> many(ShutdownFrames::kMax);
-  EXPECT_TRUE(words.add_step(many));
-  EXPECT_FALSE(words.add_step(std::array<Bytes, 1>{}));
-  EXPECT_EQ(words.count, ShutdownFrames::kMax);
+  EXPECT_TRUE(frames.add_step(many));
+  EXPECT_FALSE(frames.add_step(std::array<Bytes, 1>{}));
+  EXPECT_EQ(frames.count, ShutdownFrames::kMax);
 }
 
 TEST(ShutdownFrames, AQueueThatIsFullForAMomentIsTriedAgain) {
   const Ends ends;
-  const ShutdownFrames words = three_words(ends.fd[0]);
+  const ShutdownFrames frames = three_frames(ends.fd[0]);
   const Bytes other{9};
   while (send(ends.fd[0], other.data(), other.size(), MSG_DONTWAIT) == 16) {
   }
-  EXPECT_NE(say_step(words, 0), 0);
+  EXPECT_NE(send_step(frames, 0), 0);
   std::thread reader([&] { ends.heard(); });
-  for (int i = 0; i < 1000 && say_all(words) != 0; ++i) {
+  for (int i = 0; i < 1000 && send_all(frames) != 0; ++i) {
   }
   reader.join();
-  EXPECT_EQ(say_step(words, 0), 0);
+  EXPECT_EQ(send_step(frames, 0), 0);
 }
 
-// The kernel refuses the first step, of two words, and takes the second.
+// The kernel refuses the first step, of two frames, and takes the second.
 TEST(ShutdownFrames, AStepThatFailsKeepsNoLaterOneBack) {
-  const auto say_without_the_first = [] {
+  const auto send_without_the_first = [] {
     const Ends ends;
-    const ShutdownFrames words = three_words(ends.fd[0]);
+    const ShutdownFrames frames = three_frames(ends.fd[0]);
     sock_filter rules[] = {
         BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
         BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_sendmmsg, 0, 2),
@@ -110,20 +110,20 @@ TEST(ShutdownFrames, AStepThatFailsKeepsNoLaterOneBack) {
     const sock_fprog program{.len = std::size(rules), .filter = rules};
     prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
     if (prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) != 0) _exit(1);
-    if (say_all(words) != EIO) _exit(2);
+    if (send_all(frames) != EIO) _exit(2);
     _exit(ends.heard() == std::vector<Bytes>{{3}} ? 0 : 3);
   };
-  EXPECT_EXIT(say_without_the_first(), testing::ExitedWithCode(0), "");
+  EXPECT_EXIT(send_without_the_first(), testing::ExitedWithCode(0), "");
 }
 
 TEST(ShutdownFrames, ADeviceThatIsGoneIsAnErrorAndNoMore) {
   Ends ends;
-  ShutdownFrames words = three_words(ends.fd[0]);
+  ShutdownFrames frames = three_frames(ends.fd[0]);
   close(ends.fd[1]);
   ends.fd[1] = -1;
-  EXPECT_NE(say_all(words), 0);
-  words.carrier = ShutdownFrames::Carrier::kUsbBulk;
-  EXPECT_EQ(say_all(words), ENOTTY) << "no USB device at all";
+  EXPECT_NE(send_all(frames), 0);
+  frames.carrier = ShutdownFrames::Carrier::kUsbBulk;
+  EXPECT_EQ(send_all(frames), ENOTTY) << "no USB device at all";
 }
 
 }  // namespace tact::hal::shutdown_frames_test

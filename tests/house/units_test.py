@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Every number that a header keeps, alone or in a vector, names its unit, as force_N does, or is known to have none; and
-a bound is kMax... or kMin..., not kMost..., kLargest..., kLeast... and their like; kLongest... and kFastest... may be.
+a bound is kMax... or kMin..., not kMost..., kLargest..., kLeast... and their like; kLongest... and kFastest... may be; a
+ratio is k..._ratio.
 
 Reads the members and constants of the headers, and the bounds of all C++, as text and prints every breach as file:line:
 sentence. Exit status 0 or 1.
@@ -64,6 +65,7 @@ def breaches(path, text):
             yield f"{path}:{number}: {name} names no unit; if it has none, it is a word of PLAIN in {__file__.rsplit('/', 1)[1]}"
 
 
+RATIO = re.compile(r"\bk[A-Z]\w*Ratio\b")
 BOUND = re.compile(r"\bk(?:Most|Largest|Greatest|Biggest|Least|Smallest|Fewest)(?=[A-Z_]|\b)\w*")
 
 
@@ -71,6 +73,8 @@ def bound_breaches(path, text):
     for number, line in enumerate(text.splitlines(), 1):
         for name in BOUND.findall(line):
             yield f"{path}:{number}: {name}: a bound is kMax... or kMin..."
+        for name in RATIO.findall(line):
+            yield f"{path}:{number}: {name}: a unit is written in small letters, behind an underscore: k..._ratio"
 
 
 def blind_rules():
@@ -79,9 +83,9 @@ def blind_rules():
            "  std::vector<Vec3> place_;\n", "  std::span<const double> mass;\n", "  delta::Joints torque{1.0, 2.0, 3.0};\n")
     good = ("  double force_N = 0.0, low = 0.0;\n", "  void f(double d) {\n    double sum = d;\n  }\n", "  double f(double v);\n",
             "  std::array<Vec3, 2> place_m{}, far_m;\n", "  delta::Joints angle_rad{1_deg, 2_deg};\n", "  Vec3 f(Vec3 v);\n")
-    bounds = ("constexpr int kMostSteps = 3;\n", "for (; i < kLeast; ++i)\n")
+    bounds = ("constexpr int kMostSteps = 3;\n", "for (; i < kLeast; ++i)\n", "x = kStepRatio;\n")
     return ([t for t in bad if not list(breaches("x.h", t))] + [t for t in good if list(breaches("x.h", t))] +
-            [t for t in bounds if not list(bound_breaches("x.h", t))] + list(bound_breaches("x.h", "kMaxSteps kLeastly\n")))
+            [t for t in bounds if not list(bound_breaches("x.h", t))] + list(bound_breaches("x.h", "kMaxSteps kLeastly kStep_ratio\n")))
 
 
 def main():

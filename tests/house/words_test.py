@@ -25,7 +25,7 @@ PARTS = {
     "lifeline": "liveness", "temper": "input strategy", "mischief": "fault injection", "promises": "invariants",
     "patience": "timeout", "tally": "counters", "strays": "unknown_frames", "maker_library": "vendor_sdk",
     "tells": "reports", "feels": "renders", "whatever": "any", "whoever": "any", "nobody": "none", "somebody": "another",
-    "sunk": "displacement", "stray": "unknown", "unpaid": "unexplained", "stands": "is", "loose": "unlinked", "anew": "again",
+    "sunk": "displacement", "stray": "unknown", "unpaid": "unexplained", "stands": "is", "loose": "unlinked", "anew": "again", "held site": "held sphere",
     "touches": "is in contact, uses",
 }
 NAMES = {"library_": "handle_", "at_once": "processes, initial", "AT_ONCE": "processes", "Grid": "Extent, ReleaseSchedule",
@@ -43,7 +43,7 @@ WORDS = {"told": "reported", "tell": "report", "tells": "reports", "telling": "s
          "dent": "indentation", "dents": "indentations", "lips": "cut edges", "the give": "the compliance",
          "own give": "own compliance", "a give": "a compliance",
          "cure": "remedy", "cures": "remedies", "maker's library": "vendor SDK", "last words": "shutdown frames",
-         "anew": "again", "mend": "repair", "mends": "repairs"}
+         "anew": "again", "held site": "held sphere", "mend": "repair", "mends": "repairs"}
 STRINGS = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"', re.S)
 SCRIPT_STRINGS = re.compile(r"""//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'""", re.S)
 HASH_STRINGS = re.compile(r"""(?<![\w$])#[^\n]*|"(?:\\.|[^"\\])*"|'[^']*'""", re.S)

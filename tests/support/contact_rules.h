@@ -130,7 +130,7 @@ class ContactRules {
 
   std::optional<Breach> b(const Tick& now) {
     const model::Vec3& q_m = now.sphere_contact.surface_point_m;
-    const bool has_contact = now.sphere_contact.state == ContactState::kTouching ||
+    const bool has_contact = now.sphere_contact.state == ContactState::kInContact ||
                              now.sphere_contact.state == ContactState::kHeld;
     bool is_lag = is_outside_ && force_N_ > 0.0;
     if (is_lag && has_contact) {
@@ -216,9 +216,9 @@ class ContactRules {
   std::optional<Breach> f(const Tick& now) {
     if (!s_.is_alone) return {};
     const bool is_nearest = norm(now.sphere_contact.surface_point_m - nearest_.point_m) < 1e-6;
-    if (now.sphere_contact.state != ContactState::kTouching || side_ != Side::kOut || !is_nearest ||
-        !(nearest_.distance_m > 1e-6) || !std::isfinite(nearest_.distance_m) || now.is_saturated ||
-        now.is_unsettled)
+    if (now.sphere_contact.state != ContactState::kInContact || side_ != Side::kOut ||
+        !is_nearest || !(nearest_.distance_m > 1e-6) || !std::isfinite(nearest_.distance_m) ||
+        now.is_saturated || now.is_unsettled)
       return {};
     const model::Vec3 outward = (now.centre_m - nearest_.point_m) / nearest_.distance_m;
     // sin(atan(mu)) |F|

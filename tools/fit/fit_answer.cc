@@ -20,9 +20,9 @@ using model::contact::Indentation;
 
 // More than a law of a scene has.
 constexpr std::size_t kMaxRings = 128;
-constexpr int kMaxTicks = 4000;      // for a body with inertia to come to rest
-constexpr int kRestTicks = 25;       // the force is constant for so long
-constexpr double kRestRatio = 1e-6;  // a tick, of the force
+constexpr int kMaxTicks = 4000;       // for a body with inertia to come to rest
+constexpr int kRestTicks = 25;        // the force is constant for so long
+constexpr double kRest_ratio = 1e-6;  // a tick, of the force
 
 Indentation indentation_at(const FitSite& site, const FitSample& sample) {
   Indentation in{.indentation_m = sample.depth_m, .held = sample.depth_m < 0.0};
@@ -36,7 +36,7 @@ double settled_force_N(ContactLaw& law, const Indentation& in) {
   for (int tick = 0, still = 0; tick < kMaxTicks && still < kRestTicks; ++tick) {
     const double now_N = law.respond(in).law.force_N;
     law.advance();
-    still = std::abs(now_N - force_N) <= kRestRatio * std::abs(now_N) ? still + 1 : 0;
+    still = std::abs(now_N - force_N) <= kRest_ratio * std::abs(now_N) ? still + 1 : 0;
     force_N = now_N;
   }
   return force_N;

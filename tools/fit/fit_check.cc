@@ -79,8 +79,8 @@ double growth_of_slope(std::vector<Point> points) {
 
 std::string word_of(double growth) {
   // Below half a percent the rounded word would say "by 0 %".
-  constexpr double kMinGrowthRatio = 0.005;
-  if (std::abs(growth) < kMinGrowthRatio) return "stays";
+  constexpr double kMinGrowth_ratio = 0.005;
+  if (std::abs(growth) < kMinGrowth_ratio) return "stays";
   return fmt::format("{} by {:.0f} %", growth < 0.0 ? "falls" : "grows", 100.0 * std::abs(growth));
 }
 

@@ -21,7 +21,7 @@ using model::springs::SpringPatchParameters;
 constexpr double kNothing_ratio = 1e-8;  // of a range: replaces 0, which has no logarithm
 constexpr double kSteepestCone = 0.4;    // eta: beyond, layers can be felt one by one
 constexpr double kFlattestCone = 0.02;
-constexpr double kTableReachRatio =
+constexpr double kTableReach_ratio =
     0.95;  // share of the working depth that is felt (tabulated_law.h)
 
 /// With the range of the scene. A quantity with the newton in its unit multiplies the force.
@@ -165,7 +165,7 @@ std::size_t keep_parameters(FitLaw& law, const std::vector<std::string>& names) 
 void reach(Scene& scene, const FitData& data) {
   const double deepest_m = std::max(data.deepest_m(), data.farthest_pull_m());
   // Up to a tenth of a millimetre: a number that reads well in a scene.
-  const double needed_m = std::ceil(deepest_m / kTableReachRatio * 1e4) * 1e-4;
+  const double needed_m = std::ceil(deepest_m / kTableReach_ratio * 1e4) * 1e-4;
   for (const LawRow& row : model::scene::all_laws())
     if (double* working_depth_m = parameters_of(row, scene).find("working_depth_m").number)
       *working_depth_m = std::max(*working_depth_m, needed_m);

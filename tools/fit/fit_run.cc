@@ -153,7 +153,7 @@ class Fit {
 
 /// A short search from every start, a long one from the best of them.
 SearchResult search_from_all(const FitLaw& law, Fit& fit, int& evaluations) {
-  constexpr double kShortSearchRatio = 0.1;
+  constexpr double kShortSearch_ratio = 0.1;
   SearchProblem problem = fit.problem();
   const auto go = [&](const std::vector<double>& start) {
     SearchResult found = search(problem, start);
@@ -163,7 +163,7 @@ SearchResult search_from_all(const FitLaw& law, Fit& fit, int& evaluations) {
   SearchResult best;
   if (law.starts.size() > 1)
     // A tenth shows which valley is the deepest.
-    problem.most_evaluations = static_cast<int>(kShortSearchRatio * law.most_evaluations);
+    problem.most_evaluations = static_cast<int>(kShortSearch_ratio * law.most_evaluations);
   for (const std::vector<double>& ratios : law.starts) {
     SearchResult found = go(fit.start(ratios));
     if (best.x.empty() || found.sum_of_squares < best.sum_of_squares) best = std::move(found);
@@ -175,10 +175,10 @@ SearchResult search_from_all(const FitLaw& law, Fit& fit, int& evaluations) {
 
 FittedKey key_of(const FitParameter& p, Scene& scene) {
   // Within a thousandth: the search stops a little beside a bound.
-  constexpr double kNearBoundRatio = 1.001;
+  constexpr double kNearBound_ratio = 1.001;
   const double value = p.in(scene);
   return {p.section, p.key, value,
-          value < kNearBoundRatio * p.low || value > p.high / kNearBoundRatio};
+          value < kNearBound_ratio * p.low || value > p.high / kNearBound_ratio};
 }
 
 /// Working depths that reach() had to raise belong into the scene too.

@@ -23,13 +23,13 @@ namespace tact::firmware::guardian::guardian_test {
 constexpr int kTimeout_ms = 20'000, kSilence_ms = 100;
 constexpr hal::ShutdownFrames::Bytes kFirst{1}, kSecond{2}, kThird{3};
 
-/// Both ends of a device whose messages are datagrams; three words in two steps.
+/// Both ends of a device whose messages are datagrams; three frames in two steps.
 struct Wire {
   Wire() {
     if (socketpair(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0, end) != 0) std::abort();
-    words.fd = end[0];
-    words.add_step(std::array{kFirst, kSecond});
-    words.add_step(std::array<hal::ShutdownFrames::Bytes, 1>{kThird});
+    frames.fd = end[0];
+    frames.add_step(std::array{kFirst, kSecond});
+    frames.add_step(std::array<hal::ShutdownFrames::Bytes, 1>{kThird});
   }
   Wire(const Wire&) = delete;
   Wire& operator=(const Wire&) = delete;
@@ -45,13 +45,13 @@ struct Wire {
     }
     return heard;
   }
-  hal::ShutdownFrames words;
+  hal::ShutdownFrames frames;
   int end[2] = {-1, -1};
 };
 
-std::unique_ptr<Guardian> start(const hal::ShutdownFrames& words) {
+std::unique_ptr<Guardian> start(const hal::ShutdownFrames& frames) {
   auto guardian = Guardian::start(
-      words,
+      frames,
       {.priority = 1, .silence_ns = 20'000'000, .program = tests::program_path("tact-guardian")});
   EXPECT_TRUE(guardian) << guardian.error().message;
   return guardian ? std::move(*guardian) : nullptr;
@@ -64,7 +64,7 @@ struct Guarded {
     if (pipe(pipe_ends) != 0) std::abort();
     program = fork();
     if (program == 0) {
-      const auto own = start(wire.words);
+      const auto own = start(wire.frames);
       const pid_t pid = own ? own->process() : -1;
       if (write(pipe_ends[1], &pid, sizeof pid) != sizeof pid || pid < 0) _exit(9);
       then(*own);
@@ -97,7 +97,7 @@ bool lives(pid_t process) { return kill(process, 0) == 0; }
 using Words = std::vector<hal::ShutdownFrames::Bytes>;
 const Words kAll{kFirst, kSecond, kThird};
 
-TEST(Guardian, SaysTheLastWordsOfAProgramThatIsKilled) {
+TEST(Guardian, SendsFramesWhenTactdIsKilled) {
   const Wire wire;
   Guarded guarded(wire, [](Guardian&) {});
   EXPECT_EQ(wire.hear(1, kSilence_ms), Words{}) << "as long as it lives";
@@ -106,7 +106,7 @@ TEST(Guardian, SaysTheLastWordsOfAProgramThatIsKilled) {
   EXPECT_EQ(wire.hear(1, kSilence_ms), Words{}) << "once";
 }
 
-TEST(Guardian, SaysThemAlsoOfOneThatCrashesOrLeavesWithoutAWord) {
+TEST(Guardian, SendsFramesWhenTactdCrashesOrExits) {
   const Wire crashed, left;
   const Guarded one(crashed, [](Guardian&) { std::raise(SIGKILL); });
   EXPECT_EQ(crashed.hear(3, kTimeout_ms), kAll);
@@ -122,7 +122,7 @@ void count(Guardian& guardian) {
   }
 }
 
-TEST(Guardian, SaysTheLastWordsOfAProgramThatIsHeld) {
+TEST(Guardian, SendsFramesWhenTactdIsStopped) {
   const Wire wire;
   const Guarded guarded(wire, count);
   EXPECT_EQ(wire.hear(1, kSilence_ms), Words{}) << "as long as it counts";
@@ -152,7 +152,7 @@ TEST(Guardian, ACrashLeavesNoCoreToWaitFor) {
 
 TEST(Guardian, ItCountsUnlessItIsHeld) {
   const Wire wire;
-  const auto guardian = start(wire.words);
+  const auto guardian = start(wire.frames);
   ASSERT_TRUE(guardian);
   const auto& its_count = guardian->page().waiter_count;
   EXPECT_TRUE(soon([&] { return its_count.load() > 3; }));
@@ -184,7 +184,7 @@ TEST(Guardian, ReportsThatTheDeviceTookNothing) {
 
 TEST(Guardian, SaysNothingWhenItIsLetGoAndIsGoneThen) {
   const Wire wire;
-  auto guardian = start(wire.words);
+  auto guardian = start(wire.frames);
   ASSERT_TRUE(guardian);
   const pid_t process = guardian->process();
   EXPECT_TRUE(lives(process));
@@ -195,7 +195,7 @@ TEST(Guardian, SaysNothingWhenItIsLetGoAndIsGoneThen) {
 
 TEST(Guardian, ItsOwnDeathIsNoticed) {
   const Wire wire;
-  auto guardian = start(wire.words);
+  auto guardian = start(wire.frames);
   ASSERT_TRUE(guardian);
   EXPECT_FALSE(guardian->is_lost().load());
   kill(guardian->process(), SIGKILL);
@@ -217,7 +217,7 @@ TEST(Guardian, NoSignalOfATerminalReachesIt) {
 
 TEST(Guardian, ItsCallsAreFilteredAndItsFilesAreFew) {
   const Wire wire;
-  const auto guardian = start(wire.words);
+  const auto guardian = start(wire.frames);
   ASSERT_TRUE(guardian);
   const std::string proc = "/proc/" + std::to_string(guardian->process());
   EXPECT_EQ(tests::run_command("grep -c 'Seccomp:.2' " + proc + "/status").output, "1\n");
@@ -228,7 +228,7 @@ TEST(Guardian, ItsCallsAreFilteredAndItsFilesAreFew) {
 TEST(Guardian, IsRealTimeInLockedMemoryAndSparedByTheOomKiller) {
   if (geteuid() != 0) GTEST_SKIP() << "an ordinary user may not ask for all of it";
   const Wire wire;
-  const auto guardian = start(wire.words);
+  const auto guardian = start(wire.frames);
   ASSERT_TRUE(guardian);
   const std::string proc = "/proc/" + std::to_string(guardian->process());
   EXPECT_EQ(sched_getscheduler(guardian->process()), SCHED_FIFO);
@@ -245,7 +245,7 @@ TEST(Guardian, IsRealTimeInLockedMemoryAndSparedByTheOomKiller) {
 TEST(Guardian, AMissingProgramIsRefusedWithTheRemedy) {
   const Wire wire;
   const auto guardian =
-      Guardian::start(wire.words, {.priority = 1, .program = "/nowhere/tact-guardian"});
+      Guardian::start(wire.frames, {.priority = 1, .program = "/nowhere/tact-guardian"});
   ASSERT_FALSE(guardian);
   EXPECT_NE(guardian.error().message.find("cannot be started (No such file or directory)"),
             std::string::npos)

@@ -38,7 +38,7 @@ void add(Summary& s, const loop::TickRecord& r, const loop::TickRecord& before) 
   s.max_step_N =
       std::max(s.max_step_N, norm(r.output.written.force_N - before.output.written.force_N));
   const bool held = any_in(r, model::contact::ContactState::kHeld);
-  const bool touching = any_in(r, model::contact::ContactState::kTouching);
+  const bool touching = any_in(r, model::contact::ContactState::kInContact);
   s.held += held;
   s.touching += touching;
   if (!held && !touching)

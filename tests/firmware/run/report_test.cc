@@ -51,7 +51,8 @@ TEST(Report, ReportsLossesOfContactTicksInsideTheOrganAndClutches) {
   EXPECT_EQ(report.at("clutches"), 2);
   const std::string summary = make_summary(RunFacts{}, loop);
   EXPECT_NE(summary.find("the clutch opened 2 times"), std::string::npos) << summary;
-  EXPECT_NE(summary.find("contact lost 3 times: the tool moved unseen"), std::string::npos);
+  EXPECT_NE(summary.find("contact lost 3 times: the tool moved too far between two samples"),
+            std::string::npos);
   EXPECT_NE(summary.find("inside the organ, without force, in 40 of 1000"), std::string::npos);
 }
 

@@ -35,7 +35,7 @@ TEST(FrameBuilder, CarriesTheTiltOfTheIndentation) {
   const auto shapes = std::make_unique<loop::ShapeSlot>();
   FrameBuilder builder(law, *shapes, false);
   std::array<model::contact::SphereContact, 2> contacts;
-  contacts[0].state = ContactState::kTouching;
+  contacts[0].state = ContactState::kInContact;
   for (auto& sphere_contact : contacts) sphere_contact.indentation_m = 0.004;
   loop::TickRecord record;
   record.contacts.assign(contacts);

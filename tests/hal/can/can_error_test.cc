@@ -61,14 +61,14 @@ TEST(CanError, WhatIsNoErrorFrameIsNotRead) {
   EXPECT_FALSE(decode_can_error(error_frame(0))) << "an error without a class says nothing";
 }
 
-TEST(CanError, EveryReasonHasItsOwnWords) {
-  const std::set<std::string> words{CanError{.classes = 0x040}.words(),
-                                    CanError{.classes = 0x100}.words(),
-                                    CanError{.classes = 0x004, .controller = 0x10}.words(),
-                                    CanError{.classes = 0x004, .controller = 0x20}.words()};
-  EXPECT_EQ(words.size(), 4u);
-  EXPECT_EQ(CanError({.classes = 0x144, .controller = 0x30}).words(),
-            std::string(CanError{.classes = 0x040}.words()))
+TEST(CanError, EveryCauseHasItsOwnText) {
+  const std::set<std::string> texts{CanError{.classes = 0x040}.text(),
+                                    CanError{.classes = 0x100}.text(),
+                                    CanError{.classes = 0x004, .controller = 0x10}.text(),
+                                    CanError{.classes = 0x004, .controller = 0x20}.text()};
+  EXPECT_EQ(texts.size(), 4u);
+  EXPECT_EQ(CanError({.classes = 0x144, .controller = 0x30}).text(),
+            std::string(CanError{.classes = 0x040}.text()))
       << "the worst one is said";
 }
 

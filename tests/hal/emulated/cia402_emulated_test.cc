@@ -121,15 +121,15 @@ TEST(Cia402Emulated, ADriveWithNodeGuardingAloneIsRefusedAndStaysGuarded) {
   }
 }
 
-TEST(Cia402Emulated, LastWordsTakeTheTorqueAtOnceThenThePowerAndLeaveTheWatchOn) {
+TEST(Cia402Emulated, ShutdownFramesZeroTorqueThenPowerOffAndKeepWatchdog) {
   for (const ObjectHabits& habits : all_habits()) {
     Bench bench(habits);
     ASSERT_EQ(bench.open(), "");
-    const auto words = bench.device->shutdown_frames();  // before the loop, as tactd asks for them
-    ASSERT_TRUE(words);
+    const auto frames = bench.device->shutdown_frames();  // before the loop, as tactd asks for them
+    ASSERT_TRUE(frames);
     ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->fault_detail();
     bench.expect_torques_of({0.0, 0.0, 4.0});
-    bench.drives.expect_freed_by(*words);
+    bench.drives.expect_freed_by(*frames);
     for (int i = 0; i < 200; ++i) bench.drives.millisecond();
     for (std::size_t i = 0; i < 3; ++i)
       EXPECT_EQ(bench.drives.at(i).noted(), std::vector<std::uint16_t>{0x8130})
@@ -138,13 +138,13 @@ TEST(Cia402Emulated, LastWordsTakeTheTorqueAtOnceThenThePowerAndLeaveTheWatchOn)
   }
 }
 
-TEST(Cia402Emulated, LastWordsAreZeroTorqueWithoutAnEnableAndSyncAndNoMore) {
+TEST(Cia402Emulated, ShutdownFramesAreZeroTorqueDisabledAndSyncAlone) {
   Bench bench;
   ASSERT_EQ(bench.open(), "");
-  const auto words = bench.device->shutdown_frames();
-  ASSERT_TRUE(words && words->count == 12);
-  for (std::size_t i = 0; i < words->count; ++i) {
-    const auto frame = can::unpack_can_frame(words->bytes_of(i));
+  const auto frames = bench.device->shutdown_frames();
+  ASSERT_TRUE(frames && frames->count == 12);
+  for (std::size_t i = 0; i < frames->count; ++i) {
+    const auto frame = can::unpack_can_frame(frames->bytes_of(i));
     ASSERT_TRUE(frame);
     if (*frame == cia402::canopen_sync()) continue;
     const int node = static_cast<int>(frame->id) - 0x200;

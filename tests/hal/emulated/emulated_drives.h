@@ -66,11 +66,11 @@ class BasicEmulatedDrives {
   }
 
   /// What the guardian says of a dead tactd: the first step takes the torque, the rest the power.
-  void expect_freed_by(const hal::ShutdownFrames& words) {
-    ASSERT_EQ(say_step(words, 0), 0);
+  void expect_freed_by(const hal::ShutdownFrames& frames) {
+    ASSERT_EQ(send_step(frames, 0), 0);
     millisecond();
     for (const auto& one : drive) EXPECT_EQ(one->torque_Nm(), 0.0);
-    ASSERT_EQ(say_all(words), 0);
+    ASSERT_EQ(send_all(frames), 0);
     millisecond();
     for (const auto& one : drive) EXPECT_FALSE(one->is_enabled());
   }

@@ -153,26 +153,26 @@ TEST(OdriveEmulated, AKilledRunAndAPermissionThatComesBackNeedNoSecondWay) {
   EXPECT_LT(bench.error_m(), 2e-4);
 }
 
-TEST(OdriveEmulated, LastWordsTakeTheTorqueAtOnceThenThePower) {
+TEST(OdriveEmulated, ShutdownFramesZeroTorqueThenPowerOff) {
   for (const auto generation : {OdriveGeneration::k05, OdriveGeneration::k06}) {
     Bench bench({.generation = generation, .estimates_from_power_on = true}, Homing::kAbsolute);
     ASSERT_EQ(bench.open(), "");
-    const auto words = bench.device->shutdown_frames();  // before the loop, as tactd asks for them
-    ASSERT_TRUE(words);
+    const auto frames = bench.device->shutdown_frames();  // before the loop, as tactd asks for them
+    ASSERT_TRUE(frames);
     ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->fault_detail();
     for (int i = 0; i < 3; ++i) bench.tick({0.0, 0.0, 4.0});
     ASSERT_NE(bench.drives.drive[0]->torque_Nm(), 0.0);
-    bench.drives.expect_freed_by(*words);
+    bench.drives.expect_freed_by(*frames);
   }
 }
 
-TEST(OdriveEmulated, LastWordsAreZeroTorqueAndIdleAndNoMore) {
+TEST(OdriveEmulated, ShutdownFramesAreZeroTorqueAndIdleAlone) {
   Bench bench;
   ASSERT_EQ(bench.open(), "");
-  const auto words = bench.device->shutdown_frames();
-  ASSERT_TRUE(words && words->count == 9);
-  for (std::size_t i = 0; i < words->count; ++i) {
-    const auto frame = can::unpack_can_frame(words->bytes_of(i));
+  const auto frames = bench.device->shutdown_frames();
+  ASSERT_TRUE(frames && frames->count == 9);
+  for (std::size_t i = 0; i < frames->count; ++i) {
+    const auto frame = can::unpack_can_frame(frames->bytes_of(i));
     ASSERT_TRUE(frame);
     const int node = odrive::odrive_address(*frame).node;
     EXPECT_TRUE(node >= 1 && node <= 3);

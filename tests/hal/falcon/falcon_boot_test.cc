@@ -217,7 +217,7 @@ TEST(FalconBoot, NoiseThatNeverEndsIsNoAnswer) {
   FAIL() << "does not end";
 }
 
-TEST(FalconBoot, EveryFaultHasWordsOfItsOwn) {
+TEST(FalconBoot, EveryFaultHasItsOwnText) {
   std::set<std::string> messages;
   for (int fault = 1; fault <= static_cast<int>(Fault::kNoReport); ++fault)
     messages.insert(falcon_boot_advice(static_cast<Fault>(fault)));

@@ -129,7 +129,7 @@ TEST(SafetyLogic, ReportsWhichChannelSticks) {
     bench.ticks(60, c.after);
     EXPECT_EQ(bench.fault, Fault::kLinesDiffer);
     EXPECT_EQ(bench.logic.cause(), c.cause);
-    EXPECT_NE(std::string(words(bench.logic.cause())).find(c.word), std::string::npos);
+    EXPECT_NE(std::string(text_of(bench.logic.cause())).find(c.word), std::string::npos);
   }
 }
 
@@ -200,10 +200,10 @@ TEST(SafetyLogic, TheLightShowsArmed) {
 
 TEST(SafetyLogic, EveryCauseHasWordsWithARemedy) {
   for (int i = 1; i <= static_cast<int>(LinesCause::kChipLost); ++i) {
-    const std::string message = words(static_cast<LinesCause>(i));
+    const std::string message = text_of(static_cast<LinesCause>(i));
     EXPECT_NE(message.find("then "), std::string::npos) << message;
   }
-  EXPECT_STREQ(words(LinesCause::kNone), "");
+  EXPECT_STREQ(text_of(LinesCause::kNone), "");
 }
 
 TEST(SimLines, AreLostForGoodWithTheirChip) {

@@ -113,7 +113,7 @@ TEST(LibraryWorker, TheForcesAreOnForSureAfterAHundredMilliseconds) {
 
 TEST(LibraryWorker, TheFirstFaultIsKept) {
   Worker worker;
-  EXPECT_EQ(worker.words(worker.now_ns), "");
+  EXPECT_EQ(worker.fault_text(worker.now_ns), "");
   worker.keep({.fault = Fault::kForceOff, .kind = 3, .code = 0x0203});
   worker.keep({.fault = Fault::kDeviceFailed, .kind = 1, .code = 7});
   EXPECT_EQ(worker.first_cause().fault, Fault::kForceOff);
@@ -123,17 +123,18 @@ TEST(LibraryWorker, TheFirstFaultIsKept) {
 
 TEST(LibraryWorker, ALibraryWithoutACycleForTwentyMillisecondsMayStillPush) {
   Worker worker;
-  EXPECT_EQ(worker.words(worker.now_ns), "") << "none was due";
+  EXPECT_EQ(worker.fault_text(worker.now_ns), "") << "none was due";
   worker.cycle_ended(worker.now_ns);
-  EXPECT_EQ(worker.words(worker.now_ns + 20 * kMs), "");
-  const std::string said = worker.words(worker.now_ns + 21 * kMs);
+  EXPECT_EQ(worker.fault_text(worker.now_ns + 20 * kMs), "");
+  const std::string said = worker.fault_text(worker.now_ns + 21 * kMs);
   EXPECT_EQ(said,
             "the library has made no call for more than 20 ms: the device may still push; switch "
             "its supply off");
   worker.keep({.fault = Fault::kDeviceFailed, .kind = 1, .code = 7});
-  EXPECT_EQ(worker.words(worker.now_ns + 21 * kMs), "it failed; " + said) << "both are true";
+  EXPECT_EQ(worker.fault_text(worker.now_ns + 21 * kMs), "it failed; " + said) << "both are true";
   worker.cycles_ended();
-  EXPECT_EQ(worker.words(worker.now_ns + 21 * kMs), "it failed") << "forces off, nothing is due";
+  EXPECT_EQ(worker.fault_text(worker.now_ns + 21 * kMs), "it failed")
+      << "forces off, nothing is due";
 }
 
 TEST(LibraryWorker, AStopClosesWhatHasReturnedAndNothingElse) {

@@ -46,7 +46,7 @@ class RecordingFile : public ::testing::Test {
 
   static Frame frame(std::size_t i) {
     Frame frame =
-        test::make_frame(static_cast<float>(i), firmware::protocol::ContactState::kTouching);
+        test::make_frame(static_cast<float>(i), firmware::protocol::ContactState::kInContact);
     frame.tick = i;
     frame.time_ns = static_cast<std::int64_t>(i) * 10'000'000;
     return frame;

@@ -41,7 +41,7 @@ TEST(FrameJson, StaysInItsLengthForAnyNumbers) {
 
 TEST(FrameJson, SaysNullForNumbersThatAreNotFinite) {
   const record::Frame frame = test::make_frame(std::numeric_limits<float>::quiet_NaN(),
-                                               firmware::protocol::ContactState::kTouching);
+                                               firmware::protocol::ContactState::kInContact);
   const auto json = nlohmann::json::parse(frame_json(frame, busiest_header()), nullptr, false);
   ASSERT_FALSE(json.is_discarded());
   EXPECT_TRUE(json["force_N"][2].is_null());

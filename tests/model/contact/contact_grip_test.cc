@@ -54,7 +54,7 @@ TEST(ContactGrip, TearsAboveTheTearForceAndHoldsAgainOnlyAfterOpening) {
   EXPECT_GT(largest_pull_N, 0.59);
   EXPECT_EQ(contact.contacts()[0].state, ContactState::kFree);
   glide(contact, {0, 0, 30_mm}, {0, 0, 3_mm}, 1.0);
-  EXPECT_EQ(contact.contacts()[0].state, ContactState::kTouching) << "still closed since the tear";
+  EXPECT_EQ(contact.contacts()[0].state, ContactState::kInContact) << "still closed since the tear";
   render_at(contact, {0, 0, 3_mm}, 0.0);
   render_at(contact, {0, 0, 3_mm}, 1.0);
   EXPECT_EQ(contact.contacts()[0].state, ContactState::kHeld);
@@ -68,7 +68,7 @@ TEST(ContactGrip, ATearWhilePressingLeavesThePressWithoutAClick) {
   const double pressing_N = bench.law.respond(2_mm).force_N;
   for (double x = 0.0; x < 10_mm; x += 0.05_mm)  // torn sideways at 100 N/m * 6 mm = 0.6 N
     EXPECT_NEAR(render_at(contact, {x, 0, 2_mm}, 1.0).force_N.z, pressing_N, 1e-9);
-  EXPECT_EQ(contact.contacts()[0].state, ContactState::kTouching);
+  EXPECT_EQ(contact.contacts()[0].state, ContactState::kInContact);
 }
 
 TEST(ContactGrip, LettingGoNeverAddsEnergy) {

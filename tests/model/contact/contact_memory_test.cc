@@ -85,7 +85,7 @@ TEST(ContactMemory, OpeningTheGripInRelaxedTissueNeverAddsEnergy) {
   const Rendered relaxed = render_force(contact, deep_m, 1.0, 5000);
   EXPECT_LT(relaxed.force_N, 0.6 * fresh.force_N) << "it did relax";
   const Rendered open = render_force(contact, deep_m, 0.0);
-  EXPECT_EQ(contact.contacts()[0].state, ContactState::kTouching);
+  EXPECT_EQ(contact.contacts()[0].state, ContactState::kInContact);
   EXPECT_LE(open.energy_J, relaxed.energy_J + 1e-15);
   EXPECT_NEAR(open.force_N, relaxed.force_N, 1e-3 * relaxed.force_N);
 }
@@ -141,7 +141,7 @@ TEST(ContactMemory, LettingGoOverStifferTissueNeverAddsEnergy) {
     const double shift_J = 0.5 * 10.0 * 30_mm * 30_mm;
     const Rendered held = render_force(contact, aside_m, 1.0, 500);
     const Rendered open = render_force(contact, aside_m, 0.0);
-    EXPECT_EQ(contact.contacts()[0].state, ContactState::kTouching);
+    EXPECT_EQ(contact.contacts()[0].state, ContactState::kInContact);
     EXPECT_LE(open.energy_J, held.energy_J - shift_J + 1e-12);
     EXPECT_GT(open.energy_J, 0.98 * (held.energy_J - shift_J)) << "nor takes what it need not";
     EXPECT_GT(contact.contacts()[0].depth_offset_m, 1_mm);

@@ -40,7 +40,7 @@ class Rules : public ::testing::Test {
   std::string right(double z_m) {
     const double depth_m = kRadius_m - z_m;
     if (!(depth_m > 0.0)) return at(z_m, 0.0, ContactState::kFree);
-    return at(z_m, kSlope_N_per_m * std::min(depth_m, kRange_m), ContactState::kTouching,
+    return at(z_m, kSlope_N_per_m * std::min(depth_m, kRange_m), ContactState::kInContact,
               depth_m > kRange_m);
   }
   std::string right(double from_m, double to_m, double step_m = 0.1_mm) {
@@ -87,7 +87,7 @@ TEST_F(Rules, BSeesForceOutside) {
   std::string broken;
   double z_m = 4.5_mm;
   for (; broken.empty() && z_m < 60_mm; z_m += 0.5_mm)
-    broken = at(z_m, 1e-7, ContactState::kTouching);
+    broken = at(z_m, 1e-7, ContactState::kInContact);
   EXPECT_EQ(broken, "b");
   EXPECT_NEAR(z_m, 4.5_mm + kRange_m + 1_mm, 0.6_mm);
   EXPECT_EQ(rules_.lags(), 1);
@@ -96,7 +96,7 @@ TEST_F(Rules, BSeesForceOutside) {
 TEST_F(Rules, BSeesForceThatStaysOutside) {
   EXPECT_EQ(right(10_mm, 5_mm), "");
   int ticks = 0;
-  while (at(5_mm, 1e-7, ContactState::kTouching).empty() && ticks < 1000) ++ticks;
+  while (at(5_mm, 1e-7, ContactState::kInContact).empty() && ticks < 1000) ++ticks;
   EXPECT_NEAR(ticks, 200, 2);
 }
 
@@ -131,20 +131,20 @@ TEST_F(Rules, DSeesALetGoWithoutCause) {
 
 TEST_F(Rules, ESeesAJump) {
   EXPECT_EQ(right(10_mm, 2_mm), "");
-  EXPECT_EQ(at(1.9_mm, 0.16, ContactState::kTouching), "e");
-  EXPECT_EQ(at(1.9_mm, 0.158, ContactState::kTouching), "e");  // 2 mN, at rest
+  EXPECT_EQ(at(1.9_mm, 0.16, ContactState::kInContact), "e");
+  EXPECT_EQ(at(1.9_mm, 0.158, ContactState::kInContact), "e");  // 2 mN, at rest
 }
 
 TEST_F(Rules, ELetsAForceLagAndSeesAJumpAllTheSame) {
   EXPECT_EQ(right(10_mm, 2_mm), "");
-  EXPECT_EQ(at(2_mm, 0.105, ContactState::kTouching, false, 1, true), "");
-  EXPECT_EQ(at(2_mm, 0.12, ContactState::kTouching, false, 1, true), "e");
+  EXPECT_EQ(at(2_mm, 0.105, ContactState::kInContact, false, 1, true), "");
+  EXPECT_EQ(at(2_mm, 0.12, ContactState::kInContact, false, 1, true), "e");
 }
 
 TEST_F(Rules, ISeesAForceThatLagsForTooLong) {
   EXPECT_EQ(right(10_mm, 2_mm), "");
   int ticks = 0;
-  while (at(2_mm, 0.1, ContactState::kTouching, false, 1, true).empty() && ticks < 1000) ++ticks;
+  while (at(2_mm, 0.1, ContactState::kInContact, false, 1, true).empty() && ticks < 1000) ++ticks;
   EXPECT_NEAR(ticks, 110, 3);
 }
 
@@ -153,21 +153,21 @@ TEST_F(Rules, ELetsASaturatedContactGoOutside) {
   double force_N = kLimit_N;
   for (int i = 0; i < 50; ++i) {
     force_N = std::max(0.0, force_N - kLimit_N / 50.0);
-    ASSERT_EQ(at(-25_mm, force_N, ContactState::kTouching, true), "");
+    ASSERT_EQ(at(-25_mm, force_N, ContactState::kInContact, true), "");
   }
   EXPECT_EQ(at(-25_mm, 0.0, ContactState::kFree), "");
 }
 
 TEST_F(Rules, FSeesAPullAndNoNumber) {
   EXPECT_EQ(right(10_mm, 3.999_mm), "");
-  EXPECT_EQ(at(3.9_mm, -0.01, ContactState::kTouching), "f");
-  EXPECT_EQ(at(3.9_mm, std::numeric_limits<double>::quiet_NaN(), ContactState::kTouching), "f");
+  EXPECT_EQ(at(3.9_mm, -0.01, ContactState::kInContact), "f");
+  EXPECT_EQ(at(3.9_mm, std::numeric_limits<double>::quiet_NaN(), ContactState::kInContact), "f");
 }
 
 TEST_F(RoughRules, HSeesEnergyGiven) {
   EXPECT_EQ(right(10_mm, 1_mm), "");
   for (double z_m = 1_mm; z_m < 4_mm; z_m += 0.1_mm)
-    ASSERT_EQ(at(z_m, 1.2 * kSlope_N_per_m * (4_mm - z_m), ContactState::kTouching), "");
+    ASSERT_EQ(at(z_m, 1.2 * kSlope_N_per_m * (4_mm - z_m), ContactState::kInContact), "");
   EXPECT_EQ(right(4.1_mm), "h");
 }
 

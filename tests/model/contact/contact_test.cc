@@ -60,7 +60,7 @@ TEST(Contact, NeverPullsOnAToolThatDoesNotHold) {
     if (norm(p) < 40_mm || norm(p) > 60_mm) p = 53_mm * normalized(p);
     const Wrench w = render_at(contact, p);
     EXPECT_GE(dot(w.force_N, contact.contacts()[0].normal), -1e-12);
-    if (contact.contacts()[0].state == ContactState::kTouching) ++pressing;
+    if (contact.contacts()[0].state == ContactState::kInContact) ++pressing;
   }
   EXPECT_GT(pressing, 1000) << "most of the walk is in the tissue";
 }

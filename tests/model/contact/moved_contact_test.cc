@@ -147,7 +147,7 @@ TEST(MovedContact, LettingGoStoresNoMoreThanWasHeld) {
   ASSERT_EQ(contact.contacts()[0].state, ContactState::kHeld);
   const double held_J = contact.contacts()[0].energy_J;
   render_force(contact, {.position_m = there_m});
-  ASSERT_EQ(contact.contacts()[0].state, ContactState::kTouching);
+  ASSERT_EQ(contact.contacts()[0].state, ContactState::kInContact);
   EXPECT_LE(contact.contacts()[0].energy_J, held_J);
   EXPECT_GT(contact.contacts()[0].energy_J, 0.0);
 }

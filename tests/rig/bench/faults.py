@@ -179,7 +179,7 @@ def write_table(runs, folder):
     (folder / "faults.json").write_text(json.dumps(rows, indent=2) + "\n")
     lines = ["# Faults on the virtual bench", "",
              "Times are guest time: ms from the injection to the tick that knows, and to the first with "
-             "zero force; of the motors, to no torque in the emulated drives. A loss fades to zero before it "
+             "zero force; of the motors, to no torque in the emulated drives. A loss ramps down to zero before it "
              "latches.", "",
              "| fault | back end | detected as | injected to detected | injected to zero | to idle motors | "
              "bound | moved afterwards | verdict |", "|---|---|---|---|---|---|---|---|---|"]

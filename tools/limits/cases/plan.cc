@@ -137,7 +137,7 @@ constexpr std::array kCases{
     goes_wrong("e-stop-released",
                "The emergency stop opens for 50 ticks and closes again: nothing moves by itself.",
                InjectedFault::kEmergencyStop, 50, ends(Stage::kArmed, Fault::kEmergencyStop)),
-    goes_wrong("dead-man", "The dead-man switch is let go in mid-force.", InjectedFault::kDeadMan,
+    goes_wrong("dead-man", "The dead-man switch is released under force.", InjectedFault::kDeadMan,
                kForGood, ends(Stage::kArmed, Fault::kDeadManReleased)),
     goes_wrong("device-fault", "The device reports a fault of its own in mid-force.",
                InjectedFault::kDeviceFault, 1, ends(Stage::kArmed, Fault::kDeviceFailed)),

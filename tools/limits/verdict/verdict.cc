@@ -13,8 +13,8 @@ using firmware::gate::kStageCount;
 using firmware::gate::kStageName;
 
 constexpr double kRounding_ratio = model::LimitWitness::kRounding_ratio;
-constexpr double kMinTorqueRatio = 0.45;  // of the torque limit, where a torque must go
-constexpr double kMinGripRatio = 0.999;   // of the limit on the fingers, where it is the case
+constexpr double kMinTorque_ratio = 0.45;  // of the torque limit, where a torque must go
+constexpr double kMinGrip_ratio = 0.999;   // of the limit on the fingers, where it is the case
 
 bool is_outside_or_too_fast(const TickRow& row, const model::Limits& limits) {
   const Vec3& p = row.tool.position_m;
@@ -99,12 +99,12 @@ void check_expected(Checks& checks, const CaseVerdict& v) {
                fmt::format("the test had force: {:.4g} N, at least {:.4g} N asked", v.worst.force_N,
                            e.least_peak_ratio * v.limits.force_N));
   if (v.subject.grip == Grip::kJaws)
-    checks.add(v.worst.grip_N >= kMinGripRatio * v.limits.grip_force_N && v.worst.grip_N > 0.0,
+    checks.add(v.worst.grip_N >= kMinGrip_ratio * v.limits.grip_force_N && v.worst.grip_N > 0.0,
                fmt::format("the test had force on the fingers: {:.4g} N, at least {:.4g} N asked",
-                           v.worst.grip_N, kMinGripRatio * v.limits.grip_force_N));
+                           v.worst.grip_N, kMinGrip_ratio * v.limits.grip_force_N));
   // Cases that end in zero must have had a torque to lose, where they are on a lever.
   if (!e.zero_within_s) return;
-  const double least_Nm = kMinTorqueRatio * v.limits.torque_Nm;
+  const double least_Nm = kMinTorque_ratio * v.limits.torque_Nm;
   if (v.subject.grip == Grip::kLever)
     checks.add(v.worst.torque_Nm >= least_Nm,
                fmt::format("the test had torque: {:.4g} N m, at least {:.4g} N m asked",

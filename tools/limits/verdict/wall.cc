@@ -14,10 +14,10 @@ namespace {
 // Numbers of wall.h: eighths of 4 s, the third and the last; 2 %, 0.1 mm, a quarter at a time.
 constexpr double kDuration_s = 4.0;
 constexpr int kWindows = 8, kEarly = 2, kLast = 7;
-constexpr double kMinGrowthRatio = 1.02, kStill_m = 1e-4;
-constexpr double kStiffnessStepRatio = 1.25;
-constexpr double kMaxStiffnessRatio = 500.0;  // times the device's own limit
-constexpr int kBeyond = 10;                   // points after the first that grows without the stage
+constexpr double kMinGrowth_ratio = 1.02, kStill_m = 1e-4;
+constexpr double kStiffnessStep_ratio = 1.25;
+constexpr double kMaxStiffness_ratio = 500.0;  // times the device's own limit
+constexpr int kBeyond = 10;  // points after the first that grows without the stage
 constexpr double kMin_N_per_m = 50.0;
 
 /// As good as no stage: no run has so much energy.
@@ -57,7 +57,8 @@ std::optional<WallRun> run_wall(double stiffness_N_per_m, const LimitsBench& ben
               .last_swing_m = swing_m(run.rows(), kLast),
               .given_energy_J = worst.given_energy_J,
               .force_N = worst.force_N};
-  out.grows = out.last_swing_m > kStill_m && out.last_swing_m > kMinGrowthRatio * out.early_swing_m;
+  out.grows =
+      out.last_swing_m > kStill_m && out.last_swing_m > kMinGrowth_ratio * out.early_swing_m;
   out.in_bounds = all_hold(check_bounds(worst, limits, run.period_s()));
   return out;
 }
@@ -130,8 +131,8 @@ std::optional<WallVerdict> measure_wall(const LimitsBench& bench, const hal::Dev
   // Where theory is 0 (no damping) a product would never leave it.
   const double first = std::max(v.theory_N_per_m, kMin_N_per_m);
   int beyond = 0;
-  for (double k = first; k < kMaxStiffnessRatio * first && beyond < kBeyond + 1;
-       k *= kStiffnessStepRatio) {
+  for (double k = first; k < kMaxStiffness_ratio * first && beyond < kBeyond + 1;
+       k *= kStiffnessStep_ratio) {
     const auto without = run_wall(k, bench, false);
     const auto with = without ? run_wall(k, bench, true) : std::nullopt;
     if (!with) return std::nullopt;

@@ -65,9 +65,9 @@ class GateMonitor {
   double max_step_N() const { return witness_.worst().step_N; }
   /// It was asked for more than it lets through.
   bool is_fought() const {
-    constexpr double kNearLimitRatio = 0.9;
-    return max_force_N() > kNearLimitRatio * kSceneLimits.force_N ||
-           max_step_N() > kNearLimitRatio * witness_.force_step_N();
+    constexpr double kNearLimit_ratio = 0.9;
+    return max_force_N() > kNearLimit_ratio * kSceneLimits.force_N ||
+           max_step_N() > kNearLimit_ratio * witness_.force_step_N();
   }
   bool kept_bounds() const { return kept_bounds_; }
 

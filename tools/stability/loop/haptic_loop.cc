@@ -11,7 +11,7 @@
 namespace tact::tools::stability {
 namespace {
 
-constexpr double kMaxKickRatio = 20.0;  // times the kick: it grows for any further motion
+constexpr double kMaxKick_ratio = 20.0;  // times the kick: it grows for any further motion
 // More than DelayLine holds: no other force is still on its way.
 constexpr int kStillTicks = 200;
 
@@ -147,7 +147,7 @@ LoopRun run_loop(const LoopCase& loop, const TissueForce& tissue, const Check& c
     if (check) continue;
     still = plant.is_stuck() ? still + 1 : 0;
     if (still > kStillTicks) return run;  // at rest for good
-    if (!(std::abs(plant.position_m()) < kMaxKickRatio * loop.kick_m)) {
+    if (!(std::abs(plant.position_m()) < kMaxKick_ratio * loop.kick_m)) {
       run.verdict = Verdict::kGrow;
       return run;
     }

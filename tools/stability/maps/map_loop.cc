@@ -19,7 +19,7 @@ namespace tact::tools::stability {
 namespace {
 
 // Of a limit: HL-1 is exact for low frequencies alone, and the search ends within 1 %.
-constexpr double kMinStableRatio = 0.95;
+constexpr double kMinStable_ratio = 0.95;
 
 struct Hand {
   const char* name;
@@ -109,17 +109,17 @@ std::vector<Finding> check(const report::Table& t) {
     }
   }
   return {
-      {grow.low > kMinStableRatio,
+      {grow.low > kMinStable_ratio,
        fmt::format(
            "no cell grows below {} K, K = b / (T/2 + t_d): {} of {} grow below K, the least "
            "measured limit is {:.3f} K",
-           kMinStableRatio, below, t.rows().size(), grow.low),
+           kMinStable_ratio, below, t.rows().size(), grow.low),
        {{"below", below}, {"least_ratio", grow.low}}},
-      {rest.low > kMinStableRatio,
+      {rest.low > kMinStable_ratio,
        fmt::format("every cell below {} min(K, 2 c / D) comes to rest: the least measured limit is "
                    "{:.3f} of min(K, 2 c / D)",
-                   kMinStableRatio, rest.low)},
-      {bare_grow.low > kMinStableRatio && bare_grow.high < 1.25,
+                   kMinStable_ratio, rest.low)},
+      {bare_grow.low > kMinStable_ratio && bare_grow.high < 1.25,
        fmt::format("in the {} cells without hand and friction the measured limit is {:.3f} to "
                    "{:.3f} K",
                    bare, bare_grow.low, bare_grow.high),

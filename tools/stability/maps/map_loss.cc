@@ -6,7 +6,7 @@
 // what the wall itself would have given back, if the controller
 //
 //     holds   the last force for ever
-//     gate    holds one tick, fades to zero within 10 ms, latches at 20 (firmware/gate/gate.h)
+//     gate    holds one tick, ramps down to zero within 10 ms, latches at 20 (firmware/gate/gate.h)
 #include <fmt/format.h>
 
 #include <algorithm>

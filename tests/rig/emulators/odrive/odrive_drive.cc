@@ -20,7 +20,7 @@ constexpr double kMotorCurrentLimit05 =
     4096.0;  // bit of the motor's own error word, CURRENT_LIMIT_VIOLATION
 constexpr std::uint32_t kInvalidState05 = 0x1, kUnderVoltage05 = 0x2, kUnderVoltage06 = 0x200;
 constexpr std::uint32_t kControllerFailed05 = 0x200, kVelocityLimit06 = 0x8000;
-constexpr double kOverspeedRatio = 1.2, kOverspeed05 = 1.0;  // 0.5: bit of the controller's word
+constexpr double kOverspeed_ratio = 1.2, kOverspeed05 = 1.0;  // 0.5: bit of the controller's word
 
 bool is_set_point(std::uint8_t command) { return command >= 0x0C && command <= 0x0E; }
 
@@ -152,7 +152,7 @@ void OdriveDrive::tick(std::int64_t now_ns) {
     return;
   }
   if (state_ == kClosedLoop &&
-      std::abs(motor_.velocity_turns_per_s) > kOverspeedRatio * velocity_limit_turns_per_s_) {
+      std::abs(motor_.velocity_turns_per_s) > kOverspeed_ratio * velocity_limit_turns_per_s_) {
     is_overspeed_ = true;
     disarm(is_05() ? kControllerFailed05 : kVelocityLimit06);
   }
