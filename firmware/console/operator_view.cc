@@ -79,7 +79,7 @@ bool OperatorView::waits(loop::State state) {
 // Reported at each entry: otherwise an armed device would give no force without an explanation.
 void OperatorView::report_inside(const protocol::Frame& newest) {
   const auto is_inside = [](const protocol::FrameContact& contact) {
-    return contact.state == protocol::ContactState::kInside;
+    return contact.state == model::ContactState::kInside;
   };
   const bool was_inside = std::exchange(inside_, std::ranges::any_of(newest.contact, is_inside));
   if (!inside_ || was_inside) return;

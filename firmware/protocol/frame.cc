@@ -9,14 +9,14 @@ namespace {
 
 #define FIELD(member, meaning) TACT_FIELD(FrameContact, member, #member, meaning)
 constexpr std::array kContact{
-    FIELD(surface_point_m, "contact point on the undeformed surface"),
+    FIELD(surface_point_m, meaning::kContactPoint),
     FIELD(normal, "outward unit normal there"),
     FIELD(shift_m, "tangential displacement of the tissue"),
-    FIELD(depth_m, "press positive, pull negative"),
+    FIELD(depth_m, meaning::kDepth),
     FIELD(profile_m,
           "displacement into the tissue at radius j profile_pitch_m; profile_points are in use"),
     FIELD(tilt, "m/m; added to the profile at x: tilt . (x - surface_point_m)"),
-    FIELD(state, "inside: no force until it has once been outside").labelled(contact_state_name)};
+    FIELD(state, meaning::kContactState).labelled(contact_state_name)};
 #undef FIELD
 
 #define FIELD(member, meaning) TACT_FIELD(FramePatch, member, #member, meaning)
@@ -33,33 +33,32 @@ constexpr std::array kPatch{FIELD(vertex_count, "displaced vertices in this fram
 constexpr std::array kFrame{
     FIELD(tick, "number of the newest tick"),
     FIELD(time_ns, "since the loop started"),
-    FIELD(due_ns, "the deadline that woke it, CLOCK_MONOTONIC"),
-    TACT_FIELD(Frame, utc.offset_ns, "utc_offset_ns", "UTC since 1970 is due_ns plus this"),
-    TACT_FIELD(Frame, utc.max_error_us, "utc_max_error_us", "at most; 16 s: no time service"),
-    TACT_FIELD(Frame, utc.error_us, "utc_error_us", "as the time service estimates"),
+    FIELD(due_ns, meaning::kDue),
+    TACT_FIELD(Frame, utc.offset_ns, "utc_offset_ns", meaning::kUtcOffset),
+    TACT_FIELD(Frame, utc.max_error_us, "utc_max_error_us", meaning::kUtcMaxError),
+    TACT_FIELD(Frame, utc.error_us, "utc_error_us", meaning::kUtcError),
     FIELD(late_ticks, "count since start"),
     FIELD(skipped_ticks, "count since start"),
     FIELD(dropped_records, "count since start"),
     FIELD(tool_position_m, ""),
-    FIELD(tool_orientation, "unit quaternion from the tool frame to W").with_components(kWxyz),
+    FIELD(tool_orientation, meaning::kOrientation).with_components(kWxyz),
     FIELD(tool_velocity_mps, ""),
-    FIELD(grip_ratio, "0 open, 1 closed"),
-    FIELD(force_N, "written to the device"),
-    FIELD(torque_Nm, "written to the device"),
-    FIELD(wanted_force_N, "of the law, before the gate"),
+    FIELD(grip_ratio, meaning::kGrip),
+    FIELD(force_N, meaning::kWritten),
+    FIELD(torque_Nm, meaning::kWritten),
+    FIELD(wanted_force_N, meaning::kWanted),
     FIELD(worst_margin_us, "least time left before a deadline since the last frame"),
     FIELD(median_tick_us, "duration of the ticks since the last frame"),
     FIELD(peak_force_N, "largest magnitude since the last frame"),
-    FIELD(rms_force_N, "written, over limits.thermal_time_s"),
+    FIELD(rms_force_N, meaning::kWrittenRms),
     FIELD(given_energy_J, "net energy given since arming; largest since the last frame"),
-    FIELD(grip_force_N, "written to the fingers, opening positive"),
-    FIELD(fault, "latched; number of tactd --faults, 0 none").labelled(fault_name),
+    FIELD(grip_force_N, meaning::kWrittenGrip),
+    FIELD(fault, meaning::kFault).labelled(fault_name),
     FIELD(limit, "last one that acted since the last frame; number of tactd --faults, 0 none")
         .labelled(fault_name),
     FIELD(state, "").labelled(state_name),
-    FIELD(non_rt, "the PC has no hard real time, the force is capped"),
-    FIELD(contact_losses,
-          "count since start: contact was lost as the tool moved too far between samples"),
+    FIELD(non_rt, meaning::kNonRt),
+    FIELD(contact_losses, meaning::kContactLosses),
     FIELD(contact, "probe spheres of the tool; as many as the head has spheres are in use"),
     FIELD(patch, "of a mass-spring law")};
 #undef FIELD

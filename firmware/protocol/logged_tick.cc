@@ -16,9 +16,8 @@ const char* clutch_name(std::uint64_t number) {
 
 #define FIELD(member, meaning) TACT_FIELD(LoggedContact, member, #member, meaning)
 constexpr std::array kLoggedContact{
-    FIELD(surface_point_m, "contact point on the undeformed surface"),
-    FIELD(depth_m, "press positive, pull negative"),
-    FIELD(state, "inside: no force until it has once been outside").labelled(contact_state_name)};
+    FIELD(surface_point_m, meaning::kContactPoint), FIELD(depth_m, meaning::kDepth),
+    FIELD(state, meaning::kContactState).labelled(contact_state_name)};
 #undef FIELD
 
 #define FIELD(member, name, meaning) TACT_FIELD(LoggedTick, member, name, meaning)
@@ -26,16 +25,16 @@ constexpr std::array kLoggedContact{
 #define OUTPUT(member, name, meaning) FIELD(output.member, name, meaning)
 constexpr std::array kTick{
     FIELD(tick, "tick", "number of the tick"),
-    FIELD(non_rt, "non_rt", "the PC has no hard real time, the force is capped"),
-    FIELD(due_ns, "due_ns", "the deadline that woke it, CLOCK_MONOTONIC"),
+    FIELD(non_rt, "non_rt", meaning::kNonRt),
+    FIELD(due_ns, "due_ns", meaning::kDue),
     FIELD(margin_ns, "margin_ns", "of the tick before: time left to the next deadline"),
     FIELD(phase_ns, "phase_ns", "duration of each phase; publish and total of the tick before")
         .with_components(loop::kPhaseName),
     INPUT(sample.tool.position_m, "tool_position_m", ""),
-    INPUT(sample.tool.orientation, "tool_orientation", "unit quaternion, tool frame to W"),
+    INPUT(sample.tool.orientation, "tool_orientation", meaning::kOrientation),
     INPUT(sample.tool.velocity_mps, "tool_velocity_mps", ""),
     INPUT(sample.tool.angular_velocity_radps, "tool_angular_velocity_radps", ""),
-    INPUT(sample.tool.grip_ratio, "grip_ratio", "0 open, 1 closed"),
+    INPUT(sample.tool.grip_ratio, "grip_ratio", meaning::kGrip),
     INPUT(sample.grip_gap_m, "grip_gap_m", "between the fingers of a gripper that can press"),
     INPUT(sample.grip_speed_mps, "grip_speed_mps", "of that gap, opening positive"),
     INPUT(sample.stamp_ns, "sample_stamp_ns", "when the device was read, CLOCK_MONOTONIC"),
@@ -53,23 +52,22 @@ constexpr std::array kTick{
     INPUT(clutch_shift_m, "clutch_shift_m", "of the tool from the handle"),
     INPUT(variant, "variant",
           "count since start: changes of the law's numbers while it ran; the file has their text"),
-    OUTPUT(wanted.force_N, "wanted_force_N", "of the law, before the gate"),
-    OUTPUT(wanted.torque_Nm, "wanted_torque_Nm", "of the law, before the gate"),
-    OUTPUT(written.force_N, "force_N", "written to the device"),
-    OUTPUT(written.torque_Nm, "torque_Nm", "written to the device"),
+    OUTPUT(wanted.force_N, "wanted_force_N", meaning::kWanted),
+    OUTPUT(wanted.torque_Nm, "wanted_torque_Nm", meaning::kWanted),
+    OUTPUT(written.force_N, "force_N", meaning::kWritten),
+    OUTPUT(written.torque_Nm, "torque_Nm", meaning::kWritten),
     OUTPUT(state, "state", "").labelled(state_name),
     OUTPUT(limit, "limit", "last one that acted; number of tactd --faults, 0 none")
         .labelled(fault_name),
-    OUTPUT(fault, "fault", "latched; number of tactd --faults, 0 none").labelled(fault_name),
+    OUTPUT(fault, "fault", meaning::kFault).labelled(fault_name),
     OUTPUT(given_energy_J, "given_energy_J", "net energy given since arming"),
-    OUTPUT(rms_force_N, "rms_force_N", "written, over limits.thermal_time_s"),
-    OUTPUT(contact_losses, "contact_losses",
-           "count since start: contact was lost as the tool moved too far between samples"),
+    OUTPUT(rms_force_N, "rms_force_N", meaning::kWrittenRms),
+    OUTPUT(contact_losses, "contact_losses", meaning::kContactLosses),
     OUTPUT(wanted_grip_N, "wanted_grip_force_N", "of the law on the fingers, opening positive"),
-    OUTPUT(written_grip_N, "grip_force_N", "written to the fingers, opening positive"),
-    FIELD(utc.offset_ns, "utc_offset_ns", "UTC since 1970 is due_ns plus this"),
-    FIELD(utc.max_error_us, "utc_max_error_us", "at most; 16 s: no time service"),
-    FIELD(utc.error_us, "utc_error_us", "as the time service estimates"),
+    OUTPUT(written_grip_N, "grip_force_N", meaning::kWrittenGrip),
+    FIELD(utc.offset_ns, "utc_offset_ns", meaning::kUtcOffset),
+    FIELD(utc.max_error_us, "utc_max_error_us", meaning::kUtcMaxError),
+    FIELD(utc.error_us, "utc_error_us", meaning::kUtcError),
     FIELD(event, "event", "of tactctl, in this tick alone; 0 none"),
     FIELD(event_word, "event_word", "levels of the event lines, event_0 the lowest bit"),
     FIELD(sync, "sync", "level of the sync line, written in this tick"),

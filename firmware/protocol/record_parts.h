@@ -8,14 +8,35 @@
 
 #include "firmware/loop/state.h"
 #include "firmware/protocol/record_fields.h"
+#include "model/contact_state.h"
 #include "model/fault.h"
 
 namespace tact::firmware::protocol {
 
 inline constexpr std::size_t kMaxContacts = 16;  // probe spheres on the tool
 
-// kInside: the sphere is inside the organ and gives no force until it has once been outside.
-enum class ContactState : std::uint8_t { kFree = 0, kInContact = 1, kHeld = 2, kInside = 3 };
+using model::ContactState;
+
+/// Meanings of the fields that frame and tick log share.
+namespace meaning {
+inline constexpr const char* kContactPoint = "contact point on the undeformed surface";
+inline constexpr const char* kDepth = "press positive, pull negative";
+inline constexpr const char* kContactState = "inside: no force until it has once been outside";
+inline constexpr const char* kDue = "the deadline that woke it, CLOCK_MONOTONIC";
+inline constexpr const char* kUtcOffset = "UTC since 1970 is due_ns plus this";
+inline constexpr const char* kUtcMaxError = "at most; 16 s: no time service";
+inline constexpr const char* kUtcError = "as the time service estimates";
+inline constexpr const char* kOrientation = "unit quaternion, tool frame to W";
+inline constexpr const char* kGrip = "0 open, 1 closed";
+inline constexpr const char* kWritten = "written to the device";
+inline constexpr const char* kWanted = "of the law, before the gate";
+inline constexpr const char* kWrittenRms = "written, over limits.thermal_time_s";
+inline constexpr const char* kWrittenGrip = "written to the fingers, opening positive";
+inline constexpr const char* kFault = "latched; number of tactd --faults, 0 none";
+inline constexpr const char* kNonRt = "the PC has no hard real time, the force is capped";
+inline constexpr const char* kContactLosses =
+    "count since start: contact was lost as the tool moved too far between samples";
+}  // namespace meaning
 
 /// `table` with so many elements in its field "contact".
 template <const auto& table>
@@ -40,8 +61,7 @@ struct UtcOffset {
 };
 
 inline const char* contact_state_name(std::uint64_t number) {
-  static constexpr std::array kNames{"free", "contact", "held", "inside"};
-  return number < kNames.size() ? kNames[number] : "unknown";
+  return number > 0xFF ? "unknown" : name_of(static_cast<ContactState>(number));
 }
 inline const char* state_name(std::uint64_t number) {
   return number < loop::kStateTable.size() ? loop::name_of(static_cast<loop::State>(number))

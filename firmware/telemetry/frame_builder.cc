@@ -200,14 +200,12 @@ void FrameBuilder::add_contact(const model::contact::SphereContact& sphere_conta
   put(contact.normal, sphere_contact.normal);
   put(contact.shift_m, sphere_contact.shift_m);
   contact.depth_m = static_cast<float>(sphere_contact.depth_m);
-  static_assert(static_cast<int>(protocol::ContactState::kInside) ==
-                static_cast<int>(model::contact::ContactState::kInside));
-  contact.state = static_cast<protocol::ContactState>(sphere_contact.state);
+  contact.state = sphere_contact.state;
   // Only the sphere's own indentation, because the page adds up all indentations. A sphere within
   // the indentation of another has none.
-  const bool is_held = sphere_contact.state == model::contact::ContactState::kHeld;
-  const bool presses = sphere_contact.state == model::contact::ContactState::kInContact &&
-                       sphere_contact.indentation_m > 0.0;
+  const bool is_held = sphere_contact.state == model::ContactState::kHeld;
+  const bool presses =
+      sphere_contact.state == model::ContactState::kInContact && sphere_contact.indentation_m > 0.0;
   if (!is_held && !presses) return;
   std::array<double, protocol::kMaxProfilePoints> ring_m{};
   const model::contact::Indentation in{.surface_point = sphere_contact.surface_point,

@@ -111,7 +111,7 @@ std::optional<Error> check_frame(const Frame& frame, const RunHeader& header) {
     return Error{fmt::format("frame: state {} is unknown (0 to {})", static_cast<int>(frame.state),
                              static_cast<int>(firmware::loop::State::kStopped))};
   for (const firmware::protocol::FrameContact& contact : frame.contact)
-    if (contact.state > firmware::protocol::ContactState::kInside)
+    if (contact.state > model::ContactState::kInside)
       return Error{fmt::format("frame: a contact has the unknown state {}",
                                static_cast<int>(contact.state))};
   return check_patch(frame.patch, header);

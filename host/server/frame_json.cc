@@ -66,7 +66,7 @@ std::string frame_json(const record::Frame& frame, const record::RunHeader& head
   const char* separator = "";
   for (std::size_t i = 0; i < contacts; ++i) {
     // Free contacts are omitted to keep the frame short (kMaxFrameJsonBytes).
-    if (frame.contact[i].state == firmware::protocol::ContactState::kFree) continue;
+    if (frame.contact[i].state == model::ContactState::kFree) continue;
     fmt::format_to(std::back_inserter(out), "{}{{\"contact\":{},", std::exchange(separator, ","),
                    i);
     append_json(out, FrameContact::fields(), &frame.contact[i], limit_of);

@@ -8,15 +8,13 @@
 
 #include "model/contact/contact_point.h"
 #include "model/contact/contact_settings.h"
+#include "model/contact_state.h"
 #include "model/law/law.h"
 #include "model/types.h"
 
 namespace tact::model::contact {
 
 inline constexpr double kAnywhere_m = std::numeric_limits<double>::infinity();
-
-/// Transitions: detect.h. kInside: located inside the organ, without contact.
-enum class ContactState : std::uint8_t { kFree, kInContact, kHeld, kInside };
 
 /// Reported contact of one sphere in a tick.
 struct SphereContact {

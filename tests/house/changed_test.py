@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""tools/changed.sh leaves out no test that something has changed for: on a scratch tree with programs of one line, each kind
+"""tools/checks/changed.sh leaves out no test that something has changed for: on a scratch tree, programs of one line, each kind
 of change asks for the tests that it must. A commit alone asks for none. And no test reads a text that counts for none.
 
 Prints every breach as file:line: sentence. Exit status 0 or 1.
@@ -56,7 +56,7 @@ def write(folder, name, is_new=False, revision="1a2b3c"):
 
 
 def ask(folder, command):
-    return subprocess.run(["bash", "-euc", ASK + command, ROOT / "tools/changed.sh"], cwd=folder, capture_output=True,
+    return subprocess.run(["bash", "-euc", ASK + command, ROOT / "tools/checks/changed.sh"], cwd=folder, capture_output=True,
                           text=True, check=True).stdout.strip()
 
 
@@ -65,11 +65,12 @@ def scratch_tree(folder):
     names = {name for names in CHANGES for name in names if not name.startswith("new_")} | {"build/build.ninja"}
     for name in names:
         write(folder, name)
-    (folder / "tools/program_digests.py").write_text((ROOT / "tools/program_digests.py").read_text())
+    (folder / "tools/checks").mkdir(exist_ok=True)
+    (folder / "tools/checks/program_digests.py").write_text((ROOT / "tools/checks/program_digests.py").read_text())
     for room, programs in (("model_law", ""), ("firmware_gate", "tactd")):
         (folder / f"build/tests/{room}_test.programs").write_text(programs + "\n")
     (folder / ".gitignore").write_text("build/\n")
-    for name in (".gitignore", "tools/program_digests.py"):
+    for name in (".gitignore", "tools/checks/program_digests.py"):
         os.utime(folder / name, (1000, 1000))
     subprocess.run(["git", "-C", folder, "init", "-q"], check=True)
     subprocess.run(["git", "-C", folder, "add", *(["model", "host", "tools"])], check=True)
@@ -81,14 +82,14 @@ def breaches():
         folder = pathlib.Path(name)
         names = scratch_tree(folder)
         if (output := ask(folder, "changed_tests")) != ".":
-            yield f"tools/changed.sh:1: nothing has passed yet: tries '{output}', not all"
+            yield f"tools/checks/changed.sh:1: nothing has passed yet: tries '{output}', not all"
         ask(folder, "begin_stage tests \"$(program_digests)\"; pass_stage tests")
         os.utime(folder / "build/passed.tests", (2000, 2000))
         for newer, wanted in CHANGES.items():
             for file in newer:
                 write(folder, file, is_new=True)
             if (output := ask(folder, "changed_tests")) != wanted:
-                yield f"tools/changed.sh:1: {', '.join(newer) or 'nothing'} is newer: tries '{output}', not '{wanted}'"
+                yield f"tools/checks/changed.sh:1: {', '.join(newer) or 'nothing'} is newer: tries '{output}', not '{wanted}'"
             for file in newer:
                 write(folder, file)
             for file in set(newer) - names:
@@ -96,17 +97,18 @@ def breaches():
         for file in filter(lambda name: name.startswith("build/"), names):
             write(folder, file, revision="1a2b3c-dirty")
         if output := ask(folder, "changed_tests"):
-            yield f"tools/changed.sh:1: only the revision is another: tries '{output}', not nothing"
+            yield f"tools/checks/changed.sh:1: only the revision is another: tries '{output}', not nothing"
         if ask(folder, "program_changed tests tactd && echo yes || echo no; newer_of tests model/law/law.h") != "no":
-            yield "tools/changed.sh:1: a program or a file counts as changed that is not"
+            yield "tools/checks/changed.sh:1: a program or a file counts as changed that is not"
         for file in ("build/tactd", "model/law/law.h"):
             write(folder, file, is_new=True)
         if ask(folder, "program_changed tests tactd && newer_of tests model/law/law.h") != "model/law/law.h":
-            yield "tools/changed.sh:1: a program or a file that has changed does not count"
+            yield "tools/checks/changed.sh:1: a program or a file that has changed does not count"
     for path in sorted([*ROOT.glob("tests/**/*.cc"), *ROOT.glob("tests/**/*.h"), *ROOT.glob("tests/tools/**/*.py")]):
         for number, line in enumerate(path.read_text().splitlines(), 1):
             if UNREAD.search(line.split("//")[0]):
-                yield f"{path.relative_to(ROOT)}:{number}: reads a text that tools/changed.sh takes for one that no test reads"
+                yield (f"{path.relative_to(ROOT)}:{number}: reads a text that tools/checks/changed.sh takes for one that no "
+                       "test reads")
 
 
 def main():

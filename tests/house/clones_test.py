@@ -21,8 +21,6 @@ LIMITS = {SHIPPED: 100, TESTS: 200}
 EXCUSED = {
     ("model/contact/moved_contact.h", "model/contact/rest_contact.h"):
         (140, "declare the same interface, two forms of an organ; each override is one line"),
-    ("firmware/protocol/frame.cc", "host/record/operator_record.cc"):
-        (102, "tables of fields: other names and meanings"),
     ("hal/force_dimension/sdk_library.cc", "hal/phantom/hd_library.cc"):
         (203, "tables of names: functions of two libraries"),
 }

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""tools/stages.sh gives a second try to tests that wait for a real clock, and to no other: each ends as it must. Stages
+"""tools/checks/stages.sh gives a second try to tests that wait for a real clock, and to no other: each ends as it must. Stages
 that run at the same time are each reported and counted; a second try has no other stage beside it, and Ctrl-C ends all.
 
 Prints every breach as file:line: sentence. Exit status 0 or 1.
@@ -74,7 +74,7 @@ run_with tests page browser"""
 
 
 def play(command, folder):
-    return subprocess.Popen(["bash", "-c", HEAD + command, ROOT / "tools/stages.sh"], cwd=folder, text=True,
+    return subprocess.Popen(["bash", "-c", HEAD + command, ROOT / "tools/checks/stages.sh"], cwd=folder, text=True,
                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
 
 
@@ -84,7 +84,7 @@ def beside_breaches():
             output = bash.communicate(timeout=60)[0]
         ended = (bash.returncode, next((line for line in reversed(output.splitlines()) if " passed, " in line), ""))
         if ended != wanted:
-            yield f"tools/stages.sh:1: {command}: {ended}, not {wanted}\n{output}"
+            yield f"tools/checks/stages.sh:1: {command}: {ended}, not {wanted}\n{output}"
 
 
 def children(pid):
@@ -110,10 +110,10 @@ def interrupt_breaches():
             time.sleep(0.05)
         bash.send_signal(signal.SIGTERM)
         if bash.wait(timeout=60) != 130:
-            yield f"tools/stages.sh:1: interrupted, it ends with {bash.returncode}"
+            yield f"tools/checks/stages.sh:1: interrupted, it ends with {bash.returncode}"
     time.sleep(0.2)
     if len(started) < 6 or any(map(is_running, started)):
-        yield f"tools/stages.sh:1: of {len(started)} processes some outlive an interrupt"
+        yield f"tools/checks/stages.sh:1: of {len(started)} processes some outlive an interrupt"
 
 
 def command_line(pid):
@@ -128,12 +128,12 @@ def try_breaches():
         with tempfile.TemporaryDirectory() as folder:
             (pathlib.Path(folder) / "CTestTestfile.cmake").write_text(COUNTS.format(fails=fails, label=label))
             command = f"long={long} which={which}\n{RUN}"
-            done = subprocess.run(["bash", "-c", command, ROOT / "tools/stages.sh"], cwd=folder, text=True,
+            done = subprocess.run(["bash", "-c", command, ROOT / "tools/checks/stages.sh"], cwd=folder, text=True,
                                   capture_output=True, check=False)
         lines = done.stdout.splitlines()
         ended = (done.returncode, lines[-1] if lines else "", 'flaky: Suite.Waits/"a"' in lines)
         if ended != wanted:
-            yield (f"tools/stages.sh:1: fails {fails} times, label {label or 'none'}, long {long}: {ended}, not {wanted}"
+            yield (f"tools/checks/stages.sh:1: fails {fails} times, label {label or 'none'}, long {long}: {ended}, not {wanted}"
                    f"\n{done.stdout}{done.stderr}")
 
 

@@ -85,7 +85,8 @@ def blind_rules():
             "  std::array<Vec3, 2> place_m{}, far_m;\n", "  delta::Joints angle_rad{1_deg, 2_deg};\n", "  Vec3 f(Vec3 v);\n")
     bounds = ("constexpr int kMostSteps = 3;\n", "for (; i < kLeast; ++i)\n", "x = kStepRatio;\n")
     return ([t for t in bad if not list(breaches("x.h", t))] + [t for t in good if list(breaches("x.h", t))] +
-            [t for t in bounds if not list(bound_breaches("x.h", t))] + list(bound_breaches("x.h", "kMaxSteps kLeastly kStep_ratio\n")))
+            [t for t in bounds if not list(bound_breaches("x.h", t))] +
+            list(bound_breaches("x.h", "kMaxSteps kLeastly kStep_ratio\n")))
 
 
 def main():

@@ -25,7 +25,7 @@ PARTS = {
     "lifeline": "liveness", "temper": "input strategy", "mischief": "fault injection", "promises": "invariants",
     "patience": "timeout", "tally": "counters", "strays": "unknown_frames", "maker_library": "vendor_sdk",
     "tells": "reports", "feels": "renders", "whatever": "any", "whoever": "any", "nobody": "none", "somebody": "another",
-    "sunk": "displacement", "stray": "unknown", "unpaid": "unexplained", "stands": "is", "loose": "unlinked", "anew": "again", "held site": "held sphere",
+    "sunk": "displacement", "stray": "unknown", "unpaid": "unexplained", "stands": "is", "loose": "unlinked", "anew": "again",
     "touches": "is in contact, uses",
 }
 NAMES = {"library_": "handle_", "at_once": "processes, initial", "AT_ONCE": "processes", "Grid": "Extent, ReleaseSchedule",

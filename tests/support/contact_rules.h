@@ -74,7 +74,7 @@ class ContactRules {
   int lags() const { return lags_; }  // how often b's allowance was used
 
  private:
-  using ContactState = model::contact::ContactState;
+  using ContactState = model::ContactState;
   static constexpr double kTiny_m = 1e-9, kLetGo_s = 0.1, kAfter_s = 0.2;
   enum class Side { kIn, kOut, kUnknown };
 

@@ -24,7 +24,7 @@ inline model::scene::Scene shipped_scene(const std::string& name) {
   return *scene;
 }
 
-inline bool any_in(const firmware::loop::TickRecord& record, model::contact::ContactState state) {
+inline bool any_in(const firmware::loop::TickRecord& record, model::ContactState state) {
   for (const auto& sphere_contact : record.contacts.all())
     if (sphere_contact.state == state) return true;
   return false;

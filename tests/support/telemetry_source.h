@@ -58,7 +58,7 @@ struct TinyMeshes {
 };
 
 /// Every number of a frame that has one, the same everywhere.
-inline Frame make_frame(float value, firmware::protocol::ContactState state) {
+inline Frame make_frame(float value, model::ContactState state) {
   Frame frame;
   for (float* array : {frame.tool_position_m, frame.tool_velocity_mps, frame.force_N,
                        frame.torque_Nm, frame.wanted_force_N}) {

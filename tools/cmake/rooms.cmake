@@ -169,7 +169,7 @@ function(tact_test folder)
   target_compile_options(${test} PRIVATE -O0 -Wno-dangling-else)
   target_link_options(${test} PRIVATE ${TACT_TEST_LINKER})
   list(JOIN ARG_PROGRAMS " " programs)
-  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/tests/${test}.programs CONTENT "${programs}\n")  # for tools/changed.sh
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/tests/${test}.programs CONTENT "${programs}\n")  # for tools/checks/changed.sh
   target_compile_definitions(${test} PRIVATE TACT_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                              TACT_BINARY_DIR="${PROJECT_BINARY_DIR}"
                              TACT_PROGRAMS="${programs}")

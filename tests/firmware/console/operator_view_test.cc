@@ -97,7 +97,7 @@ TEST_F(View, ADeviceWithoutPowerIsNotReadyAndSaysWhatItWaitsFor) {
 
 TEST_F(View, AToolInsideTheOrganIsReportedOnceEachTime) {
   protocol::Frame inside = frame(loop::State::kArmed, model::Fault::kNone);
-  inside.contact[1].state = protocol::ContactState::kInside;
+  inside.contact[1].state = model::ContactState::kInside;
   EXPECT_NE(reported(inside).find("inside the organ"), std::string::npos);
   EXPECT_EQ(reported(inside), "");
   EXPECT_NE(view.status().find("inside the organ: take the tool out"), std::string::npos);

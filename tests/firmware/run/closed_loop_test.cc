@@ -37,8 +37,8 @@ void add(Summary& s, const loop::TickRecord& r, const loop::TickRecord& before) 
   s.max_torque_Nm = std::max(s.max_torque_Nm, norm(r.output.written.torque_Nm));
   s.max_step_N =
       std::max(s.max_step_N, norm(r.output.written.force_N - before.output.written.force_N));
-  const bool held = any_in(r, model::contact::ContactState::kHeld);
-  const bool touching = any_in(r, model::contact::ContactState::kInContact);
+  const bool held = any_in(r, model::ContactState::kHeld);
+  const bool touching = any_in(r, model::ContactState::kInContact);
   s.held += held;
   s.touching += touching;
   if (!held && !touching)
@@ -49,7 +49,7 @@ void add(Summary& s, const loop::TickRecord& r, const loop::TickRecord& before) 
   }
   if (touching && std::hypot(r.output.wanted.force_N.x, r.output.wanted.force_N.y) > 0.02)
     ++s.sliding;
-  if (!held && any_in(before, model::contact::ContactState::kHeld))
+  if (!held && any_in(before, model::ContactState::kHeld))
     ++(r.input.sample.tool.grip_ratio > 0.7 ? s.tears : s.openings);
   for (const auto& sphere_contact : r.contacts.all())
     s.max_depth_m = std::max(s.max_depth_m, sphere_contact.depth_m);

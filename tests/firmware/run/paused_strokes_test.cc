@@ -14,7 +14,7 @@
 
 namespace tact::firmware::run::paused_strokes_test {
 
-using model::contact::ContactState;
+using model::ContactState;
 
 // Of the way points of the scene; a release after a grip has two.
 constexpr std::size_t kHoldThePull = 8, kTear = 13;

@@ -182,7 +182,7 @@ class TwistOnRealDevices : public testing::TestWithParam<RealDevice> {
         {mounting_.force_in_base(w.force_N), mounting_.direction_in_base(w.torque_Nm)});
     if (written_.size() > 1000) written_.pop_front();
     const model::Quat& q = record.input.sample.tool.orientation;
-    const bool held = tests::any_in(record, model::contact::ContactState::kHeld);
+    const bool held = tests::any_in(record, model::ContactState::kHeld);
     rendered.held |= held;
     rendered.fault = std::max(rendered.fault, record.output.fault);
     rendered.torque_Nm = std::max(rendered.torque_Nm, norm(w.torque_Nm));

@@ -13,8 +13,8 @@
 
 namespace tact::firmware::telemetry::frame_builder_test {
 
+using model::ContactState;
 using model::Vec3;
-using model::contact::ContactState;
 using model::contact::Indentation;
 
 /// A law whose indentations lean, the more the deeper.
@@ -60,7 +60,7 @@ TEST(FrameBuilder, CarriesLossesOfContactAndASphereInsideWithoutIndentation) {
   builder.add(record);
   const Frame frame = builder.take(0);
   EXPECT_EQ(frame.contact_losses, 7u);
-  EXPECT_EQ(frame.contact[0].state, protocol::ContactState::kInside);
+  EXPECT_EQ(frame.contact[0].state, model::ContactState::kInside);
   EXPECT_EQ(frame.contact[0].tilt[0], 0.0F);
   record.output.contact_losses = 5'000'000'000;
   const LoggedTick tick = LoggedTick::of(record, false);

@@ -160,7 +160,7 @@ TEST(Telemetry, GreetsAViewerWithTheMeshesAndFramesFollow) {
   bool touched = false;
   while (viewer.receive(frame)) {
     ++frames;
-    touched = touched || frame.contact[0].state == protocol::ContactState::kInContact;
+    touched = touched || frame.contact[0].state == model::ContactState::kInContact;
   }
   EXPECT_GT(frames, 20);
   EXPECT_TRUE(touched);
@@ -171,7 +171,7 @@ TEST(Telemetry, FramesCarryTheProfileOfTheTouchedSite) {
   WholeController run(path);
   run.ticks(1500);
   const Frame frame = run.telemetry().newest_frame();
-  ASSERT_EQ(frame.contact[0].state, protocol::ContactState::kInContact);
+  ASSERT_EQ(frame.contact[0].state, model::ContactState::kInContact);
   EXPECT_GT(frame.contact[0].depth_m, 0.001f);
   EXPECT_NEAR(frame.contact[0].profile_m[0], frame.contact[0].depth_m, 1e-7f);
   EXPECT_LT(frame.contact[0].profile_m[5], frame.contact[0].profile_m[0]);

@@ -59,7 +59,7 @@ TEST(UtcClock, EachTickOfALogHasTheNewestPairAndItsContacts) {
   ASSERT_FALSE(telemetry.start());
   loop::TickRecord record;
   std::array<model::contact::SphereContact, 2> contacts;
-  contacts[1].state = model::contact::ContactState::kHeld;
+  contacts[1].state = model::ContactState::kHeld;
   contacts[1].depth_m = -0.25;
   contacts[1].surface_point_m = {1.0, 2.0, 3.0};
   record.contacts.assign(contacts);
@@ -81,10 +81,10 @@ TEST(UtcClock, EachTickOfALogHasTheNewestPairAndItsContacts) {
   while (log->next(last)) continue;
   EXPECT_EQ(first.utc.offset_ns, 5) << "as it was at the start";
   EXPECT_GT(last.utc.offset_ns, 1'700'000'000'000'000'000) << "read again after a second";
-  EXPECT_EQ(first.contact[1].state, protocol::ContactState::kHeld);
+  EXPECT_EQ(first.contact[1].state, model::ContactState::kHeld);
   EXPECT_EQ(first.contact[1].depth_m, -0.25f);
   EXPECT_EQ(first.contact[1].surface_point_m[2], 3.0f);
-  EXPECT_EQ(first.contact[0].state, protocol::ContactState::kFree);
+  EXPECT_EQ(first.contact[0].state, model::ContactState::kFree);
   EXPECT_EQ(first.event, 7);
   EXPECT_EQ(first.event_word, 255);
   EXPECT_TRUE(first.sync);

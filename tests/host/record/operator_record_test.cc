@@ -88,8 +88,7 @@ class TrackedFile : public ::testing::Test {
   ~TrackedFile() override { std::filesystem::remove(path_); }
 
   static Frame frame(std::size_t i) {
-    Frame out =
-        test::make_frame(static_cast<float>(i), firmware::protocol::ContactState::kInContact);
+    Frame out = test::make_frame(static_cast<float>(i), model::ContactState::kInContact);
     out.tick = i;
     out.time_ns = static_cast<std::int64_t>(i) * 10'000'000;
     return out;

@@ -45,8 +45,7 @@ class RecordingFile : public ::testing::Test {
   ~RecordingFile() override { std::filesystem::remove(path_); }
 
   static Frame frame(std::size_t i) {
-    Frame frame =
-        test::make_frame(static_cast<float>(i), firmware::protocol::ContactState::kInContact);
+    Frame frame = test::make_frame(static_cast<float>(i), model::ContactState::kInContact);
     frame.tick = i;
     frame.time_ns = static_cast<std::int64_t>(i) * 10'000'000;
     return frame;
@@ -193,14 +192,14 @@ TEST(RecordingCsv, SaysWhichRunItWasAndWhatARowIs) {
 TEST(RecordingCsv, HasOneNameForEveryColumn) {
   const RunHeader header = test::make_header(3, 1, 3, 1);
   std::string row;
-  append_csv_row(row, test::make_frame(1.0f, firmware::protocol::ContactState::kHeld), header);
+  append_csv_row(row, test::make_frame(1.0f, model::ContactState::kHeld), header);
   EXPECT_EQ(columns(row), columns(csv_header(header)));
   EXPECT_EQ(columns(row), 46 + 2 * (12 + 11 + 3));
   EXPECT_EQ(std::count(row.begin(), row.end(), '\n'), 1);
 }
 
 TEST(RecordingCsv, ReportsASphereInsideAndLossesOfContact) {
-  Frame frame = test::make_frame(0.5f, firmware::protocol::ContactState::kInside);
+  Frame frame = test::make_frame(0.5f, model::ContactState::kInside);
   frame.contact_losses = 21;
   std::string row;
   append_csv_row(row, frame, test::make_header(3, 1, 3, 1));

@@ -86,7 +86,7 @@ class Register : public ::testing::Test {
       const std::size_t place = i / 220 % places;  // a place that was missed comes again
       const bool moves = i % 220 < 10;
       const Vector3d tip_m(kPlaces_m[place]);
-      record::Frame frame = test::make_frame(0.0f, firmware::protocol::ContactState::kFree);
+      record::Frame frame = test::make_frame(0.0f, model::ContactState::kFree);
       for (int axis = 0; axis < 3; ++axis)
         frame.tool_position_m[axis] = static_cast<float>(tip_m[axis]);
       frame.tool_velocity_mps[0] = moves ? 0.1f : 0.001f;

@@ -24,7 +24,7 @@ record::RunHeader busiest_header() {
 // Every site held, every number as long as it can be.
 record::Frame longest_frame() {
   const float longest = -std::numeric_limits<float>::min();  // -1.175e-38
-  record::Frame frame = test::make_frame(longest, firmware::protocol::ContactState::kHeld);
+  record::Frame frame = test::make_frame(longest, model::ContactState::kHeld);
   frame.tick = frame.late_ticks = frame.skipped_ticks = frame.dropped_records = UINT64_MAX;
   frame.time_ns = INT64_MIN;
   frame.fault = frame.limit = UINT16_MAX;
@@ -40,8 +40,8 @@ TEST(FrameJson, StaysInItsLengthForAnyNumbers) {
 }
 
 TEST(FrameJson, SaysNullForNumbersThatAreNotFinite) {
-  const record::Frame frame = test::make_frame(std::numeric_limits<float>::quiet_NaN(),
-                                               firmware::protocol::ContactState::kInContact);
+  const record::Frame frame =
+      test::make_frame(std::numeric_limits<float>::quiet_NaN(), model::ContactState::kInContact);
   const auto json = nlohmann::json::parse(frame_json(frame, busiest_header()), nullptr, false);
   ASSERT_FALSE(json.is_discarded());
   EXPECT_TRUE(json["force_N"][2].is_null());
@@ -50,8 +50,8 @@ TEST(FrameJson, SaysNullForNumbersThatAreNotFinite) {
 }
 
 TEST(FrameJson, ListsOnlySitesInContactWithTheRingsInUse) {
-  record::Frame frame = test::make_frame(0.002f, firmware::protocol::ContactState::kFree);
-  frame.contact[1].state = firmware::protocol::ContactState::kHeld;
+  record::Frame frame = test::make_frame(0.002f, model::ContactState::kFree);
+  frame.contact[1].state = model::ContactState::kHeld;
   const record::RunHeader header = test::make_header(3, 1, 3, 1);  // 2 contacts, 11 rings
   const auto json = nlohmann::json::parse(frame_json(frame, header), nullptr, false);
   ASSERT_EQ(json["contacts"].size(), 1u);
@@ -61,8 +61,8 @@ TEST(FrameJson, ListsOnlySitesInContactWithTheRingsInUse) {
 }
 
 TEST(FrameJson, ListsASphereInsideAndCountsLossesOfContact) {
-  record::Frame frame = test::make_frame(0.0f, firmware::protocol::ContactState::kFree);
-  frame.contact[0].state = firmware::protocol::ContactState::kInside;
+  record::Frame frame = test::make_frame(0.0f, model::ContactState::kFree);
+  frame.contact[0].state = model::ContactState::kInside;
   frame.contact_losses = 4;
   const auto json =
       nlohmann::json::parse(frame_json(frame, test::make_header(3, 1, 3, 1)), nullptr, false);
@@ -87,7 +87,7 @@ TEST(FrameJson, DoesNotTrustCountsBeyondTheArrays) {
   record::RunHeader header = busiest_header();
   header.spheres.resize(firmware::protocol::kMaxContacts + 5);
   header.profile_points = UINT32_MAX;
-  const record::Frame frame = test::make_frame(1.0f, firmware::protocol::ContactState::kHeld);
+  const record::Frame frame = test::make_frame(1.0f, model::ContactState::kHeld);
   const auto json = nlohmann::json::parse(frame_json(frame, header), nullptr, false);
   EXPECT_EQ(json["contacts"].size(), firmware::protocol::kMaxContacts);
 }
@@ -190,8 +190,7 @@ TEST(CheckFrame, RefusesPatchesThatNameWhatIsNotThere) {
   EXPECT_TRUE(refuses([](record::Frame& f) { f.patch.cut_total = 1; }));
   EXPECT_TRUE(refuses([](record::Frame& f) { f.patch.cut_total = 3; }));
   EXPECT_TRUE(refuses([](record::Frame& f) { f.state = firmware::loop::State{4}; }));
-  EXPECT_TRUE(
-      refuses([](record::Frame& f) { f.contact[3].state = firmware::protocol::ContactState{4}; }));
+  EXPECT_TRUE(refuses([](record::Frame& f) { f.contact[3].state = model::ContactState{4}; }));
 }
 
 }  // namespace tact::host::server::frame_json_test

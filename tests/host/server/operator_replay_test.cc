@@ -24,7 +24,7 @@ class Heard final : public LiveListener {
 };
 
 record::Frame frame_at(std::uint64_t tick) {
-  record::Frame frame = test::make_frame(0.0f, firmware::protocol::ContactState::kFree);
+  record::Frame frame = test::make_frame(0.0f, model::ContactState::kFree);
   frame.tick = tick;
   frame.time_ns = std::llround(static_cast<double>(tick) * test::kMotionFrame_s * 1e9);
   const pose::Pose tool = test::tool_at(static_cast<double>(tick) * test::kMotionFrame_s);

@@ -59,7 +59,7 @@ class Replay : public ::testing::Test {
     out.header = test::make_header(3, 1, 3, 1);
     out.mesh = test::TinyMeshes{}.bytes();
     for (int i = 0; i < 100; ++i) {
-      record::Frame frame = test::make_frame(0.0f, firmware::protocol::ContactState::kFree);
+      record::Frame frame = test::make_frame(0.0f, model::ContactState::kFree);
       frame.tick = static_cast<std::uint64_t>(i);
       frame.time_ns = 7'000'000'000 + i * kFrame_ns;
       frame.state = i < 80 ? State::kArmed : State::kStopped;

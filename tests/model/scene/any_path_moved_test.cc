@@ -52,8 +52,7 @@ class SphereRules {
     if (far_s_ > kLetGo_s && force_N > 0.0) broken = 'c';
     // Alone, deeper with its centre inside: force within three ticks.
     if (is_outside && force_N == 0.0) entered_ = true;
-    if (is_lost || is_saturated || sphere_contact.state == contact::ContactState::kInside)
-      entered_ = false;
+    if (is_lost || is_saturated || sphere_contact.state == ContactState::kInside) entered_ = false;
     const bool is_deeper = is_in && was_in_ && near_m > near_before_m_ + 1e-9;
     without_ = is_alone_ && entered_ && is_deeper && force_N == 0.0 ? without_ + 1 : 0;
     if (without_ > 3) broken = 'd';

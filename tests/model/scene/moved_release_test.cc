@@ -31,7 +31,7 @@ class RandomDrag {
   bool holds() const {
     return std::ranges::any_of(contact_.contacts(),
                                [](const contact::SphereContact& sphere_contact) {
-                                 return sphere_contact.state == contact::ContactState::kHeld;
+                                 return sphere_contact.state == ContactState::kHeld;
                                });
   }
   double stored_J() const { return stored_energy_J(contact_.moved().organ()); }

@@ -22,8 +22,6 @@
 
 namespace tact::model::scene::organ_acts_test {
 
-using contact::ContactState;
-
 /// A shipped scene under a tool that goes straight from point to point.
 class Shipped {
  public:

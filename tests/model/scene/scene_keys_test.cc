@@ -233,7 +233,7 @@ class UpAndDown {
   bool holds() const {
     return std::ranges::all_of(contact_->contacts(),
                                [](const contact::SphereContact& sphere_contact) {
-                                 return sphere_contact.state == contact::ContactState::kHeld;
+                                 return sphere_contact.state == ContactState::kHeld;
                                });
   }
 

@@ -106,7 +106,7 @@ class WholeTool : public ::testing::Test {
       const Tool tool{.position_m = Vec3{0, 0, -0.003} + way_m * along, .grip_ratio = 1.0};
       contact.detect_contact(tool);
       contact.render_force(tool, false);
-      if (contact.contacts()[0].state != contact::ContactState::kHeld || way_m > 0.1) return way_m;
+      if (contact.contacts()[0].state != ContactState::kHeld || way_m > 0.1) return way_m;
     }
   }
 

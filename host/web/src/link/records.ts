@@ -68,7 +68,7 @@ export interface FrameFields {
   skipped_ticks: number; // count since start
   dropped_records: number; // count since start
   tool_position_m: Vec;
-  tool_orientation: [number, number, number, number]; // unit quaternion from the tool frame to W
+  tool_orientation: [number, number, number, number]; // unit quaternion, tool frame to W
   tool_velocity_mps: Vec;
   grip_ratio: number; // 0 open, 1 closed
   force_N: Vec; // written to the device

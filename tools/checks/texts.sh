@@ -31,7 +31,7 @@ layering() {
   local rules=(layering tree sources readme ladder units words hazards clones bench budgets pictures provenance)
   cd "$root" || return
   # what tries the check's own functions
-  [ $again = yes ] && ! any_newer layering tools/{check,changed.sh,stages.sh,program_digests.py} tests/house ||
+  [ $again = yes ] && ! any_newer layering tools/{check,checks} tests/house ||
     rules=(changed stages "${rules[@]}")
   begin_stage layering
   rules=("${rules[@]/#/tests/house/}")
@@ -46,7 +46,7 @@ layering() {
 lint() {
   local shell python
   mapfile -d '' -t shell < <(shell_sources)
-  [ $again = no ] || any_newer layering tools/*.sh "${shell[@]}" || shell=()
+  [ $again = no ] || any_newer layering tools/{,checks/}*.sh "${shell[@]}" || shell=()
   mapfile -d '' -t python < <(python_sources)
   mapfile -t python < <(newer_of layering "${python[@]}")
   on_cores 8 shellcheck -x -S warning -- "${shell[@]}"

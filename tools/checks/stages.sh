@@ -64,7 +64,10 @@ report_stage() {
   # shellcheck disable=SC2086  # a list of names
   [ -n "$skipped" ] && printf '           skipped: %s\n' $skipped
   # One a line, without the value of a parameter behind it.
-  [ -n "$flaky" ] && sed 's/ *#.*//; s/^/flaky: /' <<<"$flaky" | tee -a "$counts.flaky" | sed 's/^/           /'
+  if [ -n "$flaky" ]; then
+    sed 's/ *#.*//; s/^/flaky: /' <<<"$flaky" | tee -a "$counts.flaky" | sed 's/^/           /'
+    grep -A4 -E 'Failure$|^(FAIL|ERROR): |Error: ' "$log" | head -n 12 | sed 's/^/           first try: /'
+  fi
   [ "$status" -eq 0 ] && return
   echo "---- the end of build/logs/$name.log"
   grep -A3 -E 'FAILED|error:|warning:|\*\*\*Failed|Failure$' "$log" | head -n 40  # and why

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Of each program, "digest name" in a line: another digest where it is another program.
 
-    python3 tools/program_digests.py BUILD_DIR PROGRAM...
+    python3 tools/checks/program_digests.py BUILD_DIR PROGRAM...
 
 The git revision that a program prints, and so its build id, is another after each commit: neither counts. A program that is
 not there has no line.

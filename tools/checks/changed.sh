@@ -38,7 +38,7 @@ built_programs() {
 }
 
 # program_digests: "digest name" a line
-program_digests() { built_programs | xargs -r python3 "$root/tools/program_digests.py" "$build"; }
+program_digests() { built_programs | xargs -r python3 "$root/tools/checks/program_digests.py" "$build"; }
 
 # changed_programs STAGE: names of the programs that are not as they were when it began and then passed
 changed_programs() { program_digests | grep -vxFf "$build/passed.$1" | sed 's/^[^ ]* //'; }
