@@ -22,7 +22,7 @@ struct Error {
   ErrorCode code = ErrorCode::kOther;
 };
 
-/// A mistake of the code, so the program ends, with NDEBUG too: nothing reads a value that is none.
+/// A programming error: ends the program in every build type, as there is no valid value.
 [[noreturn]] inline void end_with(const std::string& mistake) {
   static_cast<void>(std::fputs((mistake + "\n").c_str(), stderr));
   std::abort();

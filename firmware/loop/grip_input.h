@@ -11,13 +11,15 @@
 #include <cmath>
 #include <optional>
 
+#include "model/contact/contact_settings.h"
 #include "model/rt.h"
 
 namespace tact::firmware::loop {
 
 struct GripSettings {
   bool toggles = false;
-  double close_ratio = 0.7, open_ratio = 0.5;  // of contact
+  double close_ratio = model::contact::ContactSettings{}.grip_close_ratio;
+  double open_ratio = model::contact::ContactSettings{}.grip_open_ratio;
 };
 
 class GripInput {

@@ -50,7 +50,7 @@ void LoopMonitor::check() RT_SAFE {
   if (requests_.fault.load(std::memory_order_relaxed) != model::Fault::kNone) lines_.drop();
 }
 
-// It counts twice in its silence: every 0.25 s at most.
+// The guardian counts at least every 0.25 s: lost after two missed increments and a margin.
 bool LoopMonitor::is_guardian_gone() RT_SAFE {
   constexpr std::int64_t kHeld_ns = 600 * model::kMillisecond_ns;  // chosen
   if (guardian_.is_lost == nullptr) return false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// sample_gap.h - what torques are still worth while the positions they hold do not come.
+// sample_gap.h - scales the torques down while position samples are missing.
 //
 //     missing samples in a row    0, 1      2 .. n + 1                  n = 10 ms of ticks
 //     torque_ratio                   1      falls by 1/n per tick       0 after n + 1

@@ -68,8 +68,8 @@ inline constexpr SimDeviceSettings kIdeal{.counts_per_turn = 1e8,
 class SimDelta final : public Device {
  public:
   /// Settings as checked by make_sim_delta().
-  /// The hand is led in W. Its base is posed as mounted, and MountedDevice turns what it reports;
-  /// how the handle is turned stays as the scene says.
+  /// Targets of the hand are in W. The base has the pose of `mounting`, and MountedDevice rotates
+  /// the samples; the orientation of the handle is the scene's.
   SimDelta(const SimDeviceSettings& device, const model::HandSettings& hand,
            const Mounting& mounting = {});
 

@@ -25,9 +25,9 @@
 // contact.
 //
 // Valid for |d| <= working_depth_m; beyond, the force is that of the limit and kSaturated. Cost a
-// tick: the region's nodes, for any mesh. Should the nodes leave the finite numbers, or an
-// indentation ten times the working depth, they are put to rest and the patch gives zero force and
-// kSingular until every sphere has left; the step check at make keeps that from happening.
+// tick: the region's nodes, for any mesh. If a node becomes NaN or infinite, or an
+// indentation exceeds ten times the working depth, all nodes are reset and the patch gives zero
+// force and kSingular until every sphere has left; the step check of make_* prevents that.
 // Source: MA-1 to MA-9; coupling and cut are ours.
 #pragma once
 
