@@ -157,6 +157,9 @@ std::string silence_fault_detail(const FaultCause& cause, const char* position) 
     case CanCause::kJumped:
       return "its position jumped without motion: the encoder slips or two drives share a node; "
              "check both and home again";
+    case CanCause::kSharedNode:
+      return "it answers more often than it is asked: two drives have this node id, or another "
+             "program answers for it; give each drive an id of its own, then start tactd again";
     default:
       return {};
   }

@@ -89,6 +89,7 @@ class CanDevice final : public Device {
     drives_.push(loop_, ready ? delta_.motor_torques_Nm(wrench.force_N, gap_.torque_ratio())
                               : delta::Joints{});
     bus_->send();
+    ++requests_;
     if (bus_->fault() != Fault::kNone) loop_.latch.set(bus_->cause());
     if (fault() != Fault::kNone) return fault();
     return is_finite(wrench.force_N) ? Fault::kNone : Fault::kForceNotFinite;
@@ -184,7 +185,11 @@ class CanDevice final : public Device {
                    Fault::kDriveSilent);
       }
       if (loop_.axes[i].jumps) loop_.fail(i, CanCause::kJumped, 0, Fault::kHomingLost);
+      if (!start_.one_sync) continue;
+      loop_.axes[i].replies.step(requests_, !bus_->was_cut_short());
+      if (loop_.axes[i].replies.is_exceeded()) loop_.fail(i, CanCause::kSharedNode, 0);
     }
+    requests_ = 0;
   }
 
   bool measure(Tool& tool, std::int64_t& stamp_ns) RT_SAFE {
@@ -264,6 +269,7 @@ class CanDevice final : public Device {
   BasicCanLoop<Frame> loop_;
   bool permitted_ = false;
   int fault_batches_ = 0;  // sent since the fault
+  int requests_ = 0;       // of each drive since the last read
   std::uint64_t sequence_ = 0;
   std::uint64_t cut_reads_ = 0;       // the kernel may have had more than one call takes
   std::uint64_t unknown_frames_ = 0;  // frames of nodes or kinds that are not ours

@@ -25,6 +25,7 @@
 
 #include "hal/can/can_bus.h"
 #include "hal/can/can_delta.h"
+#include "hal/can/reply_balance.h"
 #include "hal/device.h"
 #include "model/device_settings.h"
 #include "model/result.h"
@@ -43,6 +44,7 @@ struct CanAxis {
   double motor_turns = 0.0;       // the newest
   std::int64_t arrival_ns = 0;    // of that
   std::int64_t heartbeat_ns = 0;  // arrival of the newest one
+  ReplyBalance replies{};         // of drives that sample at SYNC or answer each command
 
   void sample(double turns, std::int64_t at_ns) RT_SAFE {
     located = sampled = true;

@@ -24,10 +24,11 @@ enum class CanCause : std::uint8_t {
   kErrorFrame,      // code: classes, controller state << 16
   kBeyondStop = 8,  // of a lost homing; code: the arm's angle, mrad, two's complement
   kRodsApart,
-  kSilent = 12,  // of a drive; code: for how long, ms
-  kNoPosition,   // code: for how long, ms
-  kJumped,       // position without motion
-  kForeign,      // code: the identifier of a command that this program did not send
+  kSharedNode = 11,  // more replies than requests
+  kSilent,           // of a drive; code: for how long, ms
+  kNoPosition,       // code: for how long, ms
+  kJumped,           // position without motion
+  kForeign,          // code: the identifier of a command that this program did not send
   kFirstOwn = 16,
 };
 

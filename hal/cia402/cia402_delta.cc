@@ -161,6 +161,7 @@ class Cia402s final : public can::CanDrives {
       return;
     }
     extra_ += loop.axes[at].sampled ? 1 : 0;
+    loop.axes[at].replies.add_reply();
     loop.axes[at].sample(sample.position_increments / counts_per_motor_turn_, arrival_ns);
     Axis& axis = axes_[at];
     axis.statusword = sample.statusword;

@@ -69,6 +69,7 @@ class Moteuses final : public can::CanFdDrives {
       return true;
     }
     extra_ += loop.axes[at].sampled ? 1 : 0;
+    loop.axes[at].replies.add_reply();
     loop.axes[at].sample(*reply->position_turns, arrival_ns);
     axis.incomplete = 0;
     axis.torque_Nm = *reply->torque_Nm;

@@ -10,6 +10,7 @@
 // The same value twice at rest is legal. What an adapter swaps within one tick cannot be detected.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -28,7 +29,9 @@ enum class OdriveNews : std::uint8_t {
 
 class OdriveAxis {
  public:
-  static constexpr int kMaxJumps = 3;  // in a row, then the encoder is not to be trusted
+  // 3 a jump, less 1 a position that is taken. Then the encoder is not to be trusted: after three
+  // jumps in a row, or the fourth of positions that two drives with one node id send in turn.
+  static constexpr int kMaxJumpScore = 9;
 
   std::uint8_t state = 0;  // OdriveAxisState of the last heartbeat
   bool is_in(OdriveAxisState one) const RT_SAFE { return state == static_cast<std::uint8_t>(one); }
@@ -49,11 +52,12 @@ class OdriveAxis {
       const double most_turns =
           kSlack_turns + speed_turns_per_s * kStampError_s + kHalfMost_turns_per_s2 * dt_s * dt_s;
       if (!(residual_turns <= most_turns)) {
-        axis.jumps = ++jumps_ >= kMaxJumps;
+        jump_score_ += 3;
+        axis.jumps = jump_score_ >= kMaxJumpScore;
         return OdriveNews::kJumped;
       }
     }
-    jumps_ = 0;
+    jump_score_ = std::max(jump_score_ - 1, 0);
     velocity_turns_per_s_ = now.velocity_turns_per_s;
     axis.sample(now.position_turns, arrival_ns);
     return OdriveNews::kNew;
@@ -71,7 +75,7 @@ class OdriveAxis {
   }
 
   double velocity_turns_per_s_ = 0.0;  // of the last one taken
-  int jumps_ = 0;
+  int jump_score_ = 0;
 };
 
 }  // namespace tact::hal::odrive

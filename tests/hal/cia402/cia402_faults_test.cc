@@ -226,4 +226,17 @@ TEST(Cia402Faults, ACommandOfAnotherSenderLatchesInTheTickThatHearsIt) {
   }
 }
 
+TEST(Cia402Faults, TwoDrivesWithOneNodeIdLatch) {
+  Bench bench;
+  bench.run();
+  int ticks = 1;
+  for (; ticks < 20; ++ticks) {
+    bench.drives.say_sample(bench.drives.axis[1]);
+    if (bench.tick({0.0, 0.0, 5.0}) != Fault::kNone) break;
+  }
+  EXPECT_LE(ticks, 3);
+  EXPECT_TRUE(bench.says("two drives have this node id")) << bench.device->fault_detail();
+  bench.expect_latched(Fault::kDriveFault);
+}
+
 }  // namespace tact::hal::cia402::cia402_faults_test

@@ -238,6 +238,21 @@ TEST(OdriveDelta, APositionThatJumpsIsNotTakenAndThriceIsALostHoming) {
   EXPECT_TRUE(bench.all_off());
 }
 
+TEST(OdriveDelta, TwoDrivesWithOneNodeIdLatch) {
+  Bench bench;
+  bench.run();
+  auto other = bench.drives.axis[1];
+  other.turns += 0.5;
+  int ticks = 1;
+  for (; ticks < 20; ++ticks) {
+    bench.drives.say_position(other);
+    if (bench.tick() != Fault::kNone) break;
+  }
+  EXPECT_LE(ticks, 5);
+  EXPECT_NE(bench.device->fault_detail().find("two drives share a node"), std::string::npos);
+  EXPECT_TRUE(bench.all_off());
+}
+
 TEST(OdriveDelta, FramesOfOtherNodesChangeNothing) {
   Bench bench;
   bench.run();
