@@ -18,8 +18,8 @@ namespace tact::firmware::loop {
 
 struct GripSettings {
   bool toggles = false;
-  double close_ratio = model::contact::ContactSettings{}.grip_close_ratio;
-  double open_ratio = model::contact::ContactSettings{}.grip_open_ratio;
+  double close_ratio = model::contact::ContactParameters{}.grip_close_ratio;
+  double open_ratio = model::contact::ContactParameters{}.grip_open_ratio;
 };
 
 class GripInput {
