@@ -14,13 +14,13 @@ namespace tact::hal::permission_test {
 
 constexpr const char* kRule = "SUBSYSTEM==\"haptics\"";
 
-TEST(Permission, ARefusalThatUdevEndsWithin200MsIsNone) {
+TEST(Permission, RefusalThatUdevEndsWithin200MsIsRetried) {
   int opens = 0;
   EXPECT_EQ(open_when_permitted([&] { return ++opens < 8 ? EACCES : 0; }), 0);
   EXPECT_EQ(opens, 8);
 }
 
-TEST(Permission, ARefusalThatLastsIsOneAndAnotherErrorIsReportedAtOnce) {
+TEST(Permission, LastingRefusalIsReportedAndOtherErrorsAreNotRetried) {
   int opens = 0;
   EXPECT_EQ(open_when_permitted([&] { return ++opens, EACCES; }), EACCES);
   EXPECT_EQ(opens, 11);

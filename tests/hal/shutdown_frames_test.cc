@@ -58,7 +58,7 @@ TEST(ShutdownFrames, AStepLeavesAloneAndAllLeaveInOrderWithoutHeap) {
   EXPECT_EQ(send_step(frames, 7), 0) << "nothing to send";
 }
 
-TEST(ShutdownFrames, AWordOfACanFdFrameLeavesWholeBesideShortOnes) {
+TEST(ShutdownFrames, CanFdFrameIsSentWholeBesideClassicFrames) {
   const Ends ends;
   ShutdownFrames frames{.fd = ends.fd[0]};
   ShutdownFrames::LongBytes one{};
@@ -72,7 +72,7 @@ TEST(ShutdownFrames, AWordOfACanFdFrameLeavesWholeBesideShortOnes) {
   EXPECT_EQ(ends.heard(), (std::vector<Bytes>{{1}}));
 }
 
-TEST(ShutdownFrames, WhatDoesNotFitIsRefused) {
+TEST(ShutdownFrames, FramesBeyondTheMaximumAreRefused) {
   ShutdownFrames frames;
   const std::vector<Bytes> many(ShutdownFrames::kMax);
   EXPECT_TRUE(frames.add_step(many));

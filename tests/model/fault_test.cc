@@ -42,7 +42,7 @@ TEST(Fault, LatchesFromOneHundred) {
   EXPECT_TRUE(latches(Fault::kDeviceLost));
 }
 
-TEST(Fault, AToolInsideAndLostContactHaveTheirWords) {
+TEST(Fault, ToolInsideContactLostAndClutchKeepNumbersAndNames) {
   EXPECT_EQ(static_cast<int>(Fault::kToolInside), 14);
   EXPECT_STREQ(describe(Fault::kToolInside).name, "inside the organ");
   EXPECT_EQ(static_cast<int>(Fault::kContactLost), 15);

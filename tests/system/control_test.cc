@@ -128,7 +128,7 @@ TEST_F(Control, RefusesWithTheReason) {
   EXPECT_EQ(report("a").at("refused_requests"), 1);
 }
 
-TEST_F(Control, OfTwoOnOneSceneWantsToKnowWhichAndAKilledOneIsNone) {
+TEST_F(Control, TwoControllersOfASceneNeedPidAndAKilledOneIsIgnored) {
   const Outcome out = in_bash(
       "start a liver.toml; a=$!; start b liver.toml; b=$!; ready a; ready b; ctl liver.toml arm\n"
       "ctl liver.toml status --pid $b; kill -KILL $a; wait $a; ctl liver.toml status\n"

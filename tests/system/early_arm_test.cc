@@ -68,7 +68,7 @@ class Arming : public Tactd {
 };
 
 // From the first instruction on: no socket yet, then refused, then the words, then armed.
-TEST_F(Arming, AnImpatientPersonGetsNoForceBeforeTheWords) {
+TEST_F(Arming, ArmRequestsBeforeTheReadyMessageGiveNoForce) {
   const Outcome out =
       run("until ctl arm; do kill -0 $tactd || break; done\n"
           "grep -q 'ready, force is off' " +

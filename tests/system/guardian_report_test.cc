@@ -16,7 +16,7 @@ TEST_F(GuardianReport, ADeviceThatCannotBeZeroedIsNamedAtEachStart) {
       << out.output;
 }
 
-TEST_F(GuardianReport, TheSimulatedDeviceHasNoneAndNeedsNone) {
+TEST_F(GuardianReport, SimulatedDeviceNeedsNoGuardian) {
   const Outcome out = tactd(kLiver + " --no-telemetry --check");
   EXPECT_EQ(out.status, 0) << out.output;
   EXPECT_FALSE(has(out, "is killed")) << out.output;

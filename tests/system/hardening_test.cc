@@ -23,14 +23,14 @@ int guards_in(const std::string& library) {
                        .output.c_str());
 }
 
-TEST(Hardening, WhatReadsTheNetworkGuardsItsStackAndItsCopies) {
+TEST(Hardening, NetworkCodeHasStackGuardsAndCheckedCopies) {
   for (const char* library : {"libtact_host_server.a", "libtact_host_igtl.a",
                               "libtact_firmware_protocol.a", "libtact_model_io.a"})
     EXPECT_GT(guards_in(library), 0) << library;
   EXPECT_NE(run_command("nm -D " + program_path("tact-view") + " | grep -c _chk@").output, "0\n");
 }
 
-TEST(Hardening, NoInstructionOfATickIsSpentOnIt) {
+TEST(Hardening, LoopAndGateCodeHasNoStackGuards) {
   for (const char* library : {"libtact_firmware_loop.a", "libtact_firmware_gate.a"})
     EXPECT_EQ(guards_in(library), 0) << library;
 }

@@ -101,7 +101,7 @@ class IgtlForces : public testing::Test {
   const std::string folder_;
 };
 
-TEST_F(IgtlForces, OfAFreeRunAreTheSameBitsWithTrackersAndWithout) {
+TEST_F(IgtlForces, FreeRunForcesAreBitEqualWithAndWithoutTrackers) {
   const auto alone = run("alone.json", " --no-telemetry");
   const Trackers trackers;
   nlohmann::json seen;

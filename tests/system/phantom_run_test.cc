@@ -43,7 +43,7 @@ class HangingLibrary : public PhantomRun {
   }
 };
 
-TEST_F(HangingLibrary, EndsTheRunWithItsWordsAndAStatus) {
+TEST_F(HangingLibrary, HangInARunEndsWithAMessageAndStatusOne) {
   const Outcome out = hangs_at("800");
   EXPECT_EQ(out.status, 1) << out.output;
   EXPECT_TRUE(has(out, "no call for more than 20 ms: the device may still push")) << out.output;

@@ -48,7 +48,7 @@ TEST_F(Scarce, AFileSizeLimitEndsTheRecordAndNotTheLoop) {
   EXPECT_GT(report().at("ticks"), 100) << out.output;
 }
 
-TEST_F(Scarce, WhatIsReportedAsKeptIsInTheFile) {
+TEST_F(Scarce, TicksReportedAsKeptAreInTheFile) {
   for (const char* limit : {"0", "4", "100", "300"}) {
     const Outcome out = run_command(
         "cd " + folder + "; rm -f log; (ulimit -f " + limit + "; exec " + program_path("tactd") +
@@ -76,7 +76,7 @@ TEST_F(Scarce, AFullDiskEndsTheRecordAndNotTheLoop) {
   EXPECT_GT(report().at("ticks"), 100) << out.output;
 }
 
-TEST_F(Scarce, WithoutAThreadItEndsBeforeTheLoopAndSaysSo) {
+TEST_F(Scarce, ThreadThatCannotStartEndsTheProgramBeforeTheLoop) {
   const std::string start = program_path("tactd") + " " + kLiver + " --seconds 1 --socket " +
                             in_folder("t.sock") + " --black-box " + in_folder("kept");
   // Root has no such limit.

@@ -19,7 +19,7 @@ std::vector<pid_t> threads_of(pid_t process) {
   return out;
 }
 
-TEST_F(Signals, NoneOfSixtyFourToAnyThreadMattersToTheLoop) {
+TEST_F(Signals, SignalsToAnyThreadDoNotDisturbTheLoop) {
   const StartedProgram tactd("tactd", {kLiver, "--socket", in_folder("t.sock"), "--set",
                                        "rate_Hz=500", "--black-box", in_folder("kept")});
   const std::string loop = loop_thread(tactd.process(), 200);

@@ -176,7 +176,7 @@ class Forces : public ::testing::Test {
   pid_t viewer_ = -1;
 };
 
-TEST_F(Forces, OfAFreeRunAreTheSameBitsWithAndWithoutTracking) {
+TEST_F(Forces, FreeRunForcesAreBitEqualWithAndWithoutTracking) {
   // Two minutes of simulated time are seconds of a real one: the viewer meets it.
   const std::string run = kLiver + " --free-run --seconds 120";
   tactd(run + " --no-telemetry --json " + in("alone.json"));
@@ -211,7 +211,7 @@ TEST_F(Forces, AreTheSameInEveryTickOfTheLogs) {
   EXPECT_GT(std::set(alone.begin(), alone.end()).size(), 1000u);  // and they are forces
 }
 
-TEST_F(Forces, OfALiveRunAreThoseOfItsReplay) {
+TEST_F(Forces, LiveRunForcesAreBitEqualInTheReplay) {
   // What a live run meets depends on the clock; what it answers must depend on nothing else.
   start_viewer("view.tact");
   tactd(kLiver + " --seconds 3 --record " + in("live.log"));
@@ -220,7 +220,7 @@ TEST_F(Forces, OfALiveRunAreThoseOfItsReplay) {
   tactd(kLiver + " --replay " + in("live.log"));
 }
 
-TEST_F(Forces, OfALiveRunAreThoseOfItsReplayWhileTheTrackerIsInTrouble) {
+TEST_F(Forces, LiveRunForcesWithAFaultyTrackerAreBitEqualInTheReplay) {
   write_troubled();
   start_viewer("view.tact", in(kTroubled));
   tactd(kMaintenance + " --seconds 4.5 --record " + in("live.log"));
@@ -232,7 +232,7 @@ TEST_F(Forces, OfALiveRunAreThoseOfItsReplayWhileTheTrackerIsInTrouble) {
   EXPECT_GT(std::set(live.begin(), live.end()).size(), 1000u);
 }
 
-TEST_F(Forces, OfAFreeRunAreTheSameBitsWhileTheTrackerIsInTrouble) {
+TEST_F(Forces, FreeRunForcesAreBitEqualWithAFaultyTracker) {
   // The trouble comes in time of the wall's clock: a quarter of an hour is seconds of it.
   const std::string run = kMaintenance + " --set telemetry.frame_rate_Hz=1 --free-run --seconds ";
   write_troubled();

@@ -67,7 +67,7 @@ class ViewerUser : public Tactd {
   }
 };
 
-TEST_F(ViewerUser, LooksAndAStrangerDoesNot) {
+TEST_F(ViewerUser, ViewerUserSeesFramesAndOtherUsersDoNot) {
   const Outcome out = in_bash(
       "stat -c 'telemetry %U %G %a' run/tact/telemetry.sock\n"
       "look_until_seen viewer \"$as_viewer\" --tactd-user daemon\n"

@@ -12,7 +12,7 @@ namespace tact::tick_bench::tick_bench_test {
 
 const std::string kScenes = TACT_SOURCE_DIR "/model/scenes/";
 
-TEST(TickBench, MostTicksOfTheShippedLiverTouch) {
+TEST(TickBench, MostTicksOfTheShippedLiverAreInContact) {
   const tests::TempDirectory temp;
   const tests::Ran ran = tests::run_apart(
       temp, "tact-tick-bench",
@@ -32,7 +32,7 @@ TEST(TickBench, MostTicksOfTheShippedLiverTouch) {
   EXPECT_LT(one["work_J"], hot["work_J"]) << "one of two jaws";
 }
 
-TEST(TickBench, RefusesWhatIsNoSceneInOneLine) {
+TEST(TickBench, InvalidSceneIsRefusedInOneLine) {
   for (const std::string& scene :
        {std::string("/nowhere.toml"), std::string(), kScenes + "liver.toml no_key=1"}) {
     const tests::TempDirectory temp;

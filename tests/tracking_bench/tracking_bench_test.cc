@@ -54,7 +54,7 @@ TEST(TrackingBench, CcdHoldsTheToolWhereTheFormulaAloneMissesIt) {
   }
 }
 
-TEST(TrackingBench, RefusesWhatMakesNoMotionInOneLine) {
+TEST(TrackingBench, SceneWithoutMotionIsRefusedInOneLine) {
   for (const std::string& scene :
        {kScenes + "liver.toml", std::string("/nowhere.toml"), std::string()}) {
     const tests::TempDirectory temp;

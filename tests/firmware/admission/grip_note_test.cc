@@ -15,7 +15,7 @@ model::scene::Scene gripping_scene() {
   return scene;
 }
 
-TEST(GripNote, ReportsThatTheDeviceCannotWhatTheSceneAsksAndTheRemedy) {
+TEST(GripNote, GrippingSceneOnADeviceWithoutGripIsReported) {
   EXPECT_EQ(grip_note(gripping_scene(), kCannot),
             "plate.toml: this scene grips; this device cannot: connect device.lines.grip, or "
             "nothing is held, pulled or torn");

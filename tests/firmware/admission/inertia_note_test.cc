@@ -31,7 +31,7 @@ TEST(InertiaNote, ReportsOfAStrokeThatIsTooFastForALawWithoutInertia) {
   EXPECT_NE(reported(0.02), "") << "the law's own half-space";
 }
 
-TEST(InertiaNote, OfTheShippedScenesTheHeartIsPressedTooFastForItsLaw) {
+TEST(InertiaNote, OnlyTheHeartSceneIsPressedTooFastForItsLaw) {
   for (const std::string name :
        {"grasper", "gum", "heart", "liver", "liver_source", "liver_twist", "maintenance", "skin"}) {
     const auto scene =

@@ -7,7 +7,7 @@
 
 namespace tact::firmware::admission::open_organ_note_test {
 
-TEST(OpenOrganNote, ReportsTheBoundaryEdgesAndWhatHasNoForceThere) {
+TEST(OpenOrganNote, OpenOrganIsReportedWithItsBoundaryEdges) {
   const std::string note = open_organ_note(tests::make_plate_scene());  // 20 x 20 cells
   EXPECT_NE(note.find("plate.toml: the organ is open, with 80 boundary edges; beside the boundary "
                       "of an open surface there is no inside"),
@@ -15,13 +15,13 @@ TEST(OpenOrganNote, ReportsTheBoundaryEdgesAndWhatHasNoForceThere) {
       << note;
 }
 
-TEST(OpenOrganNote, AClosedOrganNeedsNone) {
+TEST(OpenOrganNote, ClosedOrganHasNoNote) {
   model::scene::Scene scene = tests::make_plate_scene();
   scene.organ_mesh = tests::make_ball(0.05, 2);
   EXPECT_EQ(open_organ_note(scene), "");
 }
 
-TEST(OpenOrganNote, NoShippedSceneNeedsOne) {
+TEST(OpenOrganNote, ShippedScenesHaveNoNote) {
   for (const std::string name :
        {"grasper", "gum", "heart", "liver", "liver_source", "liver_twist", "maintenance", "skin"}) {
     const auto scene =

@@ -20,7 +20,7 @@ TEST(ReachNote, ReportsHowFarTheNearestStrokeStaysAway) {
   EXPECT_EQ(reach_note(scene), "");
 }
 
-TEST(ReachNote, ATouchOnTheWayCounts) {
+TEST(ReachNote, ContactBetweenTwoWaypointsCountsAsReached) {
   model::scene::Scene scene = tests::make_plate_scene();
   scene.hand.path = {{.time_s = 0.0, .position_m = {-0.2, 0, 0.05}},
                      {.time_s = 1.0, .position_m = {0.2, 0, -0.05}}};

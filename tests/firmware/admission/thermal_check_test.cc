@@ -16,7 +16,7 @@ model::Limits limits(double continuous_N, double thermal_time_s) {
   return limits;
 }
 
-TEST(ThermalCheck, ADeviceThatBearsLessForLongThanTheSceneSaysNeedsTheTimeForIt) {
+TEST(ThermalCheck, LowerContinuousForceNeedsALongerThermalTime) {
   model::scene::Scene scene;
   scene.path = "mine.toml";
   scene.rate_Hz = 1000.0;

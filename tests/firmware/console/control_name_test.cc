@@ -35,7 +35,7 @@ TEST_F(ControlNames, AreFoundByTheSceneUnderAnyPath) {
   EXPECT_TRUE(find_controls(folder + "/none", scene).empty());
 }
 
-TEST_F(ControlNames, WhatDeadOnesLeftGoesAndTheLivingAndOtherFilesStay) {
+TEST_F(ControlNames, OnlySocketFilesOfDeadControllersAreRemoved) {
   const std::string dead = control_path(folder, "a.toml", 7), file = folder + "/control-x.sock.txt";
   touch_file(file);
   auto living = ControlSocket::open(control_path(folder, "a.toml", 8));

@@ -44,7 +44,7 @@ class Control : public testing::Test {
   std::unique_ptr<ControlSocket> socket;
 };
 
-TEST_F(Control, AWordGetsOneMessage) {
+TEST_F(Control, EachCommandGetsOneAnswer) {
   Answer answer;
   std::thread person([&] {
     auto got = ask_tactd({.folder = folder, .scene_path = "liver.toml", .word = "arm"});
@@ -71,7 +71,7 @@ TEST_F(Control, AClientThatLeavesAtOnceIsAnsweredAndHarmsNothing) {
   EXPECT_FALSE(socket->next());
 }
 
-TEST_F(Control, SilentOnesMakeRoomAndHoldNothingUp) {
+TEST_F(Control, SilentClientsDoNotBlockARequest) {
   std::vector<int> silent;
   for (int i = 0; i < 100; ++i) {
     silent.push_back(connect_here());
@@ -82,7 +82,7 @@ TEST_F(Control, SilentOnesMakeRoomAndHoldNothingUp) {
   EXPECT_FALSE(socket->next());
 }
 
-TEST_F(Control, AnEmptyOrLongWordIsNoneThatIsKnown) {
+TEST_F(Control, EmptyCommandIsDroppedAndALongOneIsCutToTheLimit) {
   EXPECT_FALSE(ask(""));
   const auto request = ask(std::string(5000, 'x').c_str());
   ASSERT_TRUE(request);
@@ -127,7 +127,7 @@ TEST_F(Control, AStrangerIsRefused) {
   EXPECT_FALSE(socket->next());
 }
 
-TEST_F(Control, ARefusedUserLearnsWhoseItIs) {
+TEST_F(Control, RefusedUserIsShownTheOwnerOfTheProcess) {
   if (geteuid() != 0) GTEST_SKIP() << "only root can play a stranger";
   const auto ask_as_stranger = [this](const std::string& wanted) {
     if (setuid(65'534) != 0) _exit(9);
@@ -167,7 +167,7 @@ TEST_F(Control, AFileThatADeadOneLeftIsReplaced) {
   EXPECT_TRUE(ask("status"));
 }
 
-TEST_F(Control, ClientsLearnOfNoneOfSeveralAndOfOneThatIsSilent) {
+TEST_F(Control, ClientReportsMissingSeveralAndSilentControllers) {
   const ControlQuestion question{.folder = folder, .scene_path = "liver.toml", .word = "arm"};
   ControlQuestion other = question;
   other.scene_path = "skin.toml";

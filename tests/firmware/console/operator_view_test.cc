@@ -67,7 +67,7 @@ TEST_F(View, ALineThatTakesTheForceWithoutAFaultIsReportedOnceEachTime) {
   EXPECT_NE(reported(armed), "");
 }
 
-TEST_F(View, FaultsOfTheLinesAreWordedByTheLines) {
+TEST_F(View, FaultsOfTheLinesAreExplainedByTheLines) {
   device.words = "all is well here";
   for (const model::Fault fault :
        {model::Fault::kEmergencyStop, model::Fault::kLinesDiffer, model::Fault::kLinesLost,
@@ -127,7 +127,7 @@ TEST_F(View, AFaultThatComesAgainAfterAResetIsReportedAgain) {
   EXPECT_NE(reported(frame(loop::State::kStopped, model::Fault::kEmergencyStop)), "");
 }
 
-TEST_F(View, WhatADeviceWaitsForIsReportedOnceUntilItIsReady) {
+TEST_F(View, ReasonOfAnUnreadyDeviceIsReportedOnce) {
   device.words = "not homed: pull the grip out, then push it in";
   EXPECT_NE(reported(frame(loop::State::kOff, model::Fault::kNone)).find("pull the grip out"),
             std::string::npos);
@@ -136,7 +136,7 @@ TEST_F(View, WhatADeviceWaitsForIsReportedOnceUntilItIsReady) {
       << "ready: nothing to wait for";
 }
 
-TEST(Sayings, WhatCannotBeSaidEndsNothing) {
+TEST(Sayings, UnwritableTerminalDoesNotEndTheRun) {
   const std::string report = testing::TempDir() + "unheard.json";
   const tests::Outcome outcome =
       tests::run_command(tests::program_path("tactd") +

@@ -102,7 +102,7 @@ class Requests : public testing::Test {
   std::unique_ptr<RequestHandler> request_handler;
 };
 
-TEST_F(Requests, ArmsOnlyAfterTheWordsThatItMayBe) {
+TEST_F(Requests, ArmsOnlyAfterTheReadyMessage) {
   EXPECT_EQ(refusal("arm"), "puppet: not armed: the device is not ready yet");
   show(State::kOff);
   EXPECT_NE(refusal("arm").find("not armed"), std::string::npos);
@@ -135,7 +135,7 @@ TEST_F(Requests, AnswersByTheLoopsOwnCountersWithTheirAge) {
   EXPECT_NE(refusal("status").find("stopped, 0.000 N, fault 120"), std::string::npos);
 }
 
-TEST_F(Requests, ARequestThatWaitsWhileTheWordsArePrintedIsRefused) {
+TEST_F(Requests, RequestBeforeTheReadyMessageIsRefused) {
   const std::array<int, 3> early{say("arm"), say("arm"), say("reset")};
   show(State::kReady);
   request_handler->obey(0);
@@ -145,7 +145,7 @@ TEST_F(Requests, ARequestThatWaitsWhileTheWordsArePrintedIsRefused) {
   EXPECT_EQ(requests.refused.load(), 3u);
 }
 
-TEST_F(Requests, ResetsAStopAloneAndTheWordsComeAgainBeforeTheNextArming) {
+TEST_F(Requests, ResetOnlyAfterAStopAndArmingNeedsANewReadyMessage) {
   show(State::kReady);
   EXPECT_EQ(refusal("reset"), "puppet: not reset: it is ready, not stopped");
   show(State::kArmed);
@@ -161,7 +161,7 @@ TEST_F(Requests, ResetsAStopAloneAndTheWordsComeAgainBeforeTheNextArming) {
   EXPECT_EQ(edges.back(), "arm");
 }
 
-TEST_F(Requests, WhatTheLoopRefusesIsTheAnswer) {
+TEST_F(Requests, RefusalOfTheLoopIsTheAnswerToTheRequest) {
   refuses = true;
   show(State::kReady);
   EXPECT_NE(refusal("arm").find("puppet: not armed: no power"), std::string::npos);
@@ -222,7 +222,7 @@ TEST_F(Requests, AStopThatIsDisarmedStillHasToBeReset) {
   EXPECT_EQ(ask("disarm").message, "puppet: no force; it has stopped: reset it, then arm it");
 }
 
-TEST_F(Requests, WhatWouldArmItselfWaitsForAPersonOnceItIsDisarmed) {
+TEST_F(Requests, SelfArmingDeviceNeedsAnArmRequestAfterADisarm) {
   OperatorView itself(device, lines, true);
   request_handler = make_handler(itself, tick);
   show(State::kReady);
@@ -236,7 +236,7 @@ TEST_F(Requests, WhatWouldArmItselfWaitsForAPersonOnceItIsDisarmed) {
   EXPECT_TRUE(ask("arm").done);
 }
 
-TEST_F(Requests, StopsAtAnyTimeEvenInTheMomentOfTheWords) {
+TEST_F(Requests, StopIsExecutedEvenDuringTheReadyMessage) {
   const int fd = say("stop");
   show(State::kReady);
   EXPECT_TRUE(hear(fd).done);

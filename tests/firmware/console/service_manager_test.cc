@@ -42,7 +42,7 @@ class Service : public testing::Test {
   int listener_ = -1;
 };
 
-TEST_F(Service, IsReadyOnceItMayBeArmedAndSaysSoOnce) {
+TEST_F(Service, ReadinessIsReportedOnceWhenArmingIsAllowed) {
   ServiceManager manager;
   manager.report({.now_ns = 0, .may_be_armed = false, .ticks = 0, .status = "off"});
   EXPECT_EQ(heard(), "STATUS=off\n");
@@ -78,7 +78,7 @@ TEST_F(Service, SaysWhenItStops) {
   EXPECT_EQ(heard(), "STOPPING=1\n");
 }
 
-TEST_F(Service, AManagerThatIsGoneOrWasNeverThereIsNoTrouble) {
+TEST_F(Service, MissingServiceManagerIsIgnored) {
   std::filesystem::remove(path_);
   for (const char* path : {path_.c_str(), "", "/none/such", "@tact-none"}) {
     setenv("NOTIFY_SOCKET", path, 1);

@@ -51,7 +51,7 @@ TEST(GateProperties, EveryRuleHoldsForMoreThanAMillionShortSequences) {
   run_all(share_of(150'000, 150'000), share_of(12'000, 12'000), 8);
 }
 
-TEST(GateProperties, WhoFleesWithTheForceGetsNoMoreThanTheBudgetAndMostOfIt) {
+TEST(GateProperties, RetreatingHandGetsMostOfTheEnergyBudgetAndNotMore) {
   GateRules rules;
   EXPECT_EQ(run(InputStrategy::kFollow, {}, rules, 50, 2000), "");
   EXPECT_GT(rules.max_given_energy_J(), 0.5 * kRulesLimits.energy_J);
@@ -64,7 +64,7 @@ TEST(GateProperties, EnergyBoundHoldsWhenHandReverses) {
   EXPECT_GT(rules.max_given_energy_J(), 0.5 * kRulesLimits.energy_J);
 }
 
-TEST(GateProperties, WhoPushesForEverComesToTheContinuousForceFromBelow) {
+TEST(GateProperties, EndlessPushEndsAtTheContinuousForce) {
   GateRules rules;
   RuleTick push;
   push.gate.wanted.force_N = {50, 0, 0};
@@ -75,7 +75,7 @@ TEST(GateProperties, WhoPushesForEverComesToTheContinuousForceFromBelow) {
   EXPECT_EQ(rules.limited().acting, model::Fault::kContinuousLimited);
 }
 
-TEST(GateProperties, WhoTwistsForEverComesToTheContinuousTorqueFromBelow) {
+TEST(GateProperties, EndlessTwistEndsAtTheContinuousTorque) {
   GateRules rules;
   RuleTick twist;
   twist.gate.wanted.torque_Nm = {0, 1, 0};

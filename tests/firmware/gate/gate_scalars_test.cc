@@ -101,7 +101,7 @@ TEST(GateScalars, ATurnWithAShrinkingRadiusKeepsBoth) {
   EXPECT_NEAR(norm(v - before), 1.0, 1e-12);
 }
 
-TEST(GateScalars, WhatIsTakenAlongAMotionIsTheSurplusAndNoMore) {
+TEST(GateScalars, OnlyTheEnergySurplusAlongTheMotionIsRemoved) {
   // 3 N and 4 mm are 12 mJ, 5 mJ of them may stay: 1.25 N along x.
   Wrench w{{3, 7, 0}, {}};
   EXPECT_TRUE(limit_surplus(w, {0.004, 0, 0}, {}, 0.005));

@@ -34,7 +34,7 @@ std::uint64_t count(const Gate& gate, Stage stage) {
   return gate.counters()[static_cast<std::size_t>(stage)];
 }
 
-TEST(Gate, PassesASmallSteadyForceUntouched) {
+TEST(Gate, PassesASmallSteadyForceUnchanged) {
   Gate gate = open_gate({0.1, -0.2, 0.3});
   const LimitedForce v = gate.limit(wanting({0.1, -0.2, 0.3}));
   EXPECT_EQ(v.wrench.force_N, (Vec3{0.1, -0.2, 0.3}));

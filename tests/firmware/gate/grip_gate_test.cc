@@ -129,7 +129,7 @@ TEST_F(GripGateTest, NeedsNoHeap) {
   EXPECT_EQ(guard.calls(), 0u);
 }
 
-TEST(GripGate, IsNotThereWhereNoForceMayBe) {
+TEST(GripGate, NoGripGateWhereTheGripOrForceLimitIsZero) {
   model::Limits none = limits();
   none.grip_force_N = 0.0;
   EXPECT_FALSE(GripGate::make(none, kPeriod_s, 1.0));

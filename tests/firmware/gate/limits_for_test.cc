@@ -85,7 +85,7 @@ TEST(LimitsFor, ALimitThatIsNoNumberIsZero) {
   EXPECT_EQ(limits_for(broken, device(1.0)).force_N, 0.0);
 }
 
-TEST(LimitsFor, TheRestIsTheScenes) {
+TEST(LimitsFor, SlewLimitIsThatOfTheScene) {
   model::Limits other = scene();
   other.slew_N_per_s = 123.0;
   EXPECT_DOUBLE_EQ(limits_for(other, device(0.5)).slew_N_per_s, 123.0);

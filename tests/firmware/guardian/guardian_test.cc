@@ -150,7 +150,7 @@ TEST(Guardian, ACrashLeavesNoCoreToWaitFor) {
             "1\n");
 }
 
-TEST(Guardian, ItCountsUnlessItIsHeld) {
+TEST(Guardian, CounterRunsUntilTheGuardianIsStopped) {
   const Wire wire;
   const auto guardian = start(wire.frames);
   ASSERT_TRUE(guardian);
@@ -252,7 +252,7 @@ TEST(Guardian, AMissingProgramIsRefusedWithTheRemedy) {
       << guardian.error().message;
 }
 
-TEST(Guardian, StartedByAPersonItRefuses) {
+TEST(Guardian, StartFromATerminalIsRefused) {
   const tests::Outcome outcome = tests::run_program("tact-guardian", "</dev/null");
   EXPECT_EQ(outcome.status, 2);
   EXPECT_NE(outcome.output.find("tactd starts this program"), std::string::npos) << outcome.output;

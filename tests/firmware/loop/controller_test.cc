@@ -242,7 +242,7 @@ TEST_F(ControllerTest, TwentyLateTicksInARowLatch) {
   EXPECT_EQ(tick(1).fault, Fault::kLoopLate);
 }
 
-TEST_F(ControllerTest, WithoutHardRealTimeAStallIsBorneAndOnlyTheRowLatches) {
+TEST_F(ControllerTest, WithoutHardRealTimeOnlyAHundredLateTicksInARowLatch) {
   use(false);
   press();
   EXPECT_EQ(tick(299).fault, Fault::kNone);

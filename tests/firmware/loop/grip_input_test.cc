@@ -33,7 +33,7 @@ TEST(GripInput, AHalfPressTogglesNothing) {
             (std::vector<double>{0, 0, 0, 1, 1, 1, 1, 0}));
 }
 
-TEST(GripInput, WhatIsPressedAtTheStartIsNoPress) {
+TEST(GripInput, SwitchPressedAtTheStartDoesNotToggle) {
   EXPECT_EQ(ratios(GripInput(kToggle), {1, 1, 0, 1}), (std::vector<double>{0, 0, 0, 1}));
 }
 

@@ -52,7 +52,7 @@ TEST(JawForce, AToolWithoutTwoSpheresHasNoJaws) {
   EXPECT_EQ(jaw_force_N(three, 1.0), 0.0);
 }
 
-TEST(JawForce, AForceThatIsNoNumberStaysOne) {
+TEST(JawForce, NanForceStaysNan) {
   const std::array jaws{jaw(1.0), jaw(std::nan(""))};
   EXPECT_TRUE(std::isnan(jaw_force_N(jaws, 1.0)));
 }

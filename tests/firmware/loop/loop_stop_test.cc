@@ -179,7 +179,7 @@ TEST_F(LoopStop, APersonsRequestThatFindsNoPowerIsRefusedAndNotKept) {
   EXPECT_EQ(requests.refused.load(), 1u);
 }
 
-TEST_F(LoopStop, WhatArmsItselfAtTheStartDoesNotAfterAStop) {
+TEST_F(LoopStop, ArmingAtTheStartIsNotRepeatedAfterAStop) {
   requests.arm_at_start.store(true);
   lines.fault = Fault::kEmergencyStop;
   run_ticks(3);

@@ -64,7 +64,7 @@ TEST(Chunks, AByteFlippedAnywhereLosesItsChunkAlone) {
   }
 }
 
-TEST(Chunks, CutAnywhereWhatIsBeforeIsWhole) {
+TEST(Chunks, TruncationKeepsEveryWholeChunkBeforeTheCut) {
   std::string bytes;
   std::vector<std::size_t> ends;
   for (std::size_t i = 0; i < 6; ++i) {

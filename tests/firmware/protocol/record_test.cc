@@ -93,7 +93,7 @@ Record random_record(std::mt19937& random) {
   return out;
 }
 
-TEST(Records, WhatIsPackedComesBackForAnyBytes) {
+TEST(Records, PackAndUnpackRestoreRandomRecords) {
   std::mt19937 random(1);
   const auto unpacker = Unpacker::make(json_of(LoggedTick::fields()), LoggedTick::fields());
   ASSERT_TRUE(unpacker);
@@ -108,7 +108,7 @@ TEST(Records, WhatIsPackedComesBackForAnyBytes) {
   }
 }
 
-TEST(Records, OfAnotherProgramFieldsAreFoundByName) {
+TEST(Records, FieldsOfAnotherVersionAreFoundByName) {
   Frame frame;
   frame.tick = 7;
   frame.contact[1].depth_m = 0.25f;

@@ -116,7 +116,7 @@ TEST(ClosedLoop, ForcepsHeldFarFromTheirJawsRenderATorque) {
 
 class EveryScene : public testing::TestWithParam<const char*> {};
 
-TEST_P(EveryScene, IsTouchedWithinItsLimitsAndLeavesTheHeapAlone) {
+TEST_P(EveryScene, ContactStaysWithinTheLimitsAndLeavesTheHeapAlone) {
   const model::scene::Scene scene = tests::shipped_scene(GetParam());
   const Summary s = run(scene, 9.0);  // the gum is cut from 6 s on
   EXPECT_EQ(s.fault, model::Fault::kNone);

@@ -148,7 +148,7 @@ TEST_F(PausedStrokes, AHundredPausesLeaveTheForceOfEveryStrokeAndTheTear) {
   }
 }
 
-TEST_F(PausedStrokes, WhatIsHeldIsHeldAndPulledAfterAPauseOfNineteenPeriods) {
+TEST_F(PausedStrokes, HeldTissueKeepsItsPullAfterAPauseOf19Periods) {
   const int middle = (starts(kHoldThePull) + starts(kHoldThePull + 1)) / 2;
   const std::vector<RenderedTick> paused = run(scene_, {{.at_period = middle, .skipped = 19}});
   expect_undisturbed(paused);

@@ -186,7 +186,7 @@ TEST_F(ReplayTest, ATornLogIsReplayedUpToItsTear) {
   EXPECT_EQ(outcome->damage.find("the file is cut off at byte "), 0u);
 }
 
-TEST_F(ReplayTest, WhatIsNoLogIsRefused) {
+TEST_F(ReplayTest, ForeignOrMissingFileIsRefused) {
   std::ofstream(path) << "hello, this is no log at all, but it is long enough for a header, surely";
   EXPECT_FALSE(replay(path, scene, *tissue));
   EXPECT_FALSE(replay("/nowhere/at/all", scene, *tissue));

@@ -176,7 +176,7 @@ TEST_F(MonitoredLoop, ABusyCallThatNeverReturnsLosesTheEnableLine) {
   EXPECT_EQ(device.last, model::Wrench{});
 }
 
-TEST(Runaway, AThreadThatSleepsNowAndThenIsNone) {
+TEST(Runaway, ThreadThatSleepsBrieflyIsNotARunaway) {
   loop::Requests requests;
   const RunawayGuard guard(requests, 20'000);
   std::thread([] {

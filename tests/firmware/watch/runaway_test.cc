@@ -48,7 +48,7 @@ TEST(RttimeLimit, IsLiftedWhereTheSessionMayRaiseIt) {
   EXPECT_EXIT(lifted(), testing::ExitedWithCode(0), "");
 }
 
-TEST(RttimeLimit, IsReportedWithItsNumberAndRaisedAsFarAsItGoesWhereItStays) {
+TEST(RttimeLimit, LimitThatCannotBeLiftedIsRaisedToTheMaximumAndReported) {
   const auto reported = [] {
     limit_to(kShort_us / 2, kShort_us);
     drop_the_right_to_raise_limits();
@@ -64,7 +64,7 @@ TEST(RttimeLimit, IsReportedWithItsNumberAndRaisedAsFarAsItGoesWhereItStays) {
   EXPECT_EXIT(reported(), testing::ExitedWithCode(0), "");
 }
 
-TEST(RttimeLimit, OfNoSessionIsLeftAlone) {
+TEST(RttimeLimit, UnlimitedSessionIsLeftAlone) {
   const auto none = [] {
     if (limit_now_us() != RLIM_INFINITY) limit_to(RLIM_INFINITY, RLIM_INFINITY);
     leave(lift_time_limits().empty() && limit_now_us() == RLIM_INFINITY);

@@ -59,7 +59,7 @@ TEST(CanBus, MoreThanOneReadTakesIsLeftForTheNextAndReported) {
   EXPECT_EQ(heard, 70u);
 }
 
-TEST(CanBus, AFrameThatCannotBeIsAMissedCycleAndTheRestGoes) {
+TEST(CanBus, InvalidFrameIsAMissedCycleAndTheOtherFramesAreSent) {
   Bus b;
   b.bus->push(frame(1));
   b.bus->push(std::nullopt);  // such as a torque that is no number
@@ -117,7 +117,7 @@ TEST(CanBus, APeerThatIsGoneIsABusThatIsDown) {
       << can_bus_fault_detail(b.bus->cause(), "can3");
 }
 
-TEST(CanBus, WhatIsNoFrameIsCountedAndDropped) {
+TEST(CanBus, UnreadableFramesAreCountedAndDropped) {
   Bus b;
   CanFrameBytes extended{};
   extended[3] = 0x80;

@@ -136,7 +136,7 @@ TEST(CanDelta, NoTorqueIsEverAboveTheLimitOfAnArm) {
       EXPECT_LE(std::abs(torque_Nm), 0.03 + 1e-12);
 }
 
-TEST(CanDelta, WithoutAPoseThereIsNoTorqueAndWithoutANumberNoForce) {
+TEST(CanDelta, MissingPoseGivesZeroTorqueAndNonFiniteForceGravityOnly) {
   const auto settings = absolute_settings();
   CanDelta delta(settings.of<DeltaSettings>(), settings.of<CanSettings>());
   EXPECT_EQ(delta.motor_torques_Nm({1.0, 1.0, 1.0}), delta::Joints{});
@@ -147,7 +147,7 @@ TEST(CanDelta, WithoutAPoseThereIsNoTorqueAndWithoutANumberNoForce) {
     EXPECT_EQ(delta.motor_torques_Nm({0.0, bad, 0.0}), delta.motor_torques_Nm({}));
 }
 
-TEST(CanDelta, AnglesThatCannotBeLoseTheHomingAndTouchNothing) {
+TEST(CanDelta, AnglesWithoutAPoseLoseTheHomingAndKeepTheLastPose) {
   const auto settings = absolute_settings();
   CanDelta delta(settings.of<DeltaSettings>(), settings.of<CanSettings>());
   Tool tool;
@@ -199,7 +199,7 @@ TEST(CanDelta, VelocityAfterAGapIsThatOfTheGap) {
   EXPECT_LE(norm(tool.velocity_mps), 1.5 * mean_mps);
 }
 
-TEST(CanDelta, ReportsWhatTheDeviceIsAtTheTool) {
+TEST(CanDelta, ReportsForceLimitDelayAndPositionStepAtTheTool) {
   const auto settings = absolute_settings();
   const auto info = CanDelta(settings.of<DeltaSettings>(), settings.of<CanSettings>())
                         .info("x", 100'000.0, 1.5e-3);

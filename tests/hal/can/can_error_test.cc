@@ -26,7 +26,7 @@ bool is_bus_gone(std::uint32_t classes, std::uint8_t controller = 0) {
   return decode_can_error(error_frame(classes, controller))->is_bus_gone();
 }
 
-TEST(CanError, TheBusIsGoneByBusOffRestartPassiveAndNothingElse) {
+TEST(CanError, OnlyBusOffRestartAndErrorPassiveMeanALostBus) {
   for (std::uint32_t classes = 1; classes <= 0x7FF; ++classes) {
     for (const unsigned state :
          {0x00u, 0x01u, 0x02u, 0x04u, 0x08u, 0x10u, 0x20u, 0x40u, 0x80u, 0x30u, 0x7Fu, 0x4Fu}) {
@@ -38,13 +38,13 @@ TEST(CanError, TheBusIsGoneByBusOffRestartPassiveAndNothingElse) {
   }
 }
 
-TEST(CanError, DataOfAClassThatIsNotSetIsNotBelieved) {
+TEST(CanError, ControllerDataIsIgnoredUnlessItsErrorClassIsSet) {
   const auto quiet = decode_can_error(error_frame(0x002, 0x30));
   ASSERT_TRUE(quiet);
   EXPECT_EQ(quiet->controller, 0);
 }
 
-TEST(CanError, WhatIsNoErrorFrameIsNotRead) {
+TEST(CanError, FramesOtherThanErrorsAreIgnored) {
   CanFrameBytes bytes = error_frame(0x040);
   ASSERT_TRUE(decode_can_error(bytes));
   EXPECT_FALSE(decode_can_error(std::span(bytes).first(15)));

@@ -32,7 +32,7 @@ TEST(CanFdFrame, PackingUndoesUnpackingForEveryLengthAndBothKindsOfIdentifier) {
   EXPECT_FALSE(can_fd_length(65));
 }
 
-TEST(CanFdFrame, WhatCannotBeOnTheBusIsNeitherPackedNorRead) {
+TEST(CanFdFrame, InvalidLengthsIdentifiersAndFlagsAreRefused) {
   for (const int cannot_be : {9, 11, 13, 33, 63, 65, 255}) {
     const auto length = static_cast<std::uint8_t>(cannot_be);
     CanFdFrame frame{.id = 1, .length = length, .data = {}};
@@ -94,7 +94,7 @@ TEST(CanFdBus, FramesOf64BytesPassBothWaysInOneCallWithoutHeap) {
   EXPECT_EQ(b.bus->counts().missed_cycles, 0u);
 }
 
-TEST(CanFdBus, AnErrorFrameIsJudgedThereToo) {
+TEST(CanFdBus, BusOffErrorFrameLatchesOnACanFdBus) {
   Bus b;
   b.wire.say(frame_of(1, 64));  // its bytes must not stay behind in the shorter ones
   b.bus->receive();

@@ -33,7 +33,7 @@ TEST(CanFrame, PackingUndoesUnpackingForEveryIdentifierAndLength) {
   }
 }
 
-TEST(CanFrame, WhatCannotBeOnAnElevenBitBusIsNotPacked) {
+TEST(CanFrame, IdentifiersAbove7FFAndLengthsAbove8AreRefused) {
   CanFrame frame = kTorque;
   frame.id = 0x800;
   EXPECT_FALSE(pack_can_frame(frame));

@@ -36,7 +36,7 @@ TEST(CanLock, OnlyOneGivesSyncOnABus) {
   EXPECT_EQ(message_of(lock_drives(drives(4), false)), "");
 }
 
-TEST(CanLock, AnInterfaceThatIsNotThereIsNotItsMatter) {
+TEST(CanLock, MissingInterfaceIsNotReportedByTheLock) {
   CanSettings settings = drives(1);
   settings.interface = "can-none";
   EXPECT_EQ(message_of(lock_drives(settings, true)), "");

@@ -35,7 +35,7 @@ class RandomDrive {
   std::array<double, 2> before_{};
 };
 
-TEST(ExcessTorque, IsNoneOfADriveThatFollowsLateOrGivesLess) {
+TEST(ExcessTorque, DelayedOrReducedTorqueHasNoExcess) {
   for (unsigned seed = 0; seed < 50; ++seed) {
     RandomDrive drive(seed);
     ExcessTorque excess;
@@ -47,7 +47,7 @@ TEST(ExcessTorque, IsNoneOfADriveThatFollowsLateOrGivesLess) {
   }
 }
 
-TEST(ExcessTorque, OfTwiceTheLimitIsFoundIn50SamplesOnAnyPath) {
+TEST(ExcessTorque, TwiceTheLimitLatchesWithin50Samples) {
   for (unsigned seed = 0; seed < 50; ++seed) {
     RandomDrive drive(seed);
     ExcessTorque excess;
@@ -60,7 +60,7 @@ TEST(ExcessTorque, OfTwiceTheLimitIsFoundIn50SamplesOnAnyPath) {
   }
 }
 
-TEST(ExcessTorque, BeginsAgainWithPowerAndIsExceededByNoNumber) {
+TEST(ExcessTorque, MeanRestartsWithPowerAndNanExceedsTheLimit) {
   ExcessTorque excess;
   for (int i = 0; i < 100; ++i) excess.measure(kMax_Nm, true);
   EXPECT_TRUE(excess.exceeds(kLimit_Nm));

@@ -27,7 +27,7 @@ TEST(StampAge, IsTheTimeSinceTheStampWhileTheClockIsNotSet) {
   EXPECT_EQ(clocks.stamps.of(clocks.wall_ns + 1), 0) << "a stamp of the future is fresh";
 }
 
-TEST(StampAge, OfAFrameBesideAStepIsTrueOnBothSides) {
+TEST(StampAge, AgeIsExactBeforeAndAfterAClockStep) {
   for (const std::int64_t step_ns : {7 * kYear, -7 * kYear, 40 * kMs, -40 * kMs}) {
     Clocks clocks;
     clocks.pass(kMs / 4);
@@ -59,7 +59,7 @@ TEST(StampAge, AnOldFrameIsNeverFreshBesideAStep) {
   }
 }
 
-TEST(StampAge, WhatAFullReadLeftBehindIsStillJudgedByTheClockOfItsTime) {
+TEST(StampAge, FramesLeftByAFullReadKeepTheClockOfTheirTime) {
   Clocks clocks;
   clocks.pass(20 * kMs);
   const std::int64_t stamp_ns = clocks.wall_ns;

@@ -43,7 +43,7 @@ TEST(CanopenFrames, TheHostsHeartbeatReadsBackInEveryState) {
   }
 }
 
-TEST(CanopenFrames, AHeartbeatOfAStateThatDoesNotExistIsNone) {
+TEST(CanopenFrames, HeartbeatWithAnUnknownStateIsIgnored) {
   int known = 0;
   for (int byte = 0; byte < 256; ++byte)
     if (decode_canopen_heartbeat(from(0x700, 3, {static_cast<std::uint8_t>(byte)}), 3)) ++known;

@@ -95,7 +95,7 @@ TEST(Cia402BringUp, NodeGuardingMayBeReadOnlyUnlessItStaysOn) {
       "with heartbeat: set both to 0 with its vendor's program. It refuses setting 0x100D:00");
 }
 
-TEST(Cia402BringUp, NodeGuardingThatCannotBeReadIsNotTakenForNone) {
+TEST(Cia402BringUp, UnreadableNodeGuardingIsRefusedAsStillOn) {
   Bench bench;
   auto& axis = bench.drives.axis[1];
   axis.written = {{0x100C00, 100}, {0x100D00, 3}};

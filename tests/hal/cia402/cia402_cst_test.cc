@@ -32,7 +32,7 @@ TEST(Cia402Cst, ATorqueTooLargeForItsFieldKeepsItsSign) {
   EXPECT_EQ(cst_torque_permille(1e308, 1e-308), 32767) << "the quotient is infinite, not none";
 }
 
-TEST(Cia402Cst, ANumberThatIsNoneIsNeverSent) {
+TEST(Cia402Cst, NonFiniteTorqueOrRatedTorqueIsNeverSent) {
   for (const double bad : {kNan, kInf, -kInf}) {
     EXPECT_FALSE(cst_torque_permille(bad, 1.0));
     EXPECT_FALSE(cst_torque_permille(0.1, bad));
@@ -115,7 +115,7 @@ TEST(Cia402Cst, AMessageIsOffWhileItsMappingChangesAndOnAfterwards) {
   }
 }
 
-TEST(Cia402Cst, WhatIsWantedIsWritten) {
+TEST(Cia402Cst, ConfigurationWritesHeartbeatsPeriodAndTransmissionType) {
   const auto writes = cst_configuration(
       2, {.host_node = 100, .host_timeout_ms = 30, .drive_heartbeat_ms = 15, .period_ms = 4});
   ASSERT_TRUE(writes);

@@ -27,7 +27,7 @@ TEST(Cia402Delta, GoesToTorqueStepByStepInsideTheLoop) {
   }
 }
 
-TEST(Cia402Delta, ASlowerBusIsALaterForce) {
+TEST(Cia402Delta, LowerBitRateIncreasesTheReportedDelay) {
   Bench fast, slow;
   slow.drives.bus.connect({.slow_bps = 500'000});
   ASSERT_EQ(fast.open(), "");

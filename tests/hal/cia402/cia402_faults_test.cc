@@ -56,7 +56,7 @@ TEST(Cia402Faults, AFaultStateStopsAllThreeInTheSameTickAndGetsItsReason) {
   bench.expect_latched(Fault::kDriveFault);
 }
 
-TEST(Cia402Faults, AnEmergencyIsAFaultAndItsEndIsNone) {
+TEST(Cia402Faults, EmergencyMessageIsAFaultAndAnErrorResetIsNot) {
   Bench bench;
   bench.run();
   bench.drives.say_emergency(bench.drives.axis[0], 0x0000);
@@ -183,7 +183,7 @@ TEST(Cia402Faults, PowerThatGoesBeforeAnyForceIsWaitedForAgain) {
   EXPECT_GT(bench.ticks_until_ready(), 0);
 }
 
-TEST(Cia402Faults, TheBusIsJudgedAsWithEveryDrive) {
+TEST(Cia402Faults, BusOffAndBusDownLatchAndAFullQueueDoesNot) {
   Bench off, down, full;
   off.run();
   off.drives.bus.say_error(0x040, 0);

@@ -154,7 +154,7 @@ TEST(Cia402Emulated, ShutdownFramesAreZeroTorqueDisabledAndSyncAlone) {
   }
 }
 
-TEST(Cia402Emulated, AfterTheFaultOfOneDriveTheOthersNoteNone) {
+TEST(Cia402Emulated, FaultOfOneDriveDisablesTheOthersWithoutALoggedFault) {
   Bench bench;
   ASSERT_TRUE(bench.run());
   bench.drives.drive[1]->fail(bench.drives.now_ns);

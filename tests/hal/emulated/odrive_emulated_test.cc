@@ -132,7 +132,7 @@ TEST(OdriveEmulated, DrivesThatKnowTheirPositionGetNoPowerAtOpening) {
   }
 }
 
-TEST(OdriveEmulated, AKilledRunAndAPermissionThatComesBackNeedNoSecondWay) {
+TEST(OdriveEmulated, RestartOrReturnedPermissionNeedsNoNewPositionProof) {
   Bench bench({.generation = OdriveGeneration::k05}, Homing::kAbsolute);
   ASSERT_EQ(bench.open(), "");
   ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->fault_detail();
@@ -233,7 +233,7 @@ TEST(OdriveEmulated, AVelocityLimitOfTheSceneThatMayCutTorqueAtRestIsRefused) {
       << message;
 }
 
-TEST(OdriveEmulated, ADriveThatStopsByOverspeedSaysSo) {
+TEST(OdriveEmulated, OverspeedOfADriveIsReportedAsItsCause) {
   for (const auto generation : {OdriveGeneration::k05, OdriveGeneration::k06}) {
     Bench bench({.generation = generation, .velocity_limit_turns_per_s = 2.0});
     ASSERT_EQ(bench.open(), "");

@@ -36,7 +36,7 @@ double reach_m_per_rad(const Vec3& p_W) {
   return most;
 }
 
-TEST(FalconAtTool, IsThatOfTheWorstPoseInTheWorkspace) {
+TEST(FalconAtTool, StepDampingAndFrictionAreThoseOfTheWorstPose) {
   const model::DeviceAtTool at = falcon_at_tool(kFalcon, settings());
   double s = 0.0;
   for (const double x : {-0.04, -0.02, 0.0, 0.02, 0.04})

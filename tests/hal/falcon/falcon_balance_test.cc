@@ -42,7 +42,7 @@ TEST(FalconBalance, FrictionDropsOutOfTheMeanOfLiftingAndSinking) {
   EXPECT_EQ(weight.force_N, 0.0);  // and lets go
 }
 
-TEST(FalconBalance, WhatIsTooHeavyIsLetGo) {
+TEST(FalconBalance, LoadAboveTheForceLimitEndsWithZeroForce) {
   Weight weight{.weight_N = 9.0};
   FalconBalanceRamp ramp({});
   EXPECT_EQ(weight.lift(ramp), State::kTooHeavy);
@@ -61,7 +61,7 @@ TEST(FalconBalance, FastMotionAndNoNumbersEndTheForceAtOnce) {
   }
 }
 
-TEST(FalconBalance, ItEndsAlsoWhenNothingHappens) {
+TEST(FalconBalance, RampWithoutMotionEndsByItsTimeLimit) {
   FalconBalanceRamp ramp({.rate_N_per_s = 0.01});
   for (int i = 0; i < 41'000; ++i) ramp.step(0.0, 0.0, {}, 0.001);
   EXPECT_EQ(ramp.state(), State::kTooLong);

@@ -188,7 +188,7 @@ TEST(FalconBoot, WithoutAnImageAColdDeviceIsGivenUpAtOnce) {
   EXPECT_EQ(device.greeted, 0);
 }
 
-TEST(FalconBoot, HalfAReportFromBeforeAndHalfFromAfterAreNone) {
+TEST(FalconBoot, HalfReportsBeforeAndAfterAReopenAreNotJoined) {
   FalconBoot boot({});
   const FalconPacket report = encode(FalconReport{.homed = 7});
   const auto answered = [&](std::span<const std::uint8_t> bytes) {

@@ -198,7 +198,7 @@ TEST(FalconDeviceFault, LosingHomeLatchesAtOnce) {
   expect_latched(bench, Fault::kHomingLost);
 }
 
-TEST(FalconDeviceFault, WhatEndsThePipeLatchesAndIsNamed) {
+TEST(FalconDeviceFault, EveryEndOfThePipeLatchesWithItsCause) {
   struct Case {
     falcon::FalconPipeHealth health;
     Fault fault;

@@ -240,7 +240,7 @@ TEST(FalconDevice, AForceThatIsNoNumberIsNoForce) {
   }
 }
 
-TEST(FalconDevice, ReportsWhatItIsWorthAtTheTool) {
+TEST(FalconDevice, ReportsWorkspaceDampingStepAndDelayAtTheTool) {
   const DeviceInfo info = FalconBench().device.info();
   EXPECT_EQ(info.workspace_radius_m, 0.04);
   EXPECT_EQ(info.max_torque_Nm, 0.0);

@@ -26,7 +26,7 @@ TEST(FalconShutdownFrames, AreZeroCurrentOverTheOpenDescriptor) {
   }
 }
 
-TEST(FalconShutdownFrames, WithoutADescriptorThereAreNone) {
+TEST(FalconShutdownFrames, NoFramesWithoutADescriptor) {
   FalconBench bench;
   EXPECT_FALSE(bench.device.shutdown_frames());
 }

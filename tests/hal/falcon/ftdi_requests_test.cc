@@ -30,7 +30,7 @@ Bytes counted(std::size_t size) {
   return out;
 }
 
-TEST(FtdiRequests, RequestsThatNoPublishedSequenceHas) {
+TEST(FtdiRequests, EventCharacterRtsAndLatencyRequestsAreEncoded) {
   EXPECT_EQ(ftdi_event_character(0x3E), (FtdiRequest{.type = 0x40, .request = 6, .value = 0x013E}));
   EXPECT_EQ(kFtdiRtsHigh, (FtdiRequest{.type = 0x40, .request = 1, .value = 0x0202}));
   EXPECT_EQ(ftdi_latency_ms(0), ftdi_latency_ms(1));  // 0 is no time the chip has
@@ -66,7 +66,7 @@ TEST(FtdiRequests, ATransferWithoutItsStatusIsDamage) {
   for (const std::size_t size : {2u, 64u, 66u, 128u}) EXPECT_TRUE(ftdi_strip(Bytes(size), out));
 }
 
-TEST(FtdiRequests, ABufferTooSmallIsRefusedAndUntouched) {
+TEST(FtdiRequests, TooSmallBufferIsRefusedAndUnchanged) {
   const Bytes transfer = transfer_of(counted(100));
   Bytes out(99, 0xEE);
   EXPECT_FALSE(ftdi_strip(transfer, out));
@@ -89,7 +89,7 @@ TEST(FtdiRequests, AnErrorInAnyPacketIsKeptAndTheModemIsTheLatest) {
   EXPECT_EQ(read->line, 0x20 | kFtdiOverrun | kFtdiFraming);
 }
 
-TEST(FtdiRequests, EveryLineErrorHasWordsAndNoOtherBitHas) {
+TEST(FtdiRequests, OnlyLineErrorBitsHaveAMessage) {
   std::set<std::string> messages;
   for (unsigned bit = 1; bit <= 0x80; bit <<= 1) {
     const std::string words = ftdi_line_error(static_cast<std::uint8_t>(bit));

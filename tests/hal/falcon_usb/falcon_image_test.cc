@@ -23,7 +23,7 @@ std::string digest_of(const Bytes& bytes) {
   return out;
 }
 
-TEST(FalconImage, OneThatTheSettingsNameMayBeSent) {
+TEST(FalconImage, ImageWithTheDigestOfTheSettingsMayBeSent) {
   const Bytes image(1000, 0xAA);
   EXPECT_EQ(check_falcon_image(image, digest_of(image)), Verdict::kAsNamed);
 }
@@ -47,7 +47,7 @@ TEST(FalconImage, WithoutADigestOnlyKnownOnesAreTaken) {
   }
 }
 
-TEST(FalconImage, NothingAndTooMuchAreNoImage) {
+TEST(FalconImage, EmptyOrTooLargeImageIsRefused) {
   EXPECT_EQ(check_falcon_image({}, ""), Verdict::kWrongSize);
   EXPECT_EQ(check_falcon_image({}, digest_of({})), Verdict::kWrongSize);
   const Bytes most(kFalconImageMax_bytes), more(kFalconImageMax_bytes + 1);
@@ -55,7 +55,7 @@ TEST(FalconImage, NothingAndTooMuchAreNoImage) {
   EXPECT_EQ(check_falcon_image(more, digest_of(more)), Verdict::kWrongSize);
 }
 
-TEST(FalconImage, ADigestThatIsNoneIsAnErrorAndNoPermission) {
+TEST(FalconImage, MalformedDigestIsRefused) {
   const Bytes image(1000, 0xAA);
   const std::string digest = digest_of(image);
   for (const std::string& bad :
@@ -64,7 +64,7 @@ TEST(FalconImage, ADigestThatIsNoneIsAnErrorAndNoPermission) {
   }
 }
 
-TEST(FalconImage, EveryRefusalHasWordsOfItsOwn) {
+TEST(FalconImage, EveryRefusalHasItsOwnMessage) {
   std::set<std::string> messages;
   for (const Verdict verdict :
        {Verdict::kBadDigest, Verdict::kWrongSize, Verdict::kUnknown, Verdict::kOtherDigest}) {

@@ -57,7 +57,7 @@ TEST(FalconReceiver, DamageAndLineErrorsAreCountedAndReported) {
   EXPECT_EQ(receiver.health().end, falcon::FalconPipeEnd::kOpen);
 }
 
-TEST(FalconReceiver, TheFirstEndStays) {
+TEST(FalconReceiver, FirstCauseOfTheEndIsKept) {
   FalconReceiver receiver;
   EXPECT_TRUE(receiver.open());
   receiver.finish(falcon::FalconPipeEnd::kStalled, 32);
@@ -75,7 +75,7 @@ TEST(FalconReceiver, LeavesTheHeapAlone) {
   EXPECT_EQ(guard.calls(), 0u);
 }
 
-TEST(FalconTurns, PausesWhenNothingComesOfItAndEndsWhenThatLasts) {
+TEST(FalconTurns, EmptyTurnsPauseAndEndTheThreadAfterTheMaximum) {
   FalconTurns turns;
   int free = 0, pauses = 0;
   auto next = turns.turn(false);

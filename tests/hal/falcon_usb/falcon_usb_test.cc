@@ -48,7 +48,7 @@ TEST_F(FalconUsbTest, OpensTheOnlyFalconAmongOtherDevices) {
   EXPECT_EQ(usb.detach, 0);  // no driver comes back before usbfs takes over
 }
 
-TEST_F(FalconUsbTest, NoneIsThere) {
+TEST_F(FalconUsbTest, MissingFalconIsReportedWithItsUsbIdentifier) {
   usb.plugs = {{.product = 0x6001}};
   expect_refusal({"0403:cb48", "plug in"});
 }
@@ -95,7 +95,7 @@ TEST_F(FalconUsbTest, IsLockedByItsPathBeforeItIsOpened) {
   expect_refusal({"the Falcon at USB 1-2.3", "process 7"});
 }
 
-TEST_F(FalconUsbTest, AGoneDeviceSaysSo) {
+TEST_F(FalconUsbTest, UnpluggedDeviceIsReportedWithTheRemedy) {
   usb.open_error = LIBUSB_ERROR_NO_DEVICE;
   expect_refusal({"cannot be opened", "plug it in again"});
   usb.open_error = 0;
@@ -171,7 +171,7 @@ TEST_F(FalconUsbTest, AFirmwareFileMustBeThereAndKnown) {
   unlink(path.c_str());
 }
 
-TEST_F(FalconUsbTest, TheSceneIsNamedInWhatAPersonReads) {
+TEST_F(FalconUsbTest, ErrorMessageBeginsWithTheSceneFile) {
   usb.plugs.clear();
   model::scene::Scene scene;
   scene.path = "liver.toml";

@@ -25,7 +25,7 @@ TEST(UsbfsPipeEnd, APulledDeviceEndsTheThreadForGood) {
   }
 }
 
-TEST(UsbfsPipeEnd, ATransferThatSaysGoneEndsTheThreadToo) {
+TEST(UsbfsPipeEnd, ShutdownStatusOfATransferEndsTheThread) {
   Bus bus;
   const auto pipe = start(bus);
   bus.send({}, -ESHUTDOWN);
@@ -138,7 +138,7 @@ TEST(UsbfsPipeEnd, AForceThatWaitsBehindAStalledCommandIsDropped) {
   EXPECT_EQ(bus.taken, std::vector<falcon::FalconPacket>{last_command});
 }
 
-TEST(UsbfsPipeEnd, GoneAfterAStallIsGone) {
+TEST(UsbfsPipeEnd, UnplugAfterAStallEndsTheThreadAndKeepsTheFirstCause) {
   Bus bus;
   const auto pipe = start(bus);
   bus.send({}, -EPIPE);

@@ -143,12 +143,12 @@ TEST_F(ForceDimension, ASampleOlderThan5msIsNotFresh) {
   EXPECT_FALSE(sample.fresh);
 }
 
-TEST_F(ForceDimension, ALibraryThatHangsStopsNothingButItself) {
+TEST_F(ForceDimension, HangingLibraryDoesNotBlockTheLoop) {
   open();
   expect_a_hang_to_stop_nothing(stub);
 }
 
-TEST_F(ForceDimension, ALoopThatDiesTakesItsForceAlong) {
+TEST_F(ForceDimension, DeadLoopGetsZeroForceAndThenForcesOff) {
   open();
   ASSERT_TRUE(ready());
   ASSERT_TRUE(

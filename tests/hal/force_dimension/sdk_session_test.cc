@@ -166,7 +166,7 @@ TEST_F(Session, ADelta6IsDrivenWhereTheLibraryOpensItWithThePublishedLimits) {
   }
 }
 
-TEST_F(Session, WhatHasNoKnownLimitsIsRefused) {
+TEST_F(Session, DeviceTypeWithoutKnownLimitsIsRefused) {
   for (const int type : {60, 81, 82, 91, 131, 132, 7777}) {
     stub.set_type(type);
     EXPECT_TRUE(has(refusal(), std::to_string(type))) << type;
@@ -189,7 +189,7 @@ TEST_F(Session, EveryTypeOfTheVendorOpensWithForceAndRoom) {
   }
 }
 
-TEST_F(Session, WithoutCalibrationItSaysHow) {
+TEST_F(Session, UncalibratedDeviceIsRefusedWithTheRemedy) {
   stub.set_status(kSdkReset, 1);
   EXPECT_TRUE(has(refusal(), "sweep each axis by hand")) << refusal();
   stub.set_type(104);
@@ -231,7 +231,7 @@ TEST_F(Session, TheTimeGuardAndASaturatedMotorAreNoErrors) {
   }
 }
 
-TEST(SdkWords, NoCodeIsBlankOrWithoutARemedy) {
+TEST(SdkWords, EveryErrorCodeHasATextAndARemedy) {
   for (int code = -2; code < 30; ++code) {
     EXPECT_NE(std::strchr(text_of_sdk_error(code), ';'), nullptr) << text_of_sdk_error(code);
     EXPECT_NE(std::strchr(force_off_text(code), ';'), nullptr) << code;

@@ -146,7 +146,7 @@ TEST_F(Sysfs, ASleepingChipIsRefusedBeforeItIsOpened) {
   EXPECT_TRUE(has(opened.error().message, "use a chip on PCI")) << opened.error().message;
 }
 
-TEST_F(Sysfs, APcWithoutChipsSaysSo) {
+TEST_F(Sysfs, PcWithoutGpioChipsIsReported) {
   const auto opened = open_safety_lines(wired(), roots());
   ASSERT_FALSE(opened);
   EXPECT_EQ(opened.error().message,
@@ -164,7 +164,7 @@ TEST_F(Sysfs, EdgesAreWatchedUnderTheSameRulesAsSafetyLines) {
   EXPECT_NE(slow.error().message.find("hangs on usb"), std::string::npos);
 }
 
-TEST_F(Sysfs, WithoutAChipInTheSceneNothingIsWatchedAndNothingIsInTheWay) {
+TEST_F(Sysfs, SceneWithoutAChipIsEnabledWithoutLines) {
   const auto lines = open_safety_lines({}, roots());
   ASSERT_TRUE(lines);
   EXPECT_EQ((*lines)->read(0), model::Fault::kNone);

@@ -196,7 +196,7 @@ TEST_F(GpioWiring, TheEventWordHasABitForEachOfItsLines) {
   EXPECT_EQ((*opened)->event_word(), 0);
 }
 
-TEST_F(GpioWiring, WhatIsNotWiredIsLeftAlone) {
+TEST_F(GpioWiring, UnwiredLinesAreNeitherRequestedNorRead) {
   settings_.estop_a = settings_.estop_b = settings_.dead_man = settings_.grip = -1;
   settings_.clutch = settings_.sync = settings_.event[3] = -1;
   played().not_given = {kEstopA, kEstopB, kDeadMan, kGrip, kClutch, kSync, kEvent + 3};

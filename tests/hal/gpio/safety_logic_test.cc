@@ -184,7 +184,7 @@ TEST(SafetyLogic, ALoopThatWasStoppedComesBackWithoutPower) {
   EXPECT_TRUE(bench.outputs.enable);
 }
 
-TEST(SafetyLogic, WhatIsNotWiredIsGood) {
+TEST(SafetyLogic, UnwiredInputsCauseNoFault) {
   SafetyLogic bare({});
   EXPECT_EQ(bare.evaluate({}, 0), Fault::kNone);
   SafetyLogic estop({.estop = true, .dead_man = false});
@@ -198,7 +198,7 @@ TEST(SafetyLogic, TheLightShowsArmed) {
   EXPECT_FALSE(logic.drive({.healthy = true, .armed = false}).led);
 }
 
-TEST(SafetyLogic, EveryCauseHasWordsWithARemedy) {
+TEST(SafetyLogic, EveryCauseHasAMessageWithARemedy) {
   for (int i = 1; i <= static_cast<int>(LinesCause::kChipLost); ++i) {
     const std::string message = text_of(static_cast<LinesCause>(i));
     EXPECT_NE(message.find("then "), std::string::npos) << message;

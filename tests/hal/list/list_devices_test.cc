@@ -137,7 +137,7 @@ TEST_F(ListDevices, ADeviceInUseIsNotReady) {
   EXPECT_EQ(only().lacking, "another program uses it");
 }
 
-TEST_F(ListDevices, AForceDimensionDeviceShowsItsOwnWords) {
+TEST_F(ListDevices, ForceDimensionDeviceIsShownWithItsProductName) {
   usb("2-1", "1451", "0402");
   const FoundPart part = only();
   EXPECT_EQ(part.kind, "force-dimension");
@@ -179,7 +179,7 @@ TEST_F(ListDevices, AMissingPermissionPrintsTheRuleOfThatDevice) {
   EXPECT_TRUE(has(only().lacking, force_dimension::kForceDimensionParts[0].rule));
 }
 
-TEST_F(ListDevices, ANodeThatIsGoneIsNoMatterOfRules) {
+TEST_F(ListDevices, MissingDeviceNodeIsNotBlamedOnUdevRules) {
   probes.access_error = gone;
   usb("1-2", "0403", "cb48");
   EXPECT_FALSE(has(only().lacking, "udev"));

@@ -26,7 +26,7 @@ TEST(MoteusDelta, IsReadyWhenAllAreInPositionModeWithoutEarlierTorque) {
   EXPECT_LT(ticks, 60);
 }
 
-TEST(MoteusDelta, ASlowerBusIsALaterForce) {
+TEST(MoteusDelta, LowerBitRateIncreasesTheReportedDelay) {
   MoteusBench fast, slow;
   slow.drives.connect_again({.slow_bps = 1e6, .fast_bps = 2e6});
   ASSERT_EQ(fast.open(), "");
@@ -111,7 +111,7 @@ TEST(MoteusDelta, TorqueIsLimitedByTheSceneAndKeepsTheForceDirection) {
   EXPECT_NEAR(largest_Nm, 0.2, 1e-6);  // 2 N m at the arm, 10:1
 }
 
-TEST(MoteusDelta, AForceThatIsNoNumberLeavesGravityAlone) {
+TEST(MoteusDelta, NanForceIsAFaultAndLeavesGravityTorqueOnly) {
   MoteusBench bench;
   bench.run();
   EXPECT_EQ(bench.tick({std::nan(""), 0.0, 0.0}), Fault::kForceNotFinite);
@@ -165,7 +165,7 @@ TEST(MoteusDelta, AKilledRunLeavesDrivesThatTheNextOneTakesUp) {
   ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->fault_detail();
 }
 
-TEST(MoteusDelta, LastWordsStopAllThreeAtOnceAndAreNoMoreThanThat) {
+TEST(MoteusDelta, ShutdownFramesAreStopCommandsForAllThreeDrives) {
   MoteusBench bench;
   ASSERT_EQ(bench.open(), "");
   const auto words = bench.device->shutdown_frames();  // before the loop, as tactd asks for them

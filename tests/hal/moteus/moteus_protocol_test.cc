@@ -20,7 +20,7 @@ CanFdFrame reply_of(int node, const std::vector<std::uint8_t>& bytes) {
   return frame;
 }
 
-TEST(MoteusProtocol, WhatIsNoTorqueForNoDriveIsNotSent) {
+TEST(MoteusProtocol, NonFiniteTorqueBadWatchdogOrNodeIsNotSent) {
   EXPECT_TRUE(moteus_torque(1, -0.3, 0.01));
   for (const double torque_Nm : {std::nan(""), HUGE_VAL, -HUGE_VAL, 1e39})
     EXPECT_FALSE(moteus_torque(1, torque_Nm, 0.01)) << torque_Nm;
@@ -75,7 +75,7 @@ TEST(MoteusProtocol, AFrameThatIsCutAnywhereGivesNothingThatItDoesNotHold) {
   }
 }
 
-TEST(MoteusProtocol, WhatADriveDoesNotKnowIsNoNumber) {
+TEST(MoteusProtocol, UnknownValueOfADriveIsReadAsMissing) {
   const auto reply = decode_moteus(
       reply_of(1, {0x21, 0x00, 0x80, 0x2D, 0x01, 0, 0, 0xC0, 0x7F, 0x21, 0x0D, 0x80}), 1);
   ASSERT_TRUE(reply);

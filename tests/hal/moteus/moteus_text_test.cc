@@ -7,7 +7,7 @@
 
 namespace tact::hal::moteus::moteus_words_test {
 
-TEST(MoteusWords, EveryFaultHasOneMessageWithItsNumberAndNoneIsALimit) {
+TEST(MoteusWords, EveryFaultCodeHasOneMessageAndIsNotALimit) {
   std::set<int> codes;
   for (const MoteusFaultText& one : moteus_fault_texts()) {
     EXPECT_TRUE(codes.insert(one.code).second) << one.code;

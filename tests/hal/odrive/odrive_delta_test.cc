@@ -57,7 +57,7 @@ TEST(OdriveDelta, FramesFromBeforeTheLoopAreTakenBeforeTheFirstTick) {
   EXPECT_TRUE(bench.sample.fresh);
 }
 
-TEST(OdriveDelta, ASlowerBusIsALaterForce) {
+TEST(OdriveDelta, LowerBitRateIncreasesTheReportedDelay) {
   Bench fast, slow;
   slow.drives.bus.connect({.slow_bps = 500'000});
   ASSERT_EQ(fast.open(), "");
@@ -159,7 +159,7 @@ TEST(OdriveDelta, SaturationKeepsTheDirectionOfTheForce) {
   EXPECT_LT(ratio, 1.0);
 }
 
-TEST(OdriveDelta, AForceThatIsNoNumberLeavesGravityAlone) {
+TEST(OdriveDelta, NanForceIsAFaultAndLeavesGravityTorqueOnly) {
   Bench bench;
   bench.run();
   EXPECT_EQ(bench.tick({std::nan(""), 0.0, 0.0}), Fault::kForceNotFinite);
@@ -269,7 +269,7 @@ TEST(OdriveDelta, FramesOfOtherNodesChangeNothing) {
   EXPECT_EQ(counters[0].count, 1u);
 }
 
-TEST(OdriveDelta, ASecondOpeningOfTheGateComesAfterStop) {
+TEST(OdriveDelta, NothingIsSentAfterStop) {
   Bench bench;
   bench.run();
   bench.tick({0.0, 0.0, 4.0});

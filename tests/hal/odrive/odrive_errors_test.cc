@@ -39,7 +39,7 @@ TEST(OdriveErrors, TheSameBitMeansAnotherThingInTheOtherGeneration) {
   EXPECT_STREQ(first_odrive_error_05(0x800)->name, "WATCHDOG_TIMER_EXPIRED");
 }
 
-TEST(OdriveErrors, NoErrorHasNoWordsAndAnUnknownOneHasSome) {
+TEST(OdriveErrors, EveryErrorBitHasAMessageAndZeroHasNone) {
   EXPECT_EQ(first_odrive_error(0), nullptr);
   EXPECT_EQ(first_odrive_error_05(0), nullptr);
   for (int bit = 0; bit < 32; ++bit) {

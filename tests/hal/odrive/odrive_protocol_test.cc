@@ -63,7 +63,7 @@ TEST(OdriveProtocol, ANodeOutsideTheIdentifierIsNeverAddressed) {
   }
 }
 
-TEST(OdriveProtocol, ANumberThatIsNoneIsNeverSent) {
+TEST(OdriveProtocol, NonFiniteOrTooLargeNumberIsNeverSent) {
   for (const double value : {kNan, kInf, -kInf, 3.5e38, -3.5e38, 1e300})
     for (const auto& frame : all_encoded(5, value)) EXPECT_FALSE(frame) << value;
   EXPECT_TRUE(odrive_input_torque(5, 3.4e38, OdriveTorqueLength::kShort));
@@ -113,7 +113,7 @@ TEST(OdriveProtocol, EveryReplyComesFromItsNodeItsMessageAndInFull) {
   check("estimates", decode_odrive_estimates, OdriveCommand::kGetEncoderEstimates);
 }
 
-TEST(OdriveProtocol, ANumberThatIsNoneIsNeverBelieved) {
+TEST(OdriveProtocol, NonFiniteEstimateIsRefused) {
   const auto check = [](const char* name, auto decode, OdriveCommand command) {
     EXPECT_TRUE(decode(reply(7, command, 1.0f, -2.0f), 7)) << name;
     for (const float bad : {kNanF, kInfF, -kInfF}) {

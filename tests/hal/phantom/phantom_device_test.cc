@@ -172,12 +172,12 @@ TEST_F(Phantom, SamplesNeverRepeatAndOldOnesAreNotFresh) {
   EXPECT_FALSE(sample.fresh);
 }
 
-TEST_F(Phantom, ALibraryThatHangsStopsNothingButItself) {
+TEST_F(Phantom, HangingLibraryDoesNotBlockTheLoop) {
   open();
   expect_a_hang_to_stop_nothing(stub);
 }
 
-TEST_F(Phantom, ALoopThatDiesTakesItsForceAlong) {
+TEST_F(Phantom, DeadLoopGetsZeroForceAndThenForcesOff) {
   open();
   ASSERT_TRUE(ready());
   ASSERT_TRUE(

@@ -129,7 +129,7 @@ TEST_F(PhantomFault, AStopThatTheLibraryDoesNotAnswerIsReported) {
   EXPECT_TRUE(comes([&] { return !reported("no call for more than"); }));
 }
 
-TEST(HdWords, NoCodeIsBlankOrWithoutARemedy) {
+TEST(HdWords, EveryErrorCodeHasATextAndARemedy) {
   for (unsigned code = 0x0100; code < 0x0700; ++code)
     EXPECT_NE(text_of_hd_error(code).find("; "), std::string::npos) << text_of_hd_error(code);
 }

@@ -99,7 +99,7 @@ TEST_F(PhantomSessions, OneDeviceOfTwoNamesServesOneProgram) {
   EXPECT_EQ(stub.calls("hdDisableDevice"), 1);
 }
 
-TEST_F(PhantomSessions, WithoutCalibrationItSaysWhatToDo) {
+TEST_F(PhantomSessions, UncalibratedDeviceIsRefusedWithTheRemedy) {
   stub.set_calibration(kHdNeedsHand);
   expect_refusal({"the Touch is not calibrated; put its stylus into the inkwell"});
   stub.set_number(kHdCalibrationStyle, 1);

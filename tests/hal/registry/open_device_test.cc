@@ -40,7 +40,7 @@ TEST(OpenDevice, OpensTheSimulatedDelta) {
   EXPECT_TRUE(is_simulated(**device));
 }
 
-TEST(OpenDevice, TheIdealOneSaysSoAndBearsWhatNoRealOneDoes) {
+TEST(OpenDevice, IdealDeviceIsNamedAndBears40kNPerMetre) {
   model::scene::Scene ideal = scene("sim-ideal");
   ideal.hand.damping_Ns_per_m = 15.0;
   const auto device = open_device(ideal);

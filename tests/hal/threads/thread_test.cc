@@ -40,7 +40,7 @@ TEST(Thread, BlocksEverySignalButTwoAndThoseOfACrash) {
   EXPECT_EQ(std::strtoull(blocked.c_str(), nullptr, 16), ~taken) << blocked;
 }
 
-TEST(Thread, OneThatIsRefusedIsAnError) {
+TEST(Thread, RefusedThreadIsAnErrorWithTheRemedy) {
   const auto refused = [] {
     const rlimit none{.rlim_cur = 0, .rlim_max = 0};
     setrlimit(RLIMIT_NPROC, &none);
@@ -52,7 +52,7 @@ TEST(Thread, OneThatIsRefusedIsAnError) {
   EXPECT_EXIT(refused(), testing::ExitedWithCode(3), "tact-x cannot be started.*ulimit -u");
 }
 
-TEST(Thread, AnExceptionLeavesNone) {
+TEST(Thread, ExceptionEndsTheProcessWithTheThreadName) {
   const auto throws = [] {
     auto thread = start_thread("tact-x", [] { throw std::bad_alloc(); });
     thread->join();

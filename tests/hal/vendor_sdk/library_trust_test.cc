@@ -65,7 +65,7 @@ TEST_F(LibraryTrust, OtherFoldersAreRefusedAlsoByALinkAndByDots) {
   expect_refusal(good, {"below no system"});
 }
 
-TEST_F(LibraryTrust, WhatOthersMayWriteIsRefusedWithItsModeAndTheRemedy) {
+TEST_F(LibraryTrust, FileWritableByOthersIsRefusedWithModeAndRemedy) {
   for (const mode_t mode : {mode_t{0664}, mode_t{0646}, mode_t{0666}}) {
     set_mode("/opt/fd/libdhd.so.3", mode);
     expect_refusal(good, {"others than its owner may write " + good, kRemedy});
@@ -89,7 +89,7 @@ TEST_F(LibraryTrust, AnotherOwnerIsRefused) {
   expect_refusal(good, {good + " belongs to user " + std::to_string(geteuid()) + " (mode 0644)"});
 }
 
-TEST_F(LibraryTrust, WhatIsNotThereOrNoFileIsSaid) {
+TEST_F(LibraryTrust, MissingOrIrregularFileIsReported) {
   expect_refusal(top + "/opt/none.so", {"none.so: No such file"});
   expect_refusal("libnone.so", {"libnone.so: in no system folder"});
   expect_refusal(top + "/opt/fd", {"it is no file"});

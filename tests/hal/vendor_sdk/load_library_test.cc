@@ -20,7 +20,7 @@ TEST(LoadLibrary, FindsAFunctionInALibraryOfTheSystem) {
   EXPECT_EQ(root(9.0), 3.0);
 }
 
-TEST(LoadLibrary, NamesTheFirstFunctionThatIsMissingAndNoneThatMayBe) {
+TEST(LoadLibrary, FirstMissingRequiredFunctionIsNamed) {
   auto library = load_library("libm.so.6", false, kVendor);
   ASSERT_TRUE(library) << library.error().message;
   void (*none)() = nullptr;

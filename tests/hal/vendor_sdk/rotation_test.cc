@@ -45,7 +45,7 @@ TEST(Rotation, HalfATurnHasThatLengthAndMoreGoesTheOtherWay) {
   EXPECT_NEAR(v.x, 4.0 - 2.0 * kPi, 1e-15);
 }
 
-TEST(Rotation, WhatIsNoRotationIsNoOrientation) {
+TEST(Rotation, InvalidRotationMatrixGivesNan) {
   const double nan = std::nan("");
   const double none[][3][3] = {{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}},        // never written
                                {{1.1, 0, 0}, {0, 1.1, 0}, {0, 0, 1.1}},  // longer

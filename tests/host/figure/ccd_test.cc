@@ -171,7 +171,7 @@ TEST(Ccd, ABallTurnsByExactlyHalfATurnWhenItMust) {
   }
 }
 
-TEST(Ccd, RefusesWhatHasNoMeaning) {
+TEST(Ccd, InvalidChainStartOrGoalIsRefused) {
   const double nan = std::nan("");
   const auto status = [](auto change) {
     Chain chain = arm();

@@ -33,7 +33,7 @@ TEST(FigurePlace, ATrackedShoulderGoesBeforeTheScenes) {
   EXPECT_LT((shoulder_after_s(by_both, 8.0, +bodies) - tracked_m).norm(), 0.02);
 }
 
-TEST(FigurePlace, AShoulderTooFarAwayIsSaidAndNotBelieved) {
+TEST(FigurePlace, TooDistantTrackedShoulderIsReportedAndIgnored) {
   Figure untracked, near, far;
   const Vector3d home_m = shoulder_after_s(untracked, 0.1);
   const auto place = [&](Figure& figure, double off_m) -> Vector3d {

@@ -178,7 +178,7 @@ TEST(Figure, HoldsFadesAndComesBackWithItsTracker) {
   EXPECT_NEAR(run_s(0.5, head_at(0.15, BodyState::kTracked)), moved_m, 3e-3);
 }
 
-TEST(Figure, IsAtItsShoulderOnTheTrackedOne) {
+TEST(Figure, ShoulderOfTheFigureFollowsTheTrackedShoulder) {
   Figure figure;
   TrackedOperator bodies;
   bodies[BodyRole::kShoulder].state = BodyState::kTracked;

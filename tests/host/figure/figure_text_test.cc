@@ -32,7 +32,7 @@ TEST(FigureWords, SayWhichAnkleItsLegCannotReach) {
   EXPECT_EQ(with_ankle(BodyRole::kLeftAnkle, 0.10).words, "") << "a bent knee reaches";
 }
 
-TEST(FigureWords, OfALegAreNotSaidWithoutATrackerAtItsAnkle) {
+TEST(FigureWords, UnreachedAnkleWithoutATrackerIsNotReported) {
   // On tiptoe: the hips rise beyond what the untracked feet would allow.
   Figure figure;
   TrackedOperator bodies;
@@ -64,7 +64,7 @@ TEST(FigureWords, SayThatTheArmCannotReachTheLeftHand) {
   EXPECT_EQ(after(-0.05).words, "") << "a bent elbow reaches";
 }
 
-TEST(FigureWords, TheWorstIsSaid) {
+TEST(FigureWords, WorstProblemIsReportedFirst) {
   TrackedOperator bodies;
   bodies[BodyRole::kHead] = {.state = BodyState::kLost, .trouble = TrackingTrouble::kSilent};
   FigurePose pose;

@@ -90,7 +90,7 @@ class Role : public Description, public testing::WithParamInterface<Case> {};
 
 const Pose kAway{.rotation = test::turn(0.3, {1.0, 0.2, 0.1}), .position_m = {-0.04, 0.06, 0.05}};
 
-TEST_P(Role, OfADescriptionMovesItsJointAndNoOther) {
+TEST_P(Role, RoleMovesItsOwnJointOnly) {
   const Case& of = GetParam();
   const FigurePose stays = after(of.name, of.home_m, Pose{});
   Pose away = kAway;
@@ -111,7 +111,7 @@ TEST_P(Role, OfADescriptionMovesItsJointAndNoOther) {
 INSTANTIATE_TEST_SUITE_P(EveryName, Role, testing::ValuesIn(kCases),
                          [](const auto& it) { return std::string(it.param.name); });
 
-TEST_F(Description, OfATrackedToolMovesNothing) {
+TEST_F(Description, TrackedToolBodyMovesNoJoint) {
   const FigurePose stays = after("tool", {0.1, 0.0, 0.1}, Pose{});
   const FigurePose moved = after("tool", {0.1, 0.0, 0.1}, kAway);
   EXPECT_EQ(last_[BodyRole::kTool].state, BodyState::kTracked);

@@ -120,7 +120,7 @@ TEST_F(LinkAndStrangers, AClientThatDoesNotReadDelaysNone) {
   EXPECT_LT(kept.size(), static_cast<std::size_t>(most - 1000) * kBatch_B);
 }
 
-TEST_F(LinkAndStrangers, OfMoreThanEightTheOldestThatIsSilentIsSentAway) {
+TEST_F(LinkAndStrangers, NinthClientReplacesTheOldestSilentOne) {
   ASSERT_EQ(open(), "");
   std::vector<tcp::socket> sockets;
   for (std::size_t i = 0; i < kMaxClients; ++i) sockets.push_back(raw_client());
@@ -136,7 +136,7 @@ TEST_F(LinkAndStrangers, OfMoreThanEightTheOldestThatIsSilentIsSentAway) {
 }
 
 // A pulled cable sends nothing: only the kernel's own questions find it.
-TEST(IgtlSession, NoticesAPeerThatVanishesWithoutAWord) {
+TEST(IgtlSession, KeepaliveEndsTheConnectionOfAVanishedPeer) {
   boost::asio::io_context io;
   boost::asio::ip::tcp::socket socket(io, boost::asio::ip::tcp::v4());
   notice_vanishing(socket);

@@ -199,7 +199,7 @@ TEST(IgtlWire, StatusFollowsTheStateOfTheDevice) {
   EXPECT_EQ(status_of(frame).name, "fault 117");
 }
 
-TEST(IgtlWire, RefusesWhatIsNoPose) {
+TEST(IgtlWire, InvalidRotationsPositionsAndHeadersAreRefused) {
   EXPECT_NE(message_of(pose_of("TRANSFORM", std::string(44, '\0'))), "");
   EXPECT_NE(message_of(pose_of("TRANSFORM", std::string(48, '\0'))), "");    // no rotation
   EXPECT_NE(message_of(pose_of("TRANSFORM", std::string(48, '\xff'))), "");  // NaN
@@ -226,7 +226,7 @@ std::string version_2(std::string_view key, std::string_view value) {
          std::string(key) + std::string(value);
 }
 
-TEST(IgtlWire, OfVersion2TheTrackersOwnStatusIsHeard) {
+TEST(IgtlWire, TransformStatusOfVersion2IsRead) {
   const MessageHead head{.version = 2, .type = "TRANSFORM", .device = "t"};
   for (const auto& [key, value, is_tracked] :
        {std::tuple{"TransformStatus", "OK", true}, std::tuple{"TransformStatus", "MISSING", false},
@@ -247,7 +247,7 @@ TEST(IgtlWire, OfVersion2TheTrackersOwnStatusIsHeard) {
   }
 }
 
-TEST(IgtlWire, OfAnyBytesComesAFinitePoseOrAMessage) {
+TEST(IgtlWire, RandomBytesGiveAFinitePoseOrAnError) {
   std::mt19937 random(11);
   std::uniform_int_distribution<int> byte(0, 255), edits(1, 6);
   const std::string kinds[] = {version_2("TransformStatus", "OK"),

@@ -42,7 +42,7 @@ TEST(CoordinateChain, MatchesPenAndPaper) {
   EXPECT_NEAR(local.rotation.w(), 0.5, 1e-15);
 }
 
-TEST(CoordinateChain, OfTwoQuaternionsThatTurnAlikeItNamesOne) {
+TEST(CoordinateChain, CanonicalQuaternionIsTheSameForBothSigns) {
   for (const Quaterniond& q : {Quaterniond(0.5, -0.5, 0.5, -0.5), Quaterniond(0, 1, 0, 0),
                                Quaterniond(0, 0, 0.6, -0.8), Quaterniond(0, 0, 0, 1)}) {
     EXPECT_EQ(canonical(q).coeffs(), q.coeffs());

@@ -186,7 +186,7 @@ TEST(Epnp, TakesTangentsOfAnglesFromASweepTracker) {
   }
 }
 
-TEST(Epnp, RefusesWhatHasNoAnswer) {
+TEST(Epnp, TooFewDegenerateOrNanPointsAreRefused) {
   const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
   const auto status = [](auto change) {
     View view = Views().next(6, false, 0.0);

@@ -77,7 +77,7 @@ double quantile(std::vector<double> values, double share) {
 
 class WrongMarker : public ::testing::TestWithParam<Camera> {};
 
-TEST_P(WrongMarker, OneOfEightBendsNothing) {
+TEST_P(WrongMarker, OneWrongMarkerOfEightIsLeftOut) {
   Views views(GetParam());
   std::vector<double> with_m, without_m;
   for (int i = 0; i < 300; ++i) {
@@ -143,7 +143,7 @@ TEST(RobustPose, IsTheSameInEveryRun) {
   }
 }
 
-TEST(RobustPose, KeepsTheStatusOfWhatHasNoAnswer) {
+TEST(RobustPose, TooFewDegenerateOrNanPointsKeepTheirStatus) {
   View view = Views().next(3);
   EXPECT_EQ(view.estimate().status, PoseStatus::kTooFewPoints);
   view = Views().next();

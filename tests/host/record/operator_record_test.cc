@@ -205,7 +205,7 @@ TEST_F(TrackedFile, WithoutATrackerTheFileHasNoOperators) {
   EXPECT_EQ(read.recording.operator_at(0), nullptr);
 }
 
-TEST(OperatorRecord, WithoutSenseIsRefusedThoughItsSumIsRight) {
+TEST(OperatorRecord, InvalidBodyIsRefusedDespiteAGoodChecksum) {
   const auto accepts = [](auto change) {
     tracking::TrackedOperator tracked = operator_at(1);
     change(tracked[tracking::BodyRole::kHand]);
@@ -222,7 +222,7 @@ TEST(OperatorRecord, WithoutSenseIsRefusedThoughItsSumIsRight) {
       [](tracking::TrackedBody& b) { b.trouble = static_cast<tracking::TrackingTrouble>(9); }));
 }
 
-TEST(OperatorRecord, AFigureWithoutSenseIsNoneThoughItsSumIsRight) {
+TEST(OperatorRecord, InvalidFigureIsDroppedDespiteAGoodChecksum) {
   const auto accepts = [](auto change) {
     figure::FigurePose shown = figure_at(1);
     change(shown);

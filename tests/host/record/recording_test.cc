@@ -107,7 +107,7 @@ TEST_F(RecordingFile, IsRefusedWhenHeadOrMeshesAreDamaged) {
   EXPECT_NE(read_recording(path_).damage.find("its head is damaged"), std::string::npos);
 }
 
-TEST_F(RecordingFile, OfAnEarlierFormatIsRefusedWithTheRemedy) {
+TEST_F(RecordingFile, EarlierFormatIsRefusedWithTheRemedy) {
   std::fstream(path_, std::ios::in | std::ios::out | std::ios::binary) << "tactrec\n";
   const ReadResult read = read_recording(path_);
   EXPECT_FALSE(read.usable);
@@ -136,7 +136,7 @@ TEST_F(RecordingFile, IsNeverOverwritten) {
   EXPECT_EQ(read_recording(path_).recording.frames.size(), kFrames);
 }
 
-TEST(Recording, SaysWhatIsWrongWithAFileThatIsNone) {
+TEST(Recording, MissingOrForeignFileIsRefusedWithTheReason) {
   EXPECT_NE(read_recording("/nonexistent/x.tact").damage.find("no such file"), std::string::npos);
   EXPECT_NE(read_recording(std::string(TACT_SOURCE_DIR) + "/CMakeLists.txt")
                 .damage.find("is no file of tact"),

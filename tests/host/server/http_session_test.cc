@@ -12,7 +12,7 @@ namespace tact::test::http_session_test {
 
 class HttpSession : public Viewer {};
 
-TEST_F(HttpSession, AnswersWhatIsNoRequestWithItsErrorAndEndsTheConnection) {
+TEST_F(HttpSession, MalformedRequestGetsItsStatusAndClosesTheConnection) {
   start();
   const std::string head = "GET / HTTP/1.1\r\nHost: localhost\r\n";
   const std::pair<const char*, std::string> cases[] = {
@@ -113,7 +113,7 @@ TEST_F(HttpSession, ARefusedWebSocketIsReportedToPageAndTerminalOnce) {
   EXPECT_TRUE(wait_until([this] { return warnings_.size() == 3; })) << warnings_.size();
 }
 
-TEST_F(HttpSession, WhatAPageReportsOfItselfIsOneLineOnTheTerminal) {
+TEST_F(HttpSession, ProblemReportedByAPageIsPrintedOnce) {
   start();
   for (int i = 0; i < 3; ++i)
     EXPECT_EQ(get("/session", "localhost", {{"Tact-Trouble", "no WebGL"}}).result(),

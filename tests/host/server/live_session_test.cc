@@ -25,7 +25,7 @@ TEST(LiveSession, KeepsTheGripBetweenOpenAndClosed) {
   EXPECT_EQ(hand->grip_ratio, 0.0);
 }
 
-TEST(LiveSession, RefusesEverythingElse) {
+TEST(LiveSession, MalformedHandTargetIsRefused) {
   for (const char* text :
        {"", "{", "[]", "null", "7", R"({"hand":7})", R"({"hand":{}})", R"({"hand":[0,0,0,0]})",
         R"({"hand":{"x_m":0,"y_m":0,"z_m":0,"grip_ratio":0}})", R"({"force_N":[1,2,3]})"})

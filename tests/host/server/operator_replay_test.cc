@@ -68,7 +68,7 @@ class OperatorReplay : public test::Viewer {
   }
 };
 
-TEST_F(OperatorReplay, OfADownloadFromTheMiddleIsTheFigureThatWasSeenLive) {
+TEST_F(OperatorReplay, ReplayFromTheMiddleShowsTheFigureOfTheLiveRun) {
   OperatorFigure live(1.9);
   live.put_shoulder_at({0.55, 0.15, 0.45});  // of the scene; the recording does not know it
   view_.accompany(&live);

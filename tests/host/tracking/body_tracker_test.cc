@@ -173,7 +173,7 @@ TEST_F(Body, ARecordingThatStartsAgainIsANewBeginning) {
   EXPECT_EQ(now().pose.position_m.x(), 1.0);
 }
 
-TEST_F(Body, ASenderThatCountsFromNoughtAgainIsANewBeginningWhenItPaused) {
+TEST_F(Body, SequenceFromZeroAfterAPauseIsARestartOfTheSender) {
   for (int i = 0; i < 60; ++i, step()) see(0.0);
   time_s += 2.0;
   now_s += 2.0;
@@ -183,7 +183,7 @@ TEST_F(Body, ASenderThatCountsFromNoughtAgainIsANewBeginningWhenItPaused) {
   EXPECT_TRUE(see(0.0));
 }
 
-TEST_F(Body, OfTwoCamerasTheNewerPoseCounts) {
+TEST_F(Body, NewerPoseOfTwoCamerasIsUsed) {
   see(0.0, 0);
   time_s += 0.004;
   EXPECT_TRUE(see(0.002, 1));
@@ -195,7 +195,7 @@ TEST_F(Body, OfTwoCamerasTheNewerPoseCounts) {
   EXPECT_EQ(now().raw.position_m.x(), 0.002);
 }
 
-TEST_F(Body, ALookThatComesLateIsWantedWhileItIsOfTheSameMoment) {
+TEST_F(Body, LateLookOfTheOtherCameraIsTakenWithinTheJoinTime) {
   see(0.0, 0);
   step(0.1);
   const double good_s = time_s;

@@ -78,7 +78,7 @@ TEST_F(TwoCameras, AreExactWithoutNoise) {
   }
 }
 
-TEST_F(TwoCameras, WhoseLooksAreOfTheSameMomentGiveOnePoseAndOneStepOfTheFilter) {
+TEST_F(TwoCameras, SimultaneousLooksGiveOnePoseAndOneFilterStep) {
   gap_s = 0.0;
   OperatorTracker late(setup());
   for (int i = 0; i < 200; ++i) {
@@ -109,7 +109,7 @@ TEST_F(TwoCameras, MoreThanTwentyMillisecondsApartAreNotJoined) {
   EXPECT_GT(median_mm(), 3.0);
 }
 
-TEST_F(TwoCameras, OneCoveredLeavesTheOther) {
+TEST_F(TwoCameras, CoveredCameraLeavesThePoseOfTheOther) {
   for (int i = 0; i < 20; ++i) step();
   both_m.clear();
   for (int i = 0; i < 200; ++i) {
@@ -126,7 +126,7 @@ TEST_F(TwoCameras, OneCoveredLeavesTheOther) {
   EXPECT_LT(median_mm(), 15.0);  // but of one that is good
 }
 
-TEST_F(TwoCameras, ThatContradictEachOtherCountOneByOne) {
+TEST_F(TwoCameras, ContradictoryCamerasAreUsedSeparately) {
   // The side camera is 3 cm from its place: within what a jump may be.
   gap_s = 0.010;
   side.pose->position_m += 0.03 * Vector3d::UnitY();

@@ -175,7 +175,7 @@ TEST_F(MaintenanceTracking, AWrongMarkerAmongMoreThanSixIsLeftOutElseThereIsNoPo
   EXPECT_LT(left_out + without_pose, 40);
 }
 
-TEST_F(MaintenanceTracking, ReportsWhatWentWrongAndWhen) {
+TEST_F(MaintenanceTracking, EachTrackingFaultIsReportedAtItsTime) {
   EXPECT_EQ(troubles("hand", tracking::TrackingTrouble::kTooFewPoints, 18.0, 18.4), 12);
   EXPECT_EQ(troubles("head", tracking::TrackingTrouble::kJump, 22.1, 22.13), 1);
   EXPECT_EQ(troubles("head", tracking::TrackingTrouble::kJump, 0.0, 30.0), 1);

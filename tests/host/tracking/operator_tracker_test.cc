@@ -74,7 +74,7 @@ TEST(OperatorTracker, ACameraWithoutAPlaceIsFoundFromTheBase) {
   EXPECT_LT(distance(tracker.at(8.0)[BodyRole::kHand].raw, seen_from_far), 1e-5);
 }
 
-TEST(OperatorTracker, SomeOfTheMarkersAreEnoughAndStrangersArePassedOver) {
+TEST(OperatorTracker, PoseFromSomeMarkersIgnoresUnknownMarkers) {
   const TrackingCamera eye = test::camera("front", kEye);
   OperatorTracker tracker(test::setup_of({eye}, {{"h", BodyRole::kHand}}));
   const Pose body = before(kEye);
@@ -99,7 +99,7 @@ TEST(OperatorTracker, ASweepTrackerSendsTangents) {
   EXPECT_LT(distance(tracker.at(0.0)[BodyRole::kHand].raw, before(kEye)), 1e-6);
 }
 
-TEST(OperatorTracker, WhatOnlyRepeatsItselfIsHeldThenLost) {
+TEST(OperatorTracker, RepeatedOrOldPicturesAreHeldThenLost) {
   const TrackingCamera eye = test::camera("front", kEye);
   for (const double older_s : {0.0, 0.4}) {
     OperatorTracker tracker(test::setup_of({eye}, {{"h", BodyRole::kHand}}));

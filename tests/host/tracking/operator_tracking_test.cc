@@ -99,7 +99,7 @@ TEST_F(Input, BadDatagramsAreCountedAndTheFirstIsReported) {
   EXPECT_TRUE(run_until([&] { return hand().state == BodyState::kTracked; }));
 }
 
-TEST_F(Input, WithoutARegistrationItSaysSo) {
+TEST_F(Input, MissingRegistrationIsReported) {
   ASSERT_EQ(open("udp_port = " + std::to_string(free_port())), "");
   ASSERT_EQ(said_.size(), 1u);
   EXPECT_NE(said_[0].find("there is no registration"), std::string::npos);

@@ -101,7 +101,7 @@ TEST(Registration, NeverMirrors) {
   EXPECT_GT(got->rms_m, 0.01);  // and it shows
 }
 
-TEST(Registration, RefusesWhatHasNoAnswer) {
+TEST(Registration, TooFewCollinearOrNanPosesAreRefused) {
   EXPECT_NE(message_of(fit_registration(poses(5, 0.0))).find("5 poses are too few"),
             std::string::npos);
   EXPECT_NE(message_of(fit_registration({})).find("too few"), std::string::npos);
@@ -206,7 +206,7 @@ TEST_F(Collector, AfterAPoseTheMeanBeginsAgain) {
   EXPECT_NEAR(collector.poses()[2].device_m.x(), 0.0312, 5e-4);
 }
 
-TEST_F(Collector, AMovingOrUnseenToolGivesNone) {
+TEST_F(Collector, MovingOrUnseenToolGivesNoPose) {
   EXPECT_EQ(visit(0.0, 5.0, PoseCollector::kStill_mps), 0);
   EXPECT_EQ(visit(0.0, 5.0, std::nan("")), 0);
   EXPECT_EQ(visit(0.0, 5.0, 0.0, false), 0);

@@ -45,7 +45,7 @@ TEST(Blade, StandingStillCutsNothing) {
   EXPECT_FALSE(crosses(along, {0, -1, 0.5}, {0, 1, 0.5}));
 }
 
-TEST(Blade, RefusesWhatIsNoNumber) {
+TEST(Blade, NonFinitePointsCrossNothing) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
   for (const double bad : {nan, inf, -inf}) {

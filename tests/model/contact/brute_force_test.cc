@@ -96,7 +96,7 @@ void expect_grid_as_loops(const mesh::SurfaceMesh& mesh, int points) {
   }
 }
 
-TEST(BruteForce, ItsGridSaysWhatItsLoopsSay) {
+TEST(BruteForce, GridSearchGivesTheDistanceOfTheFullLoop) {
   expect_grid_as_loops(tests::make_plate(100_mm, 20), 500);
   expect_grid_as_loops(tests::make_torus(25_mm, 8_mm, 60, 30), 500);
   expect_grid_as_loops(tests::make_bladder({30_mm, 25_mm, 20_mm}, 4_mm, 3), 500);

@@ -180,7 +180,7 @@ TEST_F(Grain, OneSlipLosesEnergyAlongItsOwnForce) {
   }
 }
 
-TEST_F(Grain, FromPlaceToPlaceItGivesBackNoMoreThanItTook) {
+TEST_F(Grain, ClosedStrokeOverVaryingGrainReturnsNoEnergy) {
   Grained law(1.3);
   for (int k = 0; k < 20; ++k) {
     Contact moved = contact_with(law, 1.0 + 0.3 * k);

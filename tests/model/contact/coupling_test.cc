@@ -131,7 +131,7 @@ TEST(Coupling, ALobeBendsAlongOneAxisBetweenNormalsThatStraddleIt) {
   EXPECT_NEAR(at(180_deg), -0.056, 1e-15) << "a pinched lobe";
 }
 
-TEST(Coupling, NoneLeavesEachSphereItsOwnDepthToTheBit) {
+TEST(Coupling, UncoupledSphereHasExactlyTheForceOfItsOwnDepth) {
   HalfSpace half;
   Group one(half.field, {{0, 0, 0}}, {3.3_mm});
   one.sphere[0].in.indentation_m = 1_mm;
@@ -139,7 +139,7 @@ TEST(Coupling, NoneLeavesEachSphereItsOwnDepthToTheBit) {
   EXPECT_EQ(one.force_N(0), half.curve.respond(3.3_mm).force_N);
 }
 
-TEST(Coupling, WhatCannotBeDefiniteIsMadeSmaller) {
+TEST(Coupling, IndefiniteCouplingIsReducedUntilItIsDefinite) {
   HalfSpace half;
   Group pair(half.field, {{0, 0, 0}, {8_mm, 0, 0}}, {8_mm, 8_mm});
   const double k = half.field.stiffest_N_per_m(pair.sphere[0].in.surface_point, false);

@@ -152,7 +152,7 @@ TEST(MovedContact, LettingGoStoresNoMoreThanWasHeld) {
   EXPECT_GT(contact.contacts()[0].energy_J, 0.0);
 }
 
-TEST(MovedContact, BeginsWithoutTheDepthThatNoWayExplains) {
+TEST(MovedContact, ContactBeginsWithTheDepthOfTheWayAndKeepsTheOffset) {
   Body body = rigid_plate();
   const ContactScene scene = body.scene();
   MovedContact moved(scene);
@@ -256,7 +256,7 @@ TEST(SmoothSurface, IsContinuousOverEveryEdge) {
 }
 
 // As large as the mesh, and the normal across the surface: n . dx is of second order.
-TEST(SmoothSurface, OfABallIsAsLargeAsItsMeshAndRounder) {
+TEST(SmoothSurface, SmoothedBallKeepsTheSizeOfItsMesh) {
   Body body(tests::make_ball(40_mm, 3), {}, 0.0F);
   double smooth_m = 0.0, flat_m = 0.0, tilt = 0.0;
   for (std::uint32_t t = 0; t < body.mesh.triangle.size(); ++t) {

@@ -38,7 +38,7 @@ struct Walk {
   }
 };
 
-TEST(Proxy, OutsideItIsTheNearestPoint) {
+TEST(Proxy, ProxyOutsideIsTheNearestPoint) {
   Walk walk;
   walk.to({15_mm, 0.0, 20_mm});
   EXPECT_NEAR(norm(walk.proxy.contact_point().point_m - 20_mm * normalized(walk.centre_m)), 0.0,
@@ -73,7 +73,7 @@ TEST(Proxy, LeavesByTheSideWithoutAJump) {
   EXPECT_LE(walk.most_turn_m, (1.0 + kSlide_ratio) * 0.1_mm + 1e-9);
 }
 
-TEST(Proxy, OutOfThePlaceWhereItWentInItIsTheNearestPoint) {
+TEST(Proxy, ProxyAfterExitIsTheNearestPoint) {
   Walk walk;
   walk.to({0.0, 0.0, -15_mm});
   walk.to({0.0, 0.0, 25_mm});

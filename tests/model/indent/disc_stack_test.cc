@@ -108,7 +108,7 @@ TEST(DiscStack, DepthAndForceInvertEachOther) {
   }
 }
 
-TEST(DiscStack, WhatItCannotCarryIsNamed) {
+TEST(DiscStack, ForceBeyondTheStackIsReportedAsUnsupported) {
   const DiscStackState over = make(DiscForm::kLinear).at_force(20.0);
   EXPECT_EQ(over.status, law::LawStatus::kSaturated);
   EXPECT_NEAR(over.force_N + over.unsupported_force_N, 20.0, 1e-12);

@@ -19,7 +19,7 @@ TEST(Inertia, IsSevenPercentOfTheForceAtTheSpeedsOfTheReadme) {
   EXPECT_NEAR(inertia_speed_mps(kLiver, 10_mm, kNoticed), 0.216, 0.0005);
 }
 
-TEST(Inertia, OfALightTouchIsThatOfAHertzContact) {
+TEST(Inertia, ShallowInertiaSpeedIsThatOfAHertzContact) {
   // IN-2: 8 / 10.2 q sqrt(G / rho) sqrt(d / R), for any nu
   for (const double nu : {0.0, 0.3, 0.5}) {
     const ElasticTip tip{.youngs_modulus_Pa = 2.0 * (1.0 + nu) * kTissueDensity_kg_per_m3,

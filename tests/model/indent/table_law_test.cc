@@ -93,7 +93,7 @@ TEST(TableLaw, AStraightLineIsThatSpring) {
   EXPECT_NEAR(law.respond(6_mm).stiffness_N_per_m, 100.0, 1e-3);
 }
 
-TEST(TableLaw, RefusesWhatIsNoLoadingOfAPassiveBodyWithItsRow) {
+TEST(TableLaw, InvalidLoadingRowsAreRefusedWithTheirRowNumber) {
   const auto refusal = [](const std::function<void(Rows&)>& spoil) {
     Rows rows = press(hertz_N, 100, 0.002, 0.0, 3);
     spoil(rows);

@@ -34,7 +34,7 @@ TEST_F(FileWriterTest, AResultReplacesAnEarlierResult) {
   EXPECT_EQ(files(), 4u);
 }
 
-TEST_F(FileWriterTest, NothingElseIsEverWrittenOver) {
+TEST_F(FileWriterTest, FilesOfOtherKindsAreKeptAndNamed) {
   const std::pair<const char*, const char*> kept[] = {
       {"scene.toml", "# Liver, pressed by forceps\nname = \"liver\"\n"},
       {"bare.toml", "[device]\nkind = \"sim\"\n"},
@@ -113,7 +113,7 @@ TEST_F(FileWriterTest, ALinkStaysAndItsFileIsReplacedWithItsRights) {
   EXPECT_EQ(fs::status(path("a.json")).permissions(), fs::perms(0640));
 }
 
-TEST_F(FileWriterTest, WhatIsNotFinishedIsNotThere) {
+TEST_F(FileWriterTest, UnfinishedFileLeavesNothing) {
   {
     auto writer = FileWriter::replace(path("a.json"), "{");
     ASSERT_TRUE(writer);
@@ -124,7 +124,7 @@ TEST_F(FileWriterTest, WhatIsNotFinishedIsNotThere) {
   EXPECT_EQ(files(), 0u);
 }
 
-TEST_F(FileWriterTest, WhatGrowsIsNewAndThereAtOnce) {
+TEST_F(FileWriterTest, GrowingFileIsVisibleAtOnceAndNeverOverwritten) {
   auto writer = FileWriter::create(path("log"));
   ASSERT_TRUE(writer);
   EXPECT_EQ(message_of(writer->put("one")), "");

@@ -31,13 +31,13 @@ TEST_F(InputFileTest, IsReadWholeForAnyContent) {
   }
 }
 
-TEST_F(InputFileTest, OfProcSaysNoSizeAndIsReadToItsEnd) {
+TEST_F(InputFileTest, ProcFileWithoutASizeIsReadToItsEnd) {
   const auto read = read_file("/proc/self/status");
   ASSERT_TRUE(read);
   EXPECT_NE(read->find("VmPeak"), std::string::npos);
 }
 
-TEST_F(InputFileTest, WhatIsNoRegularFileIsRefusedAtOnce) {
+TEST_F(InputFileTest, DirectoriesPipesSocketsAndDevicesAreRefusedAtOnce) {
   ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);  // a read would wait for ever
   const int fd = socket(AF_UNIX, SOCK_STREAM, 0);
   sockaddr_un address{.sun_family = AF_UNIX, .sun_path = {}};

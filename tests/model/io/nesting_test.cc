@@ -21,7 +21,7 @@ std::string refusal(const Result<T>& result) {
   return result ? std::string() : result.error().message;
 }
 
-TEST(Nesting, OfAnyDepthIsRefusedAndEndsNoProcess) {
+TEST(Nesting, TooDeepNestingIsRefusedWithItsLine) {
   const std::string deep[] = {"a = " + times("[", kMany),
                               "a = " + times("{a=", kMany),
                               times("a.", kMany) + "a = 1",
@@ -68,14 +68,14 @@ TEST(Nesting, BehindAStringIsCountedAgain) {
         << text;
 }
 
-TEST(Json, ThatIsBrokenIsReportedWithItsPlace) {
+TEST(Json, ParseErrorIsReportedWithItsLine) {
   EXPECT_EQ(
       refusal(parse_json("{\n\"a\": }", "s.json")).find("s.json: not JSON: parse error at line 2"),
       0u);
   EXPECT_NE(refusal(read_json("/tmp", "name a file")), "");
 }
 
-TEST(Toml, ThatIsBrokenIsReportedWithItsLine) {
+TEST(Toml, ParseErrorIsReportedWithItsLine) {
   EXPECT_EQ(refusal(parse_toml("a = 1\nb = \n", "s.toml")).find("s.toml:2: not TOML: "), 0u);
 }
 

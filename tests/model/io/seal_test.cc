@@ -22,7 +22,7 @@ class SealTest : public Scratch {
   }
 };
 
-TEST_F(SealTest, OfAWholeFileIsGood) {
+TEST_F(SealTest, UndamagedFileHasAValidSeal) {
   auto file = SealedFile::open(path("good"), "");
   ASSERT_TRUE(file);
   EXPECT_EQ(file->size_bytes(), 307u);

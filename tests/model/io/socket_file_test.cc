@@ -39,7 +39,7 @@ class SocketFileTest : public ::testing::Test {
   std::string folder_;
 };
 
-TEST(SocketAddress, OfAnEmptyOrTooLongPathIsAnErrorThatSaysHowLongItMayBe) {
+TEST(SocketAddress, EmptyOrTooLongPathIsRefusedWithTheAllowedLength) {
   EXPECT_EQ(std::string(socket_address("/a")->sun_path), "/a");
   const std::string longest(sizeof(sockaddr_un::sun_path) - 1, 'a');
   EXPECT_EQ(std::string(socket_address(longest)->sun_path), longest);
@@ -67,7 +67,7 @@ TEST_F(SocketFileTest, GoesWithItsMakerUnlessAnotherIsThere) {
   close(second);
 }
 
-TEST_F(SocketFileTest, IsNoFileOfAnotherKind) {
+TEST_F(SocketFileTest, RemoveKeepsAFileThatIsNotASocket) {
   fclose(fopen(path().c_str(), "w"));
   SocketFile(path()).remove();
   EXPECT_TRUE(fs::exists(path()));
@@ -175,7 +175,7 @@ TEST_F(SocketFileTest, IsBoundForItsUserAloneUnderAnyUmask) {
   close(*fd);
 }
 
-TEST_F(SocketFileTest, IsBoundInThePlaceOfADeadOneAndOfNothingElse) {
+TEST_F(SocketFileTest, OnlyADeadSocketIsReplaced) {
   for (const int type : {SOCK_SEQPACKET | SOCK_CLOEXEC, SOCK_DGRAM | SOCK_CLOEXEC}) {
     const auto dead = bind_socket(path(), type);
     ASSERT_TRUE(dead) << dead.error().message;

@@ -12,7 +12,7 @@ TEST(Within, TakesFiniteNumbersOfItsRange) {
     EXPECT_EQ(refusal(word), "") << word;
 }
 
-TEST(Within, RefusesWhatIsNoFiniteNumber) {
+TEST(Within, NonFiniteOrMalformedNumberIsRefused) {
   for (const char* word :
        {"nan", "-nan", "NAN", "inf",  "-inf", "infinity", "1e400", "-1e400", "1e-400", "",
         " ",   "1s",   "1,5", "0x10", "1 2",  "++1",      "+-1",   "one",    "1e",     "."}) {
@@ -22,12 +22,12 @@ TEST(Within, RefusesWhatIsNoFiniteNumber) {
   }
 }
 
-TEST(Within, RefusesWhatIsOutside) {
+TEST(Within, NumberOutsideTheRangeIsRefused) {
   for (const char* word : {"0", "-1", "9e-4", "10000001", "1e300", "-0"})
     EXPECT_NE(refusal(word).find("is not in ["), std::string::npos) << word;
 }
 
-TEST(Within, IsSaidByHelpAndEndsTheParsing) {
+TEST(Within, RangeIsShownInHelpAndEnforced) {
   for (const char* word : {"nan", "-1"}) {
     CLI::App app;
     double seconds = 0.0;

@@ -43,7 +43,7 @@ TEST(Creep, FlowsWithoutEndWhereAllOfTheForceFades) {
   EXPECT_LT(worst_strain_error({{.share = 1.0, .time_s = 0.3}}), 1e-3);
 }
 
-TEST(Creep, OfWhatDoesNotRelaxIsNothing) {
+TEST(Creep, MaterialWithoutRelaxationDoesNotCreep) {
   EXPECT_EQ(Creep().terms(), 0U);
   EXPECT_EQ(Creep().crept_N({}), Vec3{});
 }

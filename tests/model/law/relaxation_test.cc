@@ -267,7 +267,7 @@ TEST(Relaxation, SharesThatAddUpToOneButForRoundingLeaveNothing) {
   EXPECT_FALSE(make_relaxation(std::vector<PronyTerm>{{0.8, 1.0}, {0.200001, 2.0}}, kTick_s));
 }
 
-TEST(Relaxation, DoesNotTouchTheHeap) {
+TEST(Relaxation, LeavesTheHeapAlone) {
   const PowerLaw law(1.5);
   Rendered rendered(law);
   const tests::NoAlloc guard;

@@ -76,7 +76,7 @@ TEST(SeriesLaw, HasConsistentDimensions) {
       [](double m, double kg, double s) { return std::make_unique<PairLaw>(0.03, m, kg, s); });
 }
 
-TEST(SeriesLaw, IsTheComplianceLawWhereTheTipIsItsTip) {
+TEST(SeriesLaw, SeriesWithItsOwnTipMatchesTheComplianceLaw) {
   for (const double compliance_m_per_N : {0.03, -0.005}) {
     const Pair pair(compliance_m_per_N);
     const indent::ComplianceCurve whole = place(compliance_m_per_N);

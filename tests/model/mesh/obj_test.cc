@@ -211,7 +211,7 @@ TEST_F(Obj, SpeaksOfVerticesAsTheFileCountsThem) {
   expect_error(text + "f 3 5 6\nf 2 5 7\n", 9, "edge 2-5, see line 8");
 }
 
-TEST_F(Obj, RefusesWhatIsNoFile) {
+TEST_F(Obj, MissingIrregularOrLockedFileIsRefused) {
   const auto message = [](const std::string& path) {
     const auto obj = load_obj(path, kMillimetre_m);
     return obj ? "loaded" : obj.error().message;

@@ -67,7 +67,7 @@ struct Case {
   std::string text, said;
 };
 
-TEST(Override, ThatIsWrongIsReportedAsTyped) {
+TEST(Override, MalformedOverrideIsQuotedAsTyped) {
   const std::string shape = "; write key.path=value, for example rhombus.units=8 or law=rhombus";
   const std::string values =
       "the value is not TOML; write a number, true, false, \"text\" or [1, 2, 3]";
@@ -125,7 +125,7 @@ TEST(Override, ThatIsWrongIsReportedAsTyped) {
 }
 
 // The first of the allowed ones: a new law is no change of this test.
-TEST(Override, OfAnUnknownSectionIsRefusedWithTheKnownOnes) {
+TEST(Override, UnknownSectionIsRefusedWithTheKnownOnes) {
   EXPECT_TRUE(complaint({"a.b.c=1"})
                   .starts_with("--set a.b.c=1: a is no key here; allowed here: name, rate_Hz, "
                                "table_knots, varies_by_place, "
@@ -138,7 +138,7 @@ TEST(Override, CannotSmuggleInASecondKey) {
             "for example rhombus.units=8 or law=rhombus");
 }
 
-TEST(Override, OfTheWrongKindIsReportedBeforeErrorsOfTheFile) {
+TEST(Override, OverrideErrorIsReportedBeforeErrorsOfTheFile) {
   const std::string bad = TACT_SOURCE_DIR "/tests/data/scenes/bad/too_small.toml";
   const Result<scene::Scene> scene = scene::load_scene(bad, {"limits.force_N=99"});
   ASSERT_FALSE(scene);
@@ -146,7 +146,7 @@ TEST(Override, OfTheWrongKindIsReportedBeforeErrorsOfTheFile) {
             "--set limits.force_N=99: limits.force_N = 99 is out of range; allowed: 0 .. 20 N");
 }
 
-TEST(SceneDocument, OfAMeshFileNamesTheProgramThatMakesAScene) {
+TEST(SceneDocument, MeshFileIsRefusedWithTheNewSceneCommand) {
   for (const char* mesh : {"kidney.stl", "kidney.obj", "kidney.glb"}) {
     const Result<SceneDocument> document = load_scene_document(mesh, {});
     ASSERT_FALSE(document);

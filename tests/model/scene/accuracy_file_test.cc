@@ -106,7 +106,7 @@ TEST_F(AccuracyFile, AnotherLawOrganOrToolHasNoFigure) {
   EXPECT_EQ(line().find("not known"), std::string::npos) << "a hand is no part of the force";
 }
 
-TEST_F(AccuracyFile, WhatIsMissingOrDamagedIsSaid) {
+TEST_F(AccuracyFile, MissingOrDamagedDataIsReportedWithItsReason) {
   expect_unknown("it was never measured; tact-lab reference");
   write("[rhombus]\n");
   expect_unknown("is of another version of tact-lab chart; tact-lab reference");

@@ -45,7 +45,7 @@ TEST(AnyPathOrganFound, AForceThatWouldJumpFollows) {
   expect_kept("maintenance", {39, 49, 101, 837});
 }
 
-TEST(AnyPathOrganFound, WhatTurnsTheForceMakesNoEnergy) {
+TEST(AnyPathOrganFound, TurningTheForceCreatesNoEnergy) {
   expect_kept("gum", {437, 449, 597});
   expect_kept("maintenance", {71, 91, 269, 853});
 }

@@ -100,7 +100,7 @@ TEST_F(ComplianceFile, ReportsEveryDamage) {
   }
 }
 
-TEST_F(ComplianceFile, RefusesWhatIsNoFiniteNumber) {
+TEST_F(ComplianceFile, NonFiniteNumbersAreRefused) {
   for (const float bad :
        {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
     for (int list = 0; list < 3; ++list) {
@@ -130,7 +130,7 @@ TEST_F(ComplianceFile, EndsWithItsChecksum) {
   EXPECT_EQ(compliance_checksum(path_), "");
 }
 
-TEST_F(ComplianceFile, ReportsThatThereIsNone) {
+TEST_F(ComplianceFile, MissingFileIsReportedWithTheRemedy) {
   const auto map = read_compliance_map(path_ + ".missing");
   ASSERT_FALSE(map);
   EXPECT_NE(map.error().message.find("no such file; make it again with tact-lab condense"),

@@ -151,7 +151,7 @@ class DrawnIndentation : public ::testing::Test {
 // At the hand's own site and at a rim that no stroke presses: vertex by vertex, and in the mean
 // around the tool. The organ sinks less towards its held side than towards a free lobe; without
 // ContactLaw::tilt single vertices miss by 16 %.
-TEST_F(DrawnIndentation, OfBothJawsIsThatOfFiniteElementsAroundTheTool) {
+TEST_F(DrawnIndentation, BothJawsMatchFiniteElementsAroundTheTool) {
   const json truth = reference("liver_tool_skin.json");
   for (const char* law : {"rhombus", "compliance"}) {
     load({"law=\"" + std::string(law) + "\"", "compliance.large_strain=false"});
@@ -165,7 +165,7 @@ TEST_F(DrawnIndentation, OfBothJawsIsThatOfFiniteElementsAroundTheTool) {
   }
 }
 
-TEST_F(DrawnIndentation, OfOneSphereIsThatOfFiniteElementsAtEachSite) {
+TEST_F(DrawnIndentation, OneSphereMatchesFiniteElementsAtEachSite) {
   const json truth = reference("liver.json");
   const double pitch_m = truth["ring_pitch_m"];
   for (const char* law : {"rhombus", "compliance"}) {

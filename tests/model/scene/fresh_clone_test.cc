@@ -10,7 +10,7 @@
 
 namespace tact::model::scene::fresh_clone_test {
 
-TEST(Plan, OfAFreshCloneIsNoWorseThanTheShippedLaw) {
+TEST(Plan, FreshCloneAutoLawIsNoWorseThanTheShippedLaw) {
   ASSERT_EQ(setenv("XDG_CACHE_HOME", (testing::TempDir() + "tact_no_plan").c_str(), 1), 0);
   for (const std::string name : {"liver", "heart", "skin", "gum", "maintenance"}) {
     const std::string path = std::string(TACT_SOURCE_DIR) + "/model/scenes/" + name + ".toml";

@@ -61,7 +61,7 @@ TEST(LawNumbers, NothingBeyondTheStatedRangeIsTaken) {
 }
 
 /// The page of tools/run names a scene, and tools/run takes the file of that name.
-TEST(LawNumbers, OfAShippedSceneTheNameIsThatOfItsFile) {
+TEST(LawNumbers, ShippedSceneHasTheNameOfItsFile) {
   for (const char* name :
        {"liver", "liver_twist", "liver_source", "grasper", "heart", "skin", "gum", "maintenance"})
     EXPECT_EQ(load(name, {})->name, name);

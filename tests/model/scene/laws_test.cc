@@ -46,7 +46,7 @@ TEST(Laws, EveryKeyIsReadFromItsSection) {
   }
 }
 
-TEST(Laws, WhatFitAndChartTurnIsInTheSection) {
+TEST(Laws, KeysOfFitAndChartAreInTheSectionOfTheLaw) {
   Scene any;
   for (const LawRow& row : all_laws()) {
     const ParameterList list = parameters_of(row, any);

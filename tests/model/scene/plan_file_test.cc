@@ -72,7 +72,7 @@ TEST_F(PlanFile, IsFoundAgainByTheSceneAndSetsItsLawAndSizes) {
   EXPECT_EQ(scene_.compliance.curves, 9U);
 }
 
-TEST_F(PlanFile, OfAShippedSceneIsFoundWhenAutoIsSetForOneRun) {
+TEST_F(PlanFile, PlanOfAShippedSceneIsFoundForAnAutoOverride) {
   const std::string liver = std::string(TACT_SOURCE_DIR) + "/model/scenes/liver.toml";
   const auto planned = load_scene(liver, {"rate_Hz=2000"});
   const auto run = load_scene(liver, {"law=auto", "rate_Hz=2000"});

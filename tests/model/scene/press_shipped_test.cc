@@ -111,7 +111,7 @@ struct Counts {
 
 class PressShipped : public ::testing::TestWithParam<Case> {};
 
-TEST_P(PressShipped, ToolIsSoundButForWhatIsMeasured) {
+TEST_P(PressShipped, FlawedPressesStayWithinTheMeasuredCounts) {
   const Case& c = GetParam();
   const auto scene =
       load_scene(TACT_SOURCE_DIR "/model/scenes/" + std::string(c.scene) + ".toml", {});

@@ -168,7 +168,7 @@ TEST(Scene, RefusesKeysThatContradictEachOther) {
             name + ":48: hand.inward has no direction; allowed: any length but 0");
 }
 
-TEST(Scene, RefusesAFileThatIsNone) {
+TEST(Scene, MissingIrregularOrLargeFileIsRefused) {
   EXPECT_EQ(complaint(kData + "none.toml"),
             "none.toml: no such file; give the path of a scene, such as model/scenes/liver.toml");
   EXPECT_TRUE(
@@ -189,7 +189,7 @@ TEST(Scene, RefusesAFileThatIsNone) {
             "model/scenes/liver.toml");
 }
 
-TEST(Scene, RefusesAMeshThatIsNoneAtTheLineThatNamesIt) {
+TEST(Scene, MissingMeshIsReportedAtTheLineThatNamesIt) {
   EXPECT_EQ(complaint(kPlain, {"organ.mesh=no.obj"}),
             "--set organ.mesh=no.obj: " + kData +
                 "no.obj is no file; name an OBJ file, absolute or from the folder of the scene");
@@ -241,7 +241,7 @@ TEST(Scene, HashChangesWithTheComplianceMapInUse) {
   EXPECT_EQ(hash(40.0F, "varies_by_place=false"), hash(40.1F, "varies_by_place=false"));
 }
 
-TEST(Scene, VariesByPlaceOnItsOwnOrganAloneAndSaysSo) {
+TEST(Scene, ComplianceMapOfAnotherOrganIsIgnoredWithANote) {
   const auto own = hal::registry::load_scene(kLiver, {});
   ASSERT_TRUE(own) << own.error().message;
   EXPECT_TRUE(own->varies_by_place);

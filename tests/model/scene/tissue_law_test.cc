@@ -109,7 +109,7 @@ TEST(TissueLaw, ZeroRingsAreAsFewAsTheToleranceAllows) {
   EXPECT_EQ(few.find(", 0 rings"), few.npos) << few;
 }
 
-TEST(TissueLaw, WhatVariesIsInSeriesWithTheGiveOfEachVertex) {
+TEST(TissueLaw, VaryingTissueIsInSeriesWithItsVertexCompliance) {
   const Scene varied = shipped("liver", {kLinear}),
               same = shipped("liver", {"varies_by_place=false"});
   const auto family = read_scene_family(varied, false);

@@ -28,7 +28,7 @@ bool ends_with_command(const std::string& said, const Scene& scene) {
                         scene.path + " --out " + own);
 }
 
-TEST(TissueMap, IsReadWhereItBelongs) {
+TEST(TissueMap, MapOfTheSameOrganIsAccepted) {
   EXPECT_EQ(refusal(liver()), "");
   EXPECT_EQ(refusal(liver({"elastic.youngs_modulus_Pa=9000"})), "") << "the map holds r times E";
 }

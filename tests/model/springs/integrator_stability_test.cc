@@ -81,7 +81,7 @@ TEST(IntegratorStability, RadiusIsTheMeasuredGrowth) {
   EXPECT_NEAR(growth, spectral_radius(amplification(method, h * 2.0, 0.0)), 2e-3);
 }
 
-TEST(IntegratorStability, HasNoLimitForWhatIsNoDampingRatio) {
+TEST(IntegratorStability, InvalidDampingRatioHasAStabilityLimitOfZero) {
   EXPECT_EQ(largest_stable_z({}, std::nan("")), 0.0);
   EXPECT_EQ(largest_stable_z({}, -0.1), 0.0);
   EXPECT_EQ(largest_stable_z({}, std::numeric_limits<double>::infinity()), 0.0);

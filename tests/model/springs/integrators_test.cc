@@ -71,7 +71,7 @@ TEST(Integrators, ExactMotionSolvesItsEquationAtAnyDamping) {
   }
 }
 
-TEST(Integrators, RefuseWhatHasNoMeaning) {
+TEST(Integrators, InvalidMassStepOrStateIsRefused) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInf = std::numeric_limits<double>::infinity();
   for (const auto& entry : kIntegratorNames) {

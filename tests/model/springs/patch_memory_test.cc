@@ -192,7 +192,7 @@ TEST(PatchMemory, CuttingOnlyRemovesEnergyAndThenTheLipsCreepApart) {
   EXPECT_GT(gap_m(), 1.2 * gap_then_m);
 }
 
-TEST(PatchMemory, WhoLeavesForgetsAndTheToolGainsNothing) {
+TEST(PatchMemory, LeavingToolGainsNoEnergyAndThePatchForgets) {
   SpringPatchParameters p = fading_patch({{0.4, 0.05}, {0.3, 0.5}});
   p.nodes = 60;
   PressedPatch pressed(p);

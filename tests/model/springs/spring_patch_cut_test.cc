@@ -92,7 +92,7 @@ TEST(SpringPatchCut, PretensionPullsTheLipsApart) {
   EXPECT_NEAR(gap_m(soft_patch()), 0.0, 1e-12);
 }
 
-TEST(SpringPatchCut, IsSofterToTheTouch) {
+TEST(SpringPatchCut, CutPatchIsSofter) {
   const auto force_N = [](bool cut) {
     PressedPatch pressed(stretched());
     settle(pressed, 1e-6, 1);

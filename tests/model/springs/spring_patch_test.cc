@@ -154,7 +154,7 @@ TEST(SpringPatch, SaturatesBeyondItsWorkingDepth) {
   EXPECT_NEAR(beyond.law.energy_J, limit.law.energy_J + 0.49 * limit.law.force_N, 1e-12);
 }
 
-TEST(SpringPatch, RefusesWhatIsNoNumberAndGoesOn) {
+TEST(SpringPatch, NonFiniteInputIsRefusedAndThePatchGoesOn) {
   PressedPatch pressed(soft_patch());
   settled_N(pressed, 0.003);
   SpringPatch& patch = pressed.patch();

@@ -209,7 +209,7 @@ TEST(ElasticField, APlaceThatTheSurfaceDoesNotHaveGivesZeroForce) {
   }
 }
 
-TEST(ElasticField, DoesNotTouchTheHeap) {
+TEST(ElasticField, LeavesTheHeapAlone) {
   Bench bench(tests::make_plate(100_mm, 10));
   const tests::NoAlloc guard;
   for (std::uint32_t t = 0; t < 50; ++t)

@@ -31,7 +31,7 @@ TEST(IndentationTilt, IsHalfTheSlopeOfTheGive) {
   }
 }
 
-TEST(IndentationTilt, IsOfAllSurfaceWithinItsReachAndOfNoOther) {
+TEST(IndentationTilt, TiltDependsOnVerticesWithinItsReachOnly) {
   const mesh::SurfaceMesh plate = tests::make_plate(100_mm, 20);
   const auto nearest = [&](const Vec3& to_m) {
     const auto away_m = [&](const Vec3& at_m) { return norm(at_m - to_m); };
@@ -64,7 +64,7 @@ TEST(IndentationTilt, DoesNotLookThroughALobe) {
   for (std::size_t v = 0; v < upper; ++v) EXPECT_NEAR(tilt[v].x, 150.0, 1e-3);
 }
 
-TEST(IndentationTilt, OfASurfaceThatIsALineIsNone) {
+TEST(IndentationTilt, CollinearVerticesHaveZeroTilt) {
   mesh::SurfaceMesh line;
   for (int i = 0; i < 5; ++i) {
     line.vertex_m.push_back({i * 1_mm, 0, 0});

@@ -28,7 +28,7 @@ FaultPlan ordered(const std::string& text) {
   return plan;
 }
 
-TEST(RigEmulators, TheirOwnCodecAndKinematicsGiveThePublishedVectors) {
+TEST(RigEmulators, EmulatorCodecAndKinematicsMatchThePublishedVectors) {
   EXPECT_EQ(check_drives(kVectors), 0);
   EXPECT_EQ(check_falcon(kVectors), 0);
 }

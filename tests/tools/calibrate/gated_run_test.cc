@@ -64,7 +64,7 @@ struct Bench {
   double most_N() const { return *std::max_element(grip.up_N.begin(), grip.up_N.end()); }
 };
 
-TEST(GatedRun, GivesWhatABalanceNeeds) {
+TEST(GatedRun, FiveNewtonBalanceForcePassesTheGateUnchanged) {
   Bench b;
   EXPECT_EQ(b.want(5.0, 1000, [](int) {}), Fault::kNone);
   EXPECT_NEAR(b.most_N(), 5.0, 1e-9);
@@ -113,7 +113,7 @@ TEST(GatedRun, WaitsForADeviceThatIsNotHomedAsLongAsNoForceIsWanted) {
   EXPECT_EQ(b.ticks, 1000);
 }
 
-TEST(GatedRun, AForceThatIsNoNumberIsNone) {
+TEST(GatedRun, NanForceGivesZeroForceAndAFault) {
   Bench b;
   EXPECT_EQ(b.want(std::numeric_limits<double>::quiet_NaN(), 100, [](int) {}),
             Fault::kForceNotFinite);

@@ -10,7 +10,7 @@ namespace tact::tools::chart::instructions_test {
 /// n turns of two instructions each, for any compiler.
 void turn(std::size_t turns) { asm volatile("1: dec %0\n jnz 1b" : "+r"(turns) : : "cc"); }
 
-TEST(Instructions, OfALoopAreTwoATurn) {
+TEST(Instructions, LoopCountsTwoInstructionsPerTurn) {
   const double short_loop = instructions_by_steps([] { turn(100); }, 5);
   const double long_loop = instructions_by_steps([] { turn(600); }, 5);
   EXPECT_EQ(long_loop - short_loop, 1000.0);
@@ -26,7 +26,7 @@ TEST(Instructions, AreTheMeanOfTheCallsThatWereCounted) {
   EXPECT_EQ(call, 0U) << "stepped in a copy: nothing of this process moves";
 }
 
-TEST(Instructions, OfACallThatIsTooLongAreUnknown) {
+TEST(Instructions, CountOfATooLongCallIsNan) {
   EXPECT_TRUE(std::isnan(instructions_by_steps([] { turn(1000); }, 2, 1500)));
 }
 

@@ -9,7 +9,7 @@ namespace tact::tools::chart::ring_means_test {
 
 using model::Vec3;
 
-TEST(RingMeans, OfAConeAreItsHeights) {
+TEST(RingMeans, RingMeansOfAConeAreItsHeights) {
   const model::mesh::SurfaceMesh plate = tests::make_plate(0.08, 80);
   RingMeans means(31, 1e-3, 1.0);
   for (const auto& t : plate.triangle) {

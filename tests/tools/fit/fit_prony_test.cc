@@ -60,7 +60,7 @@ TEST(FitProny, SharesNeverGoBelowZeroNorAboveOne) {
   EXPECT_FALSE(fit->is_good);
 }
 
-TEST(FitProny, RefusesWhatIsNoRelaxation) {
+TEST(FitProny, DataWithoutARelaxationIsRefused) {
   EXPECT_FALSE(fit_prony({{0.0, 1.0}, {1.0, 0.5}}, {}));
   auto held = made({{0.4, 2.0}}, 1.0);
   held[3].time_s = held[2].time_s;

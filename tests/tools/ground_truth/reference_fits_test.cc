@@ -38,21 +38,21 @@ class ReferenceFits : public testing::Test {
   ReferenceData reference_;
 };
 
-TEST_F(ReferenceFits, TheSceneItWasSolvedFor) { EXPECT_EQ(said(), ""); }
+TEST_F(ReferenceFits, SceneOfTheReferenceIsAccepted) { EXPECT_EQ(said(), ""); }
 
-TEST_F(ReferenceFits, NoOtherTip) {
+TEST_F(ReferenceFits, AnotherTipIsRefused) {
   reference_.tool_radius_m *= 1.01;
   expect("radius");
 }
 
-TEST_F(ReferenceFits, NoOtherOrgan) {
+TEST_F(ReferenceFits, AnotherOrganIsRefused) {
   reference_.sites[0].point_m.x += 1e-4;
   expect("vertex 3");
   reference_.sites[0].vertex = 1000000;
   expect("vertex 1000000");
 }
 
-TEST_F(ReferenceFits, NoOtherTissue) {
+TEST_F(ReferenceFits, AnotherTissueIsRefused) {
   scene_.elastic->poisson_ratio = 0.4;
   expect("poisson_ratio");
   scene_.elastic->poisson_ratio = 0.45;
@@ -63,7 +63,7 @@ TEST_F(ReferenceFits, NoOtherTissue) {
   EXPECT_EQ(said(), "") << "a scene that states no tissue cannot differ";
 }
 
-TEST_F(ReferenceFits, NoOtherHeldBox) {
+TEST_F(ReferenceFits, AnotherHeldBoxIsRefused) {
   scene_.elastic->fixed_max_m.z = -0.02;
   expect("held box");
 }

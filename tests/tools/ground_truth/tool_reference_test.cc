@@ -87,7 +87,7 @@ class ToolReferenceFits : public testing::Test {
   ToolReference reference_ = example();
 };
 
-TEST_F(ToolReferenceFits, TheSceneItWasSolvedForAndNoOther) {
+TEST_F(ToolReferenceFits, OnlyTheSceneOfTheReferenceIsAccepted) {
   expect("");  // a place may be moved along its way
   // As by a longer handle; across it the jaws would meet other tissue.
   for (auto& sphere : scene_.tool.spheres) sphere.offset_m += 0.09 * scene_.hand_inward;

@@ -40,7 +40,7 @@ std::string page() {
   return text ? *text : "";
 }
 
-TEST(Evidence, SaysWhoWhereAndWithWhatTheReportWasMade) {
+TEST(Evidence, ReportNamesTesterLocationSerialNumbersAndDigests) {
   const Outcome out =
       run("--tester 'A. B.' --location 'room <1>' --serial 'delta 42' --serial 'PC 7'");
   ASSERT_EQ(out.status, 0) << out.output;

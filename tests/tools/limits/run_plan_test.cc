@@ -153,7 +153,7 @@ TEST(RunPlan, ACaseInWhichNothingHappensFails) {
   }
 }
 
-TEST(Consent, TakesTheWordsExactlyAndNoOthers) {
+TEST(Consent, OnlyTheExactConsentTextIsAccepted) {
   const auto agrees = [](const std::string& typed) {
     std::istringstream in(typed);
     return !read_consent(in, 8.0);
@@ -241,7 +241,7 @@ std::string typed(const std::string& words) {
   return " < " + path;
 }
 
-TEST(Limits, ARealDeviceDoesNotMoveWithoutTheWords) {
+TEST(Limits, RealDeviceDoesNotMoveWithoutTheExactConsentText) {
   const Outcome piped = run(real_device() + " < /dev/null");
   EXPECT_EQ(piped.status, 2);
   EXPECT_NE(piped.output.find("asks on a terminal first"), std::string::npos) << piped.output;

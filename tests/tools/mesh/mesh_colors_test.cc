@@ -98,7 +98,7 @@ TEST_F(MeshColors, StayWithTheirVerticesInTexts) {
               vtk + "SCALARS RGB int 3\nLOOKUP_TABLE default\n" + vertices("", false, true));
 }
 
-TEST_F(MeshColors, OfGltfAreLinearInTheFile) {
+TEST_F(MeshColors, GltfColoursAreReadAsLinear) {
   std::string bytes;
   const auto put = [&bytes](const auto& value) {
     bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
@@ -134,7 +134,7 @@ TEST_F(MeshColors, OfGltfAreLinearInTheFile) {
   expect_kept("a.gltf", file.dump());
 }
 
-TEST_F(MeshColors, AreNoneWhereAVertexHasNoneOrTheNumbersAreNoColours) {
+TEST_F(MeshColors, IncompleteOrInvalidColoursAreDropped) {
   const std::string off = "COFF\n8 12 0\n";
   const std::string all = vertices("", true, true);
   expect_none("a.off", off + "0 0 0\n" + all.substr(all.find('\n') + 1) + faces("3 "), false);
@@ -145,14 +145,14 @@ TEST_F(MeshColors, AreNoneWhereAVertexHasNoneOrTheNumbersAreNoColours) {
                            "1 2 3\n1 2 3\n1 2 3\n1 2 3\n1 2 3\n1 2 3\n1 2 3\n");
 }
 
-TEST_F(MeshColors, OfAPlyFileThatAreNoBytesAreNotTakenAsBlack) {
+TEST_F(MeshColors, PlyColoursAsFloatsAreDroppedAndNotReadAsBlack) {
   std::string head = kPlyHead;
   for (const char* name : {"uchar red", "uchar green", "uchar blue"})
     head.replace(head.find(name), 5, "float");
   expect_none("a.ply", head + vertices("", true, false) + faces("3 "));
 }
 
-TEST_F(MeshColors, ALittleMoreThanAllIsAll) {
+TEST_F(MeshColors, ChannelSlightlyAboveOneIsClampedToOne) {
   std::string text = vertices("", true, false);
   text.replace(text.find("1.0000"), 6, "1.0004");
   expect_kept("a.off", "COFF\n8 12 0\n" + text + faces("3 "));

@@ -248,7 +248,7 @@ TEST_F(MeshFormats, ADecimalCommaOrAWordIsNoNumberInAnyText) {
     }
 }
 
-TEST_F(MeshFormats, WhatAGltfFileLacksIsNamed) {
+TEST_F(MeshFormats, GltfWithAMissingOrShortBufferIsRefusedByName) {
   json file = gltf();
   file["buffers"][0]["uri"] = "gone.bin";
   expect_refused(

@@ -183,7 +183,7 @@ TEST_F(MeshRepair, DropDegenerateDropsFacesWithoutAreaAndDoubledOnes) {
   EXPECT_EQ(report["closed"], true);
 }
 
-TEST_F(MeshRepair, WhatIsLeftWithoutAreaOrVolumeIsAnErrorWithItsRemedy) {
+TEST_F(MeshRepair, ResultWithoutAreaOrVolumeIsRefusedWithTheRemedy) {
   const std::string needle =
       temp_.write("needle.obj", kCubeVertices + "v 5 0 0\n" + kCubeFaces + "f 1 9 2\n");
   const std::string out = temp_.path() + "/out.obj";
@@ -213,7 +213,7 @@ TEST_F(MeshRepair, FacesAreTurnedAsTheirNeighboursAndOutwards) {
   EXPECT_NEAR(report["volume_m3"].get<double>(), 1e-6, 1e-12);
 }
 
-TEST_F(MeshRepair, SolidsThatTouchAlongAnEdgeArePartedAndStayWhereTheyAre) {
+TEST_F(MeshRepair, SolidsThatShareAnEdgeAreSeparatedInPlace) {
   // A second cube on the edge from 7 to 3.
   const std::string path = temp_.write(
       "edge.obj", kCubeVertices +

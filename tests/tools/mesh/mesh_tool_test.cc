@@ -25,7 +25,7 @@ class MeshTool : public testing::Test {
   const std::string cube_ = temp_.write("cube.obj", kCubeVertices + kCubeFaces);
 };
 
-TEST_F(MeshTool, PrintsWhatACubeIs) {
+TEST_F(MeshTool, PrintsSizeAreaAndVolumeOfACube) {
   const Ran ran = run(cube_ + " --unit mm");
   EXPECT_EQ(ran.status, 0);
   EXPECT_EQ(ran.err, "");

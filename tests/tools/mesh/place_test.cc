@@ -243,7 +243,7 @@ TEST_F(PlaceOrgan, ReportsAsJsonToo) {
   EXPECT_EQ(guessed["unit_m"], guessed["placement"]["mesh_unit_m"]) << "one unit, stated once";
 }
 
-TEST(LikelyUnit, IsTheOneThatMakesAnOrgan) {
+TEST(LikelyUnit, UnitThatGivesTheSizeOfAnOrganIsChosen) {
   EXPECT_EQ(likely_unit_m(150.0), 0.001);
   EXPECT_EQ(likely_unit_m(40.0), 0.001);
   EXPECT_EQ(likely_unit_m(15.0), 0.01);

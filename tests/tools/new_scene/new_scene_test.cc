@@ -139,7 +139,7 @@ TEST_F(NewScene, CtrlCLeavesNothing) {
   EXPECT_EQ(made(), std::vector<std::string>{});
 }
 
-TEST_F(NewScene, WhatTactdRefusesIsNotWrittenAndTheModulusThatItTakesIsNamed) {
+TEST_F(NewScene, TooStiffOrganIsNotWrittenAndTheLargestModulusIsNamed) {
   const std::string organ = temp_.write("organ.obj", as_obj(ellipsoid_mm(2)));
   Ran ran = run(organ + " --out " + out_ + " --youngs-modulus-Pa 100000");
   EXPECT_EQ(ran.status, 2);

@@ -17,7 +17,7 @@ TEST_F(NewScene, AThinOrganEndsInASceneWithATearThatItsTissueReaches) {
   }
 }
 
-TEST_F(NewScene, ACavityIsNeverFilledWithoutAWord) {
+TEST_F(NewScene, CavityInsideAnOrganIsRefusedUntilItIsFilled) {
   // An ellipsoid with a cavity of half its size, turned inwards.
   SurfaceMesh shell = ellipsoid_mm(3);
   const auto first = static_cast<std::uint32_t>(shell.vertex_m.size());

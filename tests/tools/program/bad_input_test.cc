@@ -94,7 +94,7 @@ TEST_F(BadInput, AnEmptyArgumentIsRefusedByEveryProgram) {
     for (const char* empty : {"''", "--out=", "--json ''"}) refuses(program, empty, "is empty");
 }
 
-TEST_F(BadInput, NoProgramTakesANumberThatIsNone) {
+TEST_F(BadInput, NonFiniteNumbersAreRefusedByEveryOption) {
   std::size_t options = 0;
   for (const std::string& program : kPrograms)
     for (const std::string& option : number_options(program)) {
@@ -125,7 +125,7 @@ TEST_F(BadInput, AFolderOrPipeWhereAFileBelongsGetsAMessage) {
   refuses("tact-verify", pipe, "this is a pipe");
 }
 
-TEST_F(BadInput, NestingEndsNoProgram) {
+TEST_F(BadInput, DeeplyNestedFilesAreRefusedByEveryProgram) {
   const std::string scene = folder_ + "/deep.toml", json = folder_ + "/deep.json";
   std::ofstream(scene) << "a = " << std::string(400'000, '[');
   std::ofstream(json) << std::string(400'000, '[');
@@ -135,7 +135,7 @@ TEST_F(BadInput, NestingEndsNoProgram) {
   refuses("tact-verify", json, "deep.json:1: nested deeper than 64");
 }
 
-TEST_F(BadInput, NoResultDestroysAScene) {
+TEST_F(BadInput, OutputOverASceneFileIsRefusedAndTheSceneIsKept) {
   const std::string scene = folder_ + "/scene.toml";
   fs::copy_file(kScene, scene);
   const std::string run = kScene + " --free-run --ticks 10 --no-telemetry --no-black-box ";

@@ -63,7 +63,7 @@ TEST(HapticLoop, FrictionCarriesHalfACountUpToTwiceFrictionOverStep) {
   EXPECT_GT(largest_wall_N_per_m(loop, Verdict::kGrow), 15'000.0);
 }
 
-TEST(HapticLoop, AHandHelps) {
+TEST(HapticLoop, HandRaisesTheStableWallStiffness) {
   LoopCase loop = bare(1.0);
   loop.hand = {.mass_kg = 0.15, .stiffness_N_per_m = 600.0, .damping_Ns_per_m = 15.0};
   EXPECT_GT(largest_wall_N_per_m(loop, Verdict::kGrow), 5.0 * theory(loop));
@@ -102,7 +102,7 @@ TEST(HapticLoop, BeyondTheLineTheGateKeepsForceAndSlewWithinLimits) {
   }
 }
 
-TEST(HapticLoop, TheWitnessSeesWhatIsOutOfBounds) {
+TEST(HapticLoop, GateMonitorKeepsTheForceLimitAndLatchesLostSamples) {
   GateMonitor gate(1000.0);
   gate.open(0.0);
   for (int i = 0; i < 100; ++i) gate.step(100.0, true);

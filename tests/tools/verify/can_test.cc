@@ -144,7 +144,7 @@ TEST(VerifyCan, EveryStepOfTheConfigurationIsLookedAtAndNoneMayBeMissing) {
   EXPECT_EQ(passed(file), 0);
 }
 
-TEST(VerifyCan, BytesThatAreNoneAreDamage) {
+TEST(VerifyCan, InvalidHexIdentifierOrLengthIsDamage) {
   const auto damage_of = [](const auto& read) {
     Report report;
     read(report);
