@@ -48,7 +48,6 @@ struct CanAxis {
 
   void sample(double turns, std::int64_t at_ns) RT_SAFE {
     located = sampled = true;
-    jumps = false;
     motor_turns = turns;
     arrival_ns = at_ns;
   }
