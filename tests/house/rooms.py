@@ -117,7 +117,7 @@ PARTS = {
     "tools/stability": {
         "sweep": [],
         "laws": [],
-        "loop": ["sweep"],
+        "loop": [],
         "maps": ["sweep", "laws", "loop"],
     },
 }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# What a list of rooms declares: tact_room, tact_room_text, tact_room_scripts, tact_program, tact_test.
+# What a list of rooms declares: tact_room, tact_room_text, tact_program, tact_test.
 
 # tact_room(ROOM [SOURCES a.cc part/b.cc...] [ALONE a.cc...] LINKS target... [MOSTLY_LIBRARY | LOOP])
 # A folder as a library: the room model/law is the target tact_model_law, its SOURCES are in model/law/. LINKS names the
@@ -63,31 +63,6 @@ function(tact_room_text folder file)
     "// made from @folder@/@file@\n#pragma once\nnamespace tact::@namespace@ {\n\
 inline constexpr const char* @name@ = R\"~~(@text@)~~\";\n}\n")
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${source})
-  tact_target(target ${folder})
-  target_include_directories(${target} PRIVATE ${PROJECT_BINARY_DIR}/text)
-endfunction()
-
-# tact_room_scripts(tools/stability maps/law_lines.gp maps/...): scripts of one folder of that room for gnuplot, as
-# kLawLinesScript and so on of "tools/stability/maps/scripts.h", in the room's namespace
-function(tact_room_scripts folder)
-  string(REPLACE "/" "::" namespace ${folder})
-  set(header "// made from *.gp of ${folder}\n#pragma once\nnamespace tact::${namespace} {\n")
-  foreach(file ${ARGN})
-    file(READ ${PROJECT_SOURCE_DIR}/${folder}/${file} text)
-    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/${file})
-    cmake_path(GET file PARENT_PATH part)
-    cmake_path(GET file STEM words)
-    string(REPLACE "_" ";" words ${words})
-    set(name k)
-    foreach(word ${words})
-      string(SUBSTRING ${word} 0 1 first)
-      string(SUBSTRING ${word} 1 -1 rest)
-      string(TOUPPER ${first} first)
-      string(APPEND name ${first}${rest})
-    endforeach()
-    string(APPEND header "inline constexpr const char* ${name}Script = R\"~~(${text})~~\";\n")
-  endforeach()
-  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/text/${folder}/${part}/scripts.h @ONLY CONTENT "@header@}\n")
   tact_target(target ${folder})
   target_include_directories(${target} PRIVATE ${PROJECT_BINARY_DIR}/text)
 endfunction()

@@ -6,8 +6,6 @@
 
 #include "model/io/file_writer.h"
 #include "tools/fit/fit_report.h"
-#include "tools/fit/scripts.h"
-#include "tools/report/plot.h"
 
 namespace tact::tools::fit {
 namespace {
@@ -50,7 +48,7 @@ std::vector<std::string> titles_of(const FitReport& report) {
 
 }  // namespace
 
-model::Result<std::vector<std::string>> draw_fit(const FitReport& report, const std::string& file) {
+model::Result<nlohmann::json> picture_of(const FitReport& report, const std::string& file) {
   namespace fs = std::filesystem;
   if (!report.data || report.laws.empty())
     return model::Error{
@@ -61,8 +59,12 @@ model::Result<std::vector<std::string>> draw_fit(const FitReport& report, const 
   if (auto error = model::io::write_file((fs::path(folder) / (name + ".points.csv")).string(),
                                          rows_of(report)))
     return *error;
-  return report::draw(
-      {.name = name, .script = kFitScript, .variables = {{"laws", titles_of(report)}}}, folder);
+  return nlohmann::json{
+      {"label", "tact-lab fit"},
+      {"folder", folder},
+      {"name", name},
+      {"script", "fit.gp"},
+      {"variables", {{"width_px", 1200}, {"height_px", 800}, {"laws", titles_of(report)}}}};
 }
 
 }  // namespace tact::tools::fit

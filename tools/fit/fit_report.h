@@ -31,7 +31,7 @@ std::string text_of(const FitReport& report);
 /// other's line is a comment.
 std::string toml_of(const FitReport& report);
 nlohmann::ordered_json json_of(const FitReport& report);
-/// FILE.svg, FILE.png and what they were drawn from; returns the paths.
-model::Result<std::vector<std::string>> draw_fit(const FitReport& report, const std::string& file);
+/// Writes what FILE.svg and FILE.png are drawn from; returns the job of lab/picture.py.
+model::Result<nlohmann::json> picture_of(const FitReport& report, const std::string& file);
 
 }  // namespace tact::tools::fit

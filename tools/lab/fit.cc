@@ -11,6 +11,7 @@
 #include "tools/fit/fit_csv.h"
 #include "tools/fit/fit_report.h"
 #include "tools/lab/commands.h"
+#include "tools/lab/script.h"
 #include "tools/program/run_program.h"
 #include "tools/program/sweep.h"
 
@@ -183,13 +184,10 @@ Result<int> run(const program::Program&, Options& o) {
   report.sort();
   if (!o.out.empty())
     if (auto error = model::io::write_file(o.out, toml_of(report))) return *error;
-  if (!o.plot.empty())
-    if (const auto drawn = draw_fit(report, o.plot); !drawn) return drawn.error();
-  if (o.json)
-    fmt::print("{}\n", model::io::text_of(json_of(report), 2));
-  else
-    fmt::print("{}", text_of(report));
-  return report.follows() ? 0 : 1;
+  return finish(o.plot.empty() ? Result<nlohmann::json>(nlohmann::json::object())
+                               : picture_of(report, o.plot),
+                o.json ? model::io::text_of(json_of(report), 2) + "\n" : text_of(report),
+                report.follows() ? 0 : 1);
 }
 
 }  // namespace

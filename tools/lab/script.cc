@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 #include <sys/mman.h>
-#include <unistd.h>
 
+#include <cstdio>
 #include <filesystem>
 
 #include "model/io/json.h"
@@ -45,17 +45,24 @@ json organ_of(const model::scene::Scene& scene) {
           {"fixed_max_m", list_of(scene.elastic->fixed_max_m)}};
 }
 
-Result<int> become(const char* script, const json& job) {
-  const std::string text = model::io::text_of(job);
+Result<int> become(const char* script, const json& job, AfterCtrlC when) {
   // In memory, open in the program that takes our place: gone however that ends.
   const int fd = memfd_create("tact-job", 0);
-  for (std::string_view rest = text; !rest.empty();) {
-    const ssize_t n = write(fd, rest.data(), rest.size());
-    if (n <= 0) return Error{"no file in memory; free some memory, or close programs"};
-    rest.remove_prefix(static_cast<std::size_t>(n));
-  }
-  if (program::is_interrupted()) return program::interruption();
+  if (dprintf(fd, "%s", model::io::text_of(job).c_str()) < 0)
+    return Error{"no file in memory; free some memory, or close programs"};
+  if (when == AfterCtrlC::kNot && program::is_interrupted()) return program::interruption();
   return program::become_script(script, {fmt::format("/proc/self/fd/{}", fd)}, "tact-lab");
+}
+
+Result<int> finish(Result<json> picture, const std::string& text, int status) {
+  if (!picture) return picture.error();
+  if (picture->empty()) {
+    fmt::print("{}", text);
+    return status;
+  }
+  (*picture)["text"] = text;
+  (*picture)["status"] = status;
+  return become("lab/picture.py", *picture);
 }
 
 }  // namespace tact::tools::lab

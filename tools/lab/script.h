@@ -17,8 +17,15 @@ model::Result<model::scene::Scene> elastic_scene(const program::SceneArguments& 
 /// The organ of a scene with [elastic], in its mesh's own frame.
 nlohmann::json organ_of(const model::scene::Scene& scene);
 
+enum class AfterCtrlC { kNot, kToo };
+
 /// The script, `job` as its argument, takes our place, and so Ctrl-C, our output and our exit
 /// status. It comes back only if that fails. `script`: of tools/ and share/tact.
-model::Result<int> become(const char* script, const nlohmann::json& job);
+model::Result<int> become(const char* script, const nlohmann::json& job,
+                          AfterCtrlC when = AfterCtrlC::kNot);
+
+/// Draws a picture by lab/picture.py, if the job is not empty, then prints; the exit status.
+model::Result<int> finish(model::Result<nlohmann::json> picture, const std::string& text,
+                          int status);
 
 }  // namespace tact::tools::lab

@@ -12,6 +12,7 @@
 #include "model/io/program/within.h"
 #include "model/scene/tissue.h"
 #include "tools/lab/commands.h"
+#include "tools/lab/script.h"
 #include "tools/sweep/all_cores.h"
 #include "tools/sweep/reference_presses.h"
 #include "tools/sweep/sweep_report.h"
@@ -27,6 +28,7 @@ using model::scene::PressStep;
 using model::scene::PressSweep;
 using model::scene::PressWay;
 using model::scene::Scene;
+using nlohmann::json;
 
 constexpr std::size_t kWorst = 10;  // reported by name
 
@@ -126,21 +128,22 @@ std::optional<Error> write_way(const Scene& scene, const PressSweep& sweep,
   return model::io::write_file(path, csv);
 }
 
-/// Table and picture; of a single press its force along the way, too.
+bool has_picture(const Options& o, const PressSweep& sweep) {
+  return !o.no_plots && sweep.results.size() != 1;
+}
+
+/// Writes the table, of a single press its force along the way, too; with the names of the picture.
 Result<std::vector<std::string>> write_all(const Options& o, const Scene& scene,
                                            const PressSweep& sweep) {
   auto files = sweep::presses_table(scene, sweep).write(o.out);
   if (!files) return files.error();
-  if (sweep.results.size() == 1) {
-    const std::string path = (std::filesystem::path(o.out) / "press.csv").string();
-    if (auto error = write_way(scene, sweep, path)) return *error;
-    files->push_back(path);
-    return files;
-  }
-  if (o.no_plots) return files;
-  const auto drawn = draw(sweep::presses_plot(sweep), o.out);
-  if (!drawn) return drawn.error();
-  files->insert(files->end(), drawn->begin(), drawn->end());
+  const auto in_folder = [&](const char* name) {
+    return files->emplace_back((std::filesystem::path(o.out) / name).string());
+  };
+  if (sweep.results.size() == 1)
+    if (auto error = write_way(scene, sweep, in_folder("press.csv"))) return *error;
+  if (has_picture(o, sweep))
+    for (const char* name : {"presses.svg", "presses.png"}) in_folder(name);
   return files;
 }
 
@@ -176,11 +179,10 @@ Result<int> run(const program::Program&, Options& o) {
   const auto files = write_all(o, *scene, *sweep);
   if (!files) return files.error();
   const std::string command = command_for(o);
-  if (o.json)
-    fmt::print("{}\n", sweep::json_of(*scene, *sweep, command, *files));
-  else
-    fmt::print("{}", sweep::text_of(*sweep, command, kWorst));
-  return sweep->flawed().empty() ? 0 : 1;
+  return finish(has_picture(o, *sweep) ? sweep::presses_picture(*sweep, o.out) : json::object(),
+                o.json ? sweep::json_of(*scene, *sweep, command, *files) + "\n"
+                       : sweep::text_of(*sweep, command, kWorst),
+                sweep->flawed().empty() ? 0 : 1);
 }
 
 }  // namespace

@@ -213,7 +213,6 @@ Result<Repaired> repair_file(const RepairOrder& order,
        .directory = ".",
        .log_path = log->path(),
        .package = "python3",
-       .environment = {},
        .on_line = [&listener](std::string_view line) { listener.hear(line); }});
   if (!listener.error.empty()) return Error{about(order.source, source, listener.error)};
   if (!ran) return no_mesh(order.source, ran.error(), log->path());

@@ -42,19 +42,6 @@ std::vector<char*> pointers(std::vector<std::string>& words) {
   return out;
 }
 
-std::vector<std::string> environment_of(const ProgramCall& call) {
-  std::vector<std::string> out;
-  for (char** e = environ; *e != nullptr; ++e) {
-    const std::string_view entry{*e};
-    bool replaced = false;
-    for (const auto& [name, value] : call.environment) replaced |= entry.starts_with(name + "=");
-    if (!replaced) out.emplace_back(entry);
-  }
-  for (const auto& [name, value] : call.environment)
-    out.push_back(fmt::format("{}={}", name, value));
-  return out;
-}
-
 /// Kills what is left of the group, and how its leader ended. Nothing if it cannot be known.
 std::optional<int> end(pid_t child) {
   kill(-child, SIGKILL);
@@ -78,7 +65,6 @@ bool still_runs(pid_t child) {
 Result<pid_t> start_child(const ProgramCall& call) {
   std::vector<std::string> words{call.program};
   words.insert(words.end(), call.arguments.begin(), call.arguments.end());
-  std::vector<std::string> settings = environment_of(call);
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
   posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
@@ -96,8 +82,8 @@ Result<pid_t> start_child(const ProgramCall& call) {
   {
     StartOfChild start;
     posix_spawnattr_setsigmask(&how, &start.signals_before());
-    failed = posix_spawnp(&child, call.program.c_str(), &files, &how, pointers(words).data(),
-                          pointers(settings).data());
+    failed =
+        posix_spawnp(&child, call.program.c_str(), &files, &how, pointers(words).data(), environ);
     if (failed == 0) remembered = start.remember(child);
   }
   posix_spawnattr_destroy(&how);
@@ -221,11 +207,6 @@ Result<ScratchFolder> ScratchFolder::make(const std::string& name) {
   }
   remember_scratch(path);
   return ScratchFolder(path);
-}
-
-void ScratchFolder::keep() {
-  forget_scratch(path_);
-  path_.clear();
 }
 
 ScratchFolder::~ScratchFolder() {

@@ -27,7 +27,6 @@ struct ProgramCall {
   std::string log_path;       // absolute, of everything it prints
   std::string package;        // the Debian package that has it, for the message when it is missing
   double time_limit_s = 0.0;  // 0: none
-  std::vector<std::pair<std::string, std::string>> environment;  // on top of ours
   std::function<void(std::string_view)> on_line{};  // each line that it prints, as it comes
 };
 
@@ -73,8 +72,6 @@ class ScratchFolder {
 
   const std::string& path() const { return path_; }
   std::string file(const std::string& name) const { return path_ + "/" + name; }
-  /// Leaves the folder where it is, for a person to look into.
-  void keep();
 
  private:
   explicit ScratchFolder(std::string path) : path_(std::move(path)) {}

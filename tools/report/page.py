@@ -68,14 +68,20 @@ def literal(value):
     return "'" + text.replace("'", "''") + "'"
 
 
+def assignment(name, value):
+    """Of a name with $: the rows of a data block."""
+    return f"{name} << EOD\n{value}EOD" if name[0] == "$" else f"{name} = {literal(value)}"
+
+
 def draw(folder, name, script, **variables):
-    """NAME.svg and .png by a script beside this file, kept with its variables as NAME.gp; the SVG."""
+    """NAME.svg and .png by a script beside this file, or at its path, kept with its variables as NAME.gp; the SVG."""
     lines = [f"# Draw again, in this folder: gnuplot -e \"kind='png'\" {name}.gp"]
-    lines += [f"{key} = {literal(value)}" for key, value in {"name": name, **variables}.items()]
-    (folder / f"{name}.gp").write_text("\n".join(lines) + "\n" + (HERE / "plot.gp").read_text() + (HERE / script).read_text())
+    lines += [assignment(*variable) for variable in {"name": name, **variables}.items()]
+    kept = folder.absolute() / f"{name}.gp"
+    kept.write_text("\n".join(lines) + "\n" + (HERE / "plot.gp").read_text() + (HERE / script).read_text())
     for kind in ("svg", "png"):
         try:
-            done = subprocess.run(["gnuplot", "-e", f"kind='{kind}'", f"{name}.gp"], cwd=folder, stdin=subprocess.DEVNULL,
+            done = subprocess.run(["gnuplot", "-e", f"kind='{kind}'", kept], cwd=folder, stdin=subprocess.DEVNULL,
                                   capture_output=True, text=True, errors="replace", check=False, timeout=TIME_LIMIT_S)
         except FileNotFoundError:
             raise Failure("gnuplot is not installed; apt install gnuplot-nox") from None

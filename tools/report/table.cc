@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -28,21 +26,7 @@ std::string text_of(const Cell& cell) {
   return fmt::format("{:.6g}", number + 0.0);
 }
 
-const Cell& cell_of(const Row& row, const std::string& column) {
-  const auto at = std::ranges::find(row, column, [](const auto& cell) { return cell.first; });
-  assert(at != row.end() && "no such column");
-  return at->second;
-}
-
 }  // namespace
-
-double number(const Row& row, const std::string& column) {
-  return std::get<double>(cell_of(row, column));
-}
-
-const std::string& word(const Row& row, const std::string& column) {
-  return std::get<std::string>(cell_of(row, column));
-}
 
 std::string Table::to_csv() const {
   std::string out = "job";

@@ -26,10 +26,6 @@ struct Cell : std::variant<double, std::string> {
 /// Without the job. Each cell with the name of its column, which ends in its unit, as everywhere.
 using Row = std::vector<std::pair<const char*, Cell>>;
 
-/// The value in this column; an assert if there is no such number, or word.
-double number(const Row& row, const std::string& column);
-const std::string& word(const Row& row, const std::string& column);
-
 class Table {
  public:
   explicit Table(std::string name, std::vector<Row> rows = {})

@@ -5,10 +5,8 @@
 
 #include <algorithm>
 #include <array>
-#include <nlohmann/json.hpp>
 
 #include "model/io/json.h"
-#include "tools/sweep/scripts.h"
 
 namespace tact::tools::sweep {
 namespace {
@@ -82,7 +80,7 @@ report::Table presses_table(const model::scene::Scene& scene, const PressSweep& 
   return table;
 }
 
-report::Plot presses_plot(const PressSweep& sweep) {
+nlohmann::json presses_picture(const PressSweep& sweep, const std::string& folder) {
   constexpr std::size_t kBins = 40;
   const PressResult* stiffest = sweep.stiffest();
   const bool has_slope = stiffest && stiffest->slope_N_per_m.value > 0.0;
@@ -91,13 +89,16 @@ report::Plot presses_plot(const PressSweep& sweep) {
   for (const PressResult& r : sweep.results)
     if (r.state == PressState::kPressed)
       ++count[static_cast<std::size_t>(kBins * r.slope_N_per_m.value / most_N_per_m)];
-  return {.name = "presses",
-          .width_px = 1400,
-          .height_px = 700,
-          .script = kPressesScript,
-          .variables = {{"bin_N_per_m", most_N_per_m / kBins},
-                        {"largest_N_per_m", most_N_per_m},
-                        {"most", static_cast<double>(*std::ranges::max_element(count))}}};
+  return {{"label", "tact-lab sweep"},
+          {"folder", folder},
+          {"name", "presses"},
+          {"script", "presses.gp"},
+          {"variables",
+           {{"width_px", 1400},
+            {"height_px", 700},
+            {"bin_N_per_m", most_N_per_m / kBins},
+            {"largest_N_per_m", most_N_per_m},
+            {"most", *std::ranges::max_element(count)}}}};
 }
 
 std::string command_to_repeat(const std::string& command, const PressPoint& place) {

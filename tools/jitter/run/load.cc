@@ -38,8 +38,7 @@ model::Result<program::RunningProgram> start_load(const std::vector<std::string>
        .arguments = stress_arguments(kinds, cpus, folder.path(), longest_s),
        .directory = folder.path(),
        .log_path = folder.file("stress-ng.txt"),
-       .package = "stress-ng",
-       .environment = {}});
+       .package = "stress-ng"});
 }
 
 }  // namespace tact::tools::jitter

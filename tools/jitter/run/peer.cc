@@ -117,8 +117,7 @@ std::optional<Error> run_cyclictest(const PeerCall& call, const program::Scratch
                                           .package = "rt-tests",
                                           // Generous: under load cyclictest may be late, too;
                                           // without it a hang would be for ever.
-                                          .time_limit_s = 60.0 + 5.0 * call.duration_s,
-                                          .environment = {}});
+                                          .time_limit_s = 60.0 + 5.0 * call.duration_s});
   if (!said) return said.error();
   const auto text = model::io::read_file(json_path);
   if (!text) return text.error();

@@ -166,12 +166,6 @@ const std::vector<NamedLaw>& probed_laws() {
   return laws;
 }
 
-std::vector<std::string> names_of_laws() {
-  std::vector<std::string> names;
-  for (const NamedLaw& named : probed_laws()) names.push_back(named.name);
-  return names;
-}
-
 double steepest_N_per_m(const NamedLaw& named) {
   constexpr int kSamples = 200;
   // From rest and down in steps, as a tool comes: one with memory answers to the way, too.

@@ -28,9 +28,6 @@ struct NamedLaw {
 /// Made once; a law that this build cannot make is left out.
 const std::vector<NamedLaw>& probed_laws();
 
-/// Theirs, for a picture.
-std::vector<std::string> names_of_laws();
-
 /// Largest dF/dd that its law gives between rest and its range, N/m.
 double steepest_N_per_m(const NamedLaw& named);
 

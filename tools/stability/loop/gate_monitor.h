@@ -5,12 +5,9 @@
 // (model/limit_witness.h); a latched fault may cut to zero at once.
 #pragma once
 
-#include <fmt/format.h>
-
 #include "firmware/gate/gate.h"
 #include "model/limit_witness.h"
 #include "tools/stability/loop/haptic_loop.h"
-#include "tools/stability/sweep/map.h"
 
 namespace tact::tools::stability {
 
@@ -25,7 +22,6 @@ inline constexpr model::Limits kSceneLimits{.force_N = 8.0,
                                             .energy_J = 1e9};
 
 inline constexpr const char* kOutOfBounds = "OUT OF BOUNDS";
-inline constexpr const char* kFought = "fights the limits of the gate";
 
 class GateMonitor {
  public:
@@ -57,7 +53,7 @@ class GateMonitor {
   const char* beyond_the_line() const {
     if (!kept_bounds()) return kOutOfBounds;
     if (is_latched()) return "20 lost in a row: the gate lets go and latches";
-    return is_fought() ? kFought : "stays below the limits of the gate";
+    return is_fought() ? "fights the limits of the gate" : "stays below the limits of the gate";
   }
   bool is_latched() const { return !armed_; }
   double written_N() const { return written_N_; }
@@ -88,22 +84,6 @@ inline LoopRun run_gated_wall(LoopCase loop, double stiffness_N_per_m, GateMonit
   return run_loop(
       loop, [&](double depth_m) { return stiffness_N_per_m * depth_m; },
       [&](double wanted_N, bool fresh) { return gate.step(wanted_N, fresh); });
-}
-
-/// Of a table with the column beyond_the_line: the gate held, and how many cells put it to the
-/// test.
-inline Finding check_gate(const report::Table& table) {
-  std::size_t held = 0, fought = 0;
-  for (const report::Row& row : table.rows()) {
-    held += word(row, "beyond_the_line") != kOutOfBounds;
-    fought += word(row, "beyond_the_line") == kFought;
-  }
-  const std::size_t all = table.rows().size();
-  return {held == all && fought > 0,
-          fmt::format("three times beyond the line the gate keeps |F| and |dF| in bounds in {} of "
-                      "{} cells; {} of them fight its limits",
-                      held, all, fought),
-          {{"held", held}, {"at_the_limits", fought}}};
 }
 
 }  // namespace tact::tools::stability

@@ -214,30 +214,6 @@ report::Row run(std::size_t job, Extent extent) {
                                              : "comes to rest"}};
 }
 
-std::vector<Finding> check(const report::Table& t) {
-  Spread ratio, alike;
-  std::size_t in_bounds = 0, bounced = 0;
-  for (const report::Row& row : t.rows()) {
-    in_bounds += word(row, "beyond_the_line") != kOutOfBounds;
-    bounced += word(row, "beyond_the_line") == kBounces;
-    ratio.add(number(row, "controller_over_theory"));
-    alike.add(number(row, "controller_N_per_m") / number(row, "one_degree_N_per_m"));
-  }
-  return {{ratio.low > 0.85 && ratio.high < 1.3,
-           fmt::format("the whole controller with the simulated Delta loses stability at {:.2f} to "
-                       "{:.2f} of b / (T/2 + t_d)",
-                       ratio.low, ratio.high),
-           {{"least_ratio", ratio.low}, {"largest_ratio", ratio.high}}},
-          {alike.low > 0.8 && alike.high < 1.25,
-           fmt::format("and at {:.2f} to {:.2f} of what the independent loop of one degree of "
-                       "freedom gives",
-                       alike.low, alike.high)},
-          {in_bounds == t.rows().size() && bounced > 0,
-           fmt::format("three times beyond it |F| and |dF| stay in bounds in {} of {} cells; {} of "
-                       "them bounce on the surface",
-                       in_bounds, t.rows().size(), bounced)}};
-}
-
 }  // namespace
 
 Map delta_loop_map() {
@@ -245,8 +221,7 @@ Map delta_loop_map() {
           .name = "loop_delta",
           .purpose = "spot checks: the real controller with the simulated Delta and its hand",
           .jobs = [](Extent extent) { return axes(settings(extent)).jobs(); },
-          .run = run,
-          .check = check};
+          .run = run};
 }
 
 }  // namespace tact::tools::stability

@@ -4,14 +4,10 @@
 // Per cell of z = h omega and damping ratio zeta: M of MA-10 to MA-15 gives the spectral
 // radius; the step itself (model/springs/integrators.h) is run from two starts, (x, h v) = (1, 0)
 // and (0, 1), and the growth a step of what comes out is measured over the second half of the run.
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <cmath>
 
 #include "model/springs/integrator_stability.h"
 #include "model/springs/integrators.h"
-#include "tools/stability/maps/scripts.h"
 #include "tools/stability/sweep/axes.h"
 #include "tools/stability/sweep/map.h"
 
@@ -100,52 +96,18 @@ report::Row run(std::size_t job, Extent extent) {
           {"measured", growth > kGrows ? "grows" : "bounded"}};
 }
 
-std::vector<Finding> check(const report::Table& t) {
-  std::size_t agree = 0;
-  double worst = 0.0;
-  std::string rest;
-  for (const report::Row& row : t.rows()) {
-    const double theory = number(row, "theory_growth_per_step");
-    // What shrinks faster is gone before it can be measured.
-    if (theory > 0.5)
-      worst = std::max(worst, std::abs(number(row, "measured_growth_per_step") / theory - 1.0));
-    if (word(row, "theory") == word(row, "measured")) {
-      ++agree;
-      continue;
-    }
-    rest += fmt::format("\n        {} z {:.4g} zeta {:.3g}: radius {:.6f}", word(row, "method"),
-                        number(row, "z"), number(row, "zeta"), theory);
-  }
-  const double share = static_cast<double>(agree) / static_cast<double>(t.rows().size());
-  // Right on the line a growth below kGrows counts as none.
-  return {{share >= 0.995,
-           fmt::format("the oscillator grows where its amplification matrix says in {:.3f} % of {} "
-                       "cells{}{}",
-                       100.0 * share, t.rows().size(),
-                       rest.empty() ? "" : "; the others, right on the line:", rest),
-           {{"agree_percent", 100.0 * share}}},
-          {worst < 1e-3,
-           fmt::format("growth a step agrees within {:.1e}, where it is above 1/2", worst)}};
-}
-
-/// The methods, z_max over zeta of each, and the size of a cell.
-report::Variables variables(Extent extent) {
+/// For the picture: z_max over zeta of each method.
+nlohmann::json facts() {
   constexpr int kPoints = 200;
-  std::vector<std::string> names;
-  std::string theory = "method,z_max,zeta\n";
-  for (const auto& [name, method] : kProbedMethods) {
-    names.emplace_back(name);
+  nlohmann::json theory = nlohmann::json::array();
+  for (const auto& [name, method] : kProbedMethods)
     for (int i = 0; i <= kPoints; ++i) {
       const double zeta = 2.0 * i / kPoints;
       // Infinity is no number for gnuplot: just beyond what is shown.
-      const double z_max = std::fmin(model::springs::largest_stable_z(method, zeta), 5.0);
-      theory += fmt::format("{},{:.5g},{:.5g}\n", name, z_max, zeta);
+      theory.push_back(
+          {name, std::fmin(model::springs::largest_stable_z(method, zeta), 5.0), zeta});
     }
-  }
-  return {{"methods", names},
-          {"$theory", theory},
-          {"cell_z", z_of(0, extent)},
-          {"cell_zeta", zeta_of(1, extent)}};
+  return {{"theory", theory}};
 }
 
 }  // namespace
@@ -159,9 +121,7 @@ Map integrator_map() {
                 return std::size(kProbedMethods) * cells(extent).zeta * cells(extent).z;
               },
           .run = run,
-          .check = check,
-          .plot = {.width_px = 1600, .height_px = 850, .script = kIntegratorsScript},
-          .variables = variables};
+          .facts = facts};
 }
 
 }  // namespace tact::tools::stability

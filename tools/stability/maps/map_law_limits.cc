@@ -4,13 +4,10 @@
 // Per cell one law and one depth, in shares of its range: the force, tangent and status of the law
 // there, and what the gate has written when a tool has come there from rest with 0.2 m/s, 1 kHz. Of
 // a law with memory: what it gives when it has settled there.
-#include <fmt/format.h>
-
 #include <cmath>
 
 #include "tools/stability/laws/laws.h"
 #include "tools/stability/loop/gate_monitor.h"
-#include "tools/stability/maps/scripts.h"
 #include "tools/stability/sweep/axes.h"
 #include "tools/stability/sweep/map.h"
 
@@ -62,24 +59,6 @@ report::Row run(std::size_t job, Extent extent) {
           {"beyond_the_line", named.beyond}};
 }
 
-std::vector<Finding> check(const report::Table& t) {
-  std::size_t in_bounds = 0, reported = 0, beyond = 0, finite = 0;
-  for (const report::Row& row : t.rows()) {
-    in_bounds += word(row, "gate") == "in bounds";
-    finite += std::isfinite(number(row, "force_N"));
-    // Only beyond the range a law has to say that it is.
-    if (number(row, "depth_ratio") <= 1.0) continue;
-    ++beyond;
-    reported += word(row, "status") == "saturated";
-  }
-  return {{finite == t.rows().size(), "no law gives a force that is not a number"},
-          {reported == beyond,
-           fmt::format("beyond its range every law says so: {} of {} cells", reported, beyond)},
-          {in_bounds == t.rows().size(),
-           fmt::format("through the gate |F| and |dF| stay in bounds in {} of {} cells", in_bounds,
-                       t.rows().size())}};
-}
-
 }  // namespace
 
 Map law_limit_map() {
@@ -87,10 +66,7 @@ Map law_limit_map() {
           .name = "law_limits",
           .purpose = "every law pressed and pulled beyond its range, through the gate",
           .jobs = [](Extent extent) { return probed_laws().size() * depths(extent); },
-          .run = run,
-          .check = check,
-          .plot = {.width_px = 1600, .height_px = 800, .script = kLawLimitsScript},
-          .variables = [](Extent) { return report::Variables{{"laws", names_of_laws()}}; }};
+          .run = run};
 }
 
 }  // namespace tact::tools::stability

@@ -6,8 +6,6 @@
 //     rhombus_snap  least slope of a unit over kN, by kT/kN at 60 deg: it snaps below 0
 //     hex_ring, hex_node, hex_sheet   force at 5 mm, N, by the number of rings: the printed forms
 //                                     have no limit, the energy form has
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -16,7 +14,6 @@
 #include "model/indent/hex_sheet.h"
 #include "model/indent/rhombus_unit.h"
 #include "tools/printed/hex_paper.h"
-#include "tools/stability/maps/scripts.h"
 #include "tools/stability/sweep/map.h"
 
 namespace tact::tools::stability {
@@ -32,7 +29,7 @@ struct Point {
   const char* what = "";
 };
 
-// Chosen: so fine that the least sampled slope is the least one within the bounds of check().
+// Chosen: so fine that the least sampled slope is the least one within the bounds of the findings.
 constexpr int kSamples = 2000;
 
 Point disc_cone(double t) {
@@ -124,47 +121,6 @@ report::Row run(std::size_t job, Extent extent) {
           {"what_happens", p.what}};
 }
 
-/// Rows of one study, in order.
-std::vector<const report::Row*> rows_of(const report::Table& t, const char* study) {
-  std::vector<const report::Row*> out;
-  for (const report::Row& row : t.rows())
-    if (word(row, "study") == study) out.push_back(&row);
-  return out;
-}
-
-double worst_error(const report::Table& t, const char* study) {
-  double worst = 0.0;
-  for (const report::Row* row : rows_of(t, study))
-    worst = std::max(worst, std::abs(number(*row, "measured") - number(*row, "theory")));
-  return worst;
-}
-
-double last_over_middle(const report::Table& t, const char* study) {
-  const auto rows = rows_of(t, study);
-  return number(*rows.back(), "measured") / number(*rows[rows.size() / 2], "measured");
-}
-
-std::vector<Finding> check(const report::Table& t) {
-  bool refused_beyond = true;
-  for (const report::Row* row : rows_of(t, "disc_cone"))
-    refused_beyond &=
-        (word(*row, "what_happens") == "grows to flat") == (number(*row, "measured") >= -1e-9);
-  const double ring = last_over_middle(t, "hex_ring"), node = last_over_middle(t, "hex_node"),
-               sheet = last_over_middle(t, "hex_sheet");
-  return {{worst_error(t, "disc_cone") < 1e-3 && refused_beyond,
-           "a disc's least slope is k (1 - eta^2/2); beyond sqrt 2 it is refused"},
-          {worst_error(t, "disc_rate") == 0.0,
-           "the layers that move follow T_i < 1/rate: fewer on a faster loop"},
-          {worst_error(t, "rhombus_snap") < 0.02,
-           "a unit's least slope is kN - kT (1 - cos theta0); below zero it snaps"},
-          {ring > 1.7 && node > 2.9,
-           fmt::format("twice the rings make the printed hex force {:.2f} (ring) and {:.2f} (node) "
-                       "times larger",
-                       ring, node)},
-          {std::abs(sheet - 1.0) < 1e-3,
-           fmt::format("twice the rings change the energy form by {:.1e}", std::abs(sheet - 1.0))}};
-}
-
 }  // namespace
 
 Map law_line_map() {
@@ -172,9 +128,7 @@ Map law_line_map() {
           .name = "law_lines",
           .purpose = "parameters beyond which a law snaps, ends early or has no limit",
           .jobs = [](Extent extent) { return std::size(kStudies) * points(extent); },
-          .run = run,
-          .check = check,
-          .plot = {.width_px = 1400, .height_px = 1000, .script = kLawLinesScript}};
+          .run = run};
 }
 
 }  // namespace tact::tools::stability

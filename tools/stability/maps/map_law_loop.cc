@@ -5,8 +5,6 @@
 // largest factor without growth. If the theory of the wall carries over, factor times tangent is
 // K_grow of model/law/haptic_limit.h, for any law. Of a law with memory the tangent is what
 // one tick can meet: its nodes and terms give way later, which may only make it more stable.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <memory>
 
@@ -14,7 +12,6 @@
 #include "tools/stability/laws/laws.h"
 #include "tools/stability/loop/gate_monitor.h"
 #include "tools/stability/loop/haptic_loop.h"
-#include "tools/stability/maps/scripts.h"
 #include "tools/stability/sweep/axes.h"
 #include "tools/stability/sweep/map.h"
 
@@ -95,25 +92,12 @@ report::Row run(std::size_t job, Extent extent) {
           {"beyond_the_line", gate.beyond_the_line()}};
 }
 
-bool remembers(const std::string& law) {
-  return std::any_of(probed_laws().begin(), probed_laws().end(),
-                     [&](const NamedLaw& n) { return n.name == law && n.remembers(); });
-}
-
-std::vector<Finding> check(const report::Table& t) {
-  Spread closed, memory;
-  for (const report::Row& row : t.rows())
-    (remembers(word(row, "law")) ? memory : closed).add(number(row, "measured_over_theory"));
-  return {
-      closed.within(0.9, 1.2,
-                    "every closed-form law at every depth loses stability where its tangent "
-                    "passes b / (T/2 + t_d)"),
-      // Memory only helps, so its spread has no upper end.
-      {memory.low > 0.9,
-       fmt::format("laws with memory are stable at least as far, with the tangent that one tick "
-                   "can meet: measured {:.2f} to {:.2f} of it",
-                   memory.low, memory.high)},
-      check_gate(t)};
+/// Which laws have memory: no column says it.
+nlohmann::json facts() {
+  nlohmann::json names = nlohmann::json::array();
+  for (const NamedLaw& named : probed_laws())
+    if (named.remembers()) names.push_back(named.name);
+  return {{"with_memory", names}};
 }
 
 }  // namespace
@@ -124,9 +108,7 @@ Map law_loop_map() {
           .purpose = "largest stable tangent of every law, at depths of its range",
           .jobs = [](Extent extent) { return axes(extent).jobs(); },
           .run = run,
-          .check = check,
-          .plot = {.width_px = 1200, .height_px = 800, .script = kLoopLawsScript},
-          .variables = [](Extent) { return report::Variables{{"laws", names_of_laws()}}; }};
+          .facts = facts};
 }
 
 }  // namespace tact::tools::stability

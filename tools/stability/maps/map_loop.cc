@@ -4,22 +4,16 @@
 // Per cell: the largest K without growth and the largest K that comes to rest, beside K_grow and
 // K_safe of model/law/haptic_limit.h; then the same loop at three times the measured limit, through
 // the gate. "bare" is the hand that gives no help: it pushes with a constant force.
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "model/law/haptic_limit.h"
 #include "tools/stability/loop/gate_monitor.h"
 #include "tools/stability/loop/haptic_loop.h"
-#include "tools/stability/maps/scripts.h"
 #include "tools/stability/sweep/axes.h"
 #include "tools/stability/sweep/map.h"
 
 namespace tact::tools::stability {
 namespace {
-
-// Of a limit: HL-1 is exact for low frequencies alone, and the search ends within 1 %.
-constexpr double kMinStable_ratio = 0.95;
 
 struct Hand {
   const char* name;
@@ -91,45 +85,6 @@ report::Row run(std::size_t job, Extent extent) {
           {"beyond_the_line", gate.beyond_the_line()}};
 }
 
-std::vector<Finding> check(const report::Table& t) {
-  Spread grow, rest, bare_grow;
-  std::size_t below = 0, bare = 0;
-  for (const report::Row& row : t.rows()) {
-    const double theory = number(row, "theory_grow_N_per_m");
-    const double safe = number(row, "theory_safe_N_per_m");
-    const double ratio = number(row, "largest_without_growth_N_per_m") / theory;
-    grow.add(ratio);
-    below += ratio < 1.0 ? 1 : 0;
-    // HL-2 is zero without friction: nothing to compare.
-    if (safe > 0.0) rest.add(number(row, "largest_at_rest_N_per_m") / safe);
-    // Here the formula is the limit itself, not only a bound.
-    if (word(row, "hand") == "bare" && !(number(row, "friction_N") > 0.0)) {
-      ++bare;
-      bare_grow.add(ratio);
-    }
-  }
-  return {
-      {grow.low > kMinStable_ratio,
-       fmt::format(
-           "no cell grows below {} K, K = b / (T/2 + t_d): {} of {} grow below K, the least "
-           "measured limit is {:.3f} K",
-           kMinStable_ratio, below, t.rows().size(), grow.low),
-       {{"below", below}, {"least_ratio", grow.low}}},
-      {rest.low > kMinStable_ratio,
-       fmt::format("every cell below {} min(K, 2 c / D) comes to rest: the least measured limit is "
-                   "{:.3f} of min(K, 2 c / D)",
-                   kMinStable_ratio, rest.low)},
-      {bare_grow.low > kMinStable_ratio && bare_grow.high < 1.25,
-       fmt::format("in the {} cells without hand and friction the measured limit is {:.3f} to "
-                   "{:.3f} K",
-                   bare, bare_grow.low, bare_grow.high),
-       {{"bare", bare},
-        {"bare_least_ratio", bare_grow.low},
-        {"bare_largest_ratio", bare_grow.high}}},
-      check_gate(t),
-  };
-}
-
 }  // namespace
 
 Map loop_map() {
@@ -137,9 +92,7 @@ Map loop_map() {
           .name = "loop",
           .purpose = "largest stable wall over damping, rate, delay, encoder, friction, hand",
           .jobs = [](Extent extent) { return axes(settings(extent)).jobs(); },
-          .run = run,
-          .check = check,
-          .plot = {.width_px = 1400, .height_px = 1050, .script = kLoopScript}};
+          .run = run};
 }
 
 }  // namespace tact::tools::stability

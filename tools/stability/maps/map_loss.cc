@@ -7,12 +7,9 @@
 //
 //     holds   the last force for ever
 //     gate    holds one tick, ramps down to zero within 10 ms, latches at 20 (firmware/gate/gate.h)
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "tools/stability/loop/gate_monitor.h"
-#include "tools/stability/maps/scripts.h"
 #include "tools/stability/sweep/axes.h"
 #include "tools/stability/sweep/map.h"
 
@@ -63,31 +60,6 @@ report::Row run(std::size_t job, Extent extent) {
           {"state", state}};
 }
 
-std::vector<Finding> check(const report::Table& t) {
-  double worst_hold_J = 0.0, worst_gate_J = 0.0, worst_step = 0.0;
-  bool ends_at_zero = true, latches = true;
-  for (const report::Row& row : t.rows()) {
-    worst_hold_J = std::max(worst_hold_J, number(row, "hold_gift_J"));
-    worst_gate_J = std::max(worst_gate_J, number(row, "gate_gift_J"));
-    const double rate_Hz = number(row, "rate_Hz"), lost = number(row, "lost_in_a_row");
-    // As a share of the slew limit: what a tick may do depends on the rate.
-    worst_step =
-        std::max(worst_step, number(row, "gate_max_step_N") * rate_Hz / kSceneLimits.slew_N_per_s);
-    if ((lost - 2.0) / rate_Hz >= 0.010) ends_at_zero &= number(row, "gate_force_N") == 0.0;
-    // Counted in samples, independent of the rate.
-    latches &= (word(row, "state") == "latched") == (lost >= 20.0);
-  }
-  return {{ends_at_zero, "10 ms after the second lost sample the force is zero, or latched at 20"},
-          {latches, "20 lost in a row latch, 19 do not"},
-          {worst_gate_J < worst_hold_J,
-           fmt::format("a hand that withdraws is given at most {:.3f} mJ by the gate, {:.3f} mJ by "
-                       "a held force and still growing",
-                       1e3 * worst_gate_J, 1e3 * worst_hold_J)},
-          {worst_step <= 1.0 + 1e-9,
-           fmt::format("letting go never changes the force faster than {:.2f} of the slew limit",
-                       worst_step)}};
-}
-
 }  // namespace
 
 Map loss_map() {
@@ -96,8 +68,7 @@ Map loss_map() {
           .purpose = "a burst of lost samples: hold, fade, latch, and what the hand gets",
           .jobs = [](Extent extent) { return axes(extent).jobs(); },
           .run = run,
-          .check = check,
-          .plot = {.width_px = 1200, .height_px = 800, .script = kLossScript}};
+          .facts = [] { return nlohmann::json{{"slew_N_per_s", kSceneLimits.slew_N_per_s}}; }};
 }
 
 }  // namespace tact::tools::stability

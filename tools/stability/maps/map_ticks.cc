@@ -10,7 +10,6 @@
 #include "model/law/haptic_limit.h"
 #include "tools/stability/loop/gate_monitor.h"
 #include "tools/stability/loop/haptic_loop.h"
-#include "tools/stability/maps/scripts.h"
 #include "tools/stability/sweep/axes.h"
 #include "tools/stability/sweep/map.h"
 
@@ -68,14 +67,6 @@ report::Row run(std::size_t job, Extent extent) {
           {"beyond_the_line", gate.beyond_the_line()}};
 }
 
-std::vector<Finding> check(const report::Table& t) {
-  Spread ratio;
-  for (const report::Row& row : t.rows()) ratio.add(number(row, "measured_over_theory"));
-  // Wide: the theory is about the mean, and a run is one draw.
-  return {ratio.within(0.7, 1.5, "held forces cost stiffness as (2 b / T) E[n] / E[n^2] says"),
-          check_gate(t)};
-}
-
 }  // namespace
 
 Map tick_map() {
@@ -83,9 +74,7 @@ Map tick_map() {
           .name = "ticks",
           .purpose = "largest stable wall over the share of lost and of late ticks",
           .jobs = [](Extent extent) { return axes(extent).jobs(); },
-          .run = run,
-          .check = check,
-          .plot = {.width_px = 1200, .height_px = 700, .script = kTicksScript}};
+          .run = run};
 }
 
 }  // namespace tact::tools::stability

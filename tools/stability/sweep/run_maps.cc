@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/stability/sweep/run_maps.h"
 
-#include <fmt/format.h>
-
 #include "tools/program/run_program.h"
 #include "tools/program/sweep.h"
 
@@ -11,6 +9,7 @@ namespace {
 
 using model::Error;
 using model::Result;
+using nlohmann::json;
 
 Result<report::Table> computed(const Map& map, const StabilityOptions& options) {
   // In the order of the jobs, not of their end: a second run gives the same bytes.
@@ -21,23 +20,20 @@ Result<report::Table> computed(const Map& map, const StabilityOptions& options) 
   return report::Table(map.name, std::move(*rows));
 }
 
-/// Table, verdict and picture of a map.
-Result<MapReport> finished(const Map& map, const report::Table& table,
-                           const StabilityOptions& options) {
-  MapReport report{.name = map.name, .rows = table.rows().size(), .findings = {}, .files = {}};
-  // Before it is evaluated and drawn: the work stays even if gnuplot is missing.
-  auto files = table.write(options.out);
+/// The table on disk, with what the report needs of it.
+Result<json> written(const Map& map, const report::Table& table, const std::string& directory) {
+  const auto files = table.write(directory);
   if (!files) return files.error();
-  report.files = std::move(*files);
-  report.findings = map.check(table);
-  if (!options.draw_plots || map.plot.script.empty()) return report;
-  report::Plot plot = map.plot;
-  plot.name = map.name;
-  if (map.variables != nullptr) plot.variables = map.variables(options.extent);
-  const auto drawn = draw(plot, options.out);
-  if (!drawn) return drawn.error();
-  report.files.insert(report.files.end(), drawn->begin(), drawn->end());
-  return report;
+  json rows = json::array();
+  for (const report::Row& row : table.rows()) {
+    json& cells = rows.emplace_back();
+    for (const auto& [column, cell] : row)
+      std::visit([&](const auto& value) { cells[column] = value; }, cell);
+  }
+  return json{{"map", map.name},
+              {"rows", std::move(rows)},
+              {"files", *files},
+              {"facts", map.facts != nullptr ? map.facts() : json::object()}};
 }
 
 bool is_chosen(const Map& map, const StabilityOptions& options) {
@@ -60,10 +56,12 @@ MapsRun run_maps(const StabilityOptions& options) {
     if (!is_chosen(map, options)) continue;
     any = true;
     const auto table = computed(map, options);
-    if (!table) return {std::move(run.reports), table.error()};
-    auto report = finished(map, *table, options);
-    if (!report) return {std::move(run.reports), report.error()};
-    run.reports.push_back(std::move(*report));
+    auto done = table ? written(map, *table, options.out) : table.error();
+    if (!done) {
+      run.error = done.error();
+      return run;
+    }
+    run.maps.push_back(std::move(*done));
   }
   if (!any) run.error = Error{"no map chosen; --help lists their names"};
   return run;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// run_maps.h - from options to tables, findings and pictures on disk.
+// run_maps.h - from options to tables on disk, and what report/ evaluates and draws.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "tools/stability/sweep/map.h"
 
@@ -15,19 +15,11 @@ struct StabilityOptions {
   std::string letters{};  // maps to make, "abcd"
   std::string only{};     // one map by its name; empty: all of the letters
   Extent extent = Extent::kFull;
-  bool draw_plots = true;
-};
-
-/// What became of one map.
-struct MapReport {
-  std::string name;
-  std::size_t rows = 0;
-  std::vector<Finding> findings;
-  std::vector<std::string> files;
 };
 
 struct MapsRun {
-  std::vector<MapReport> reports;     // what is on disk, finished
+  /// Of each table on disk: map, rows with every digit, files, facts.
+  nlohmann::json maps = nlohmann::json::array();
   std::optional<model::Error> error;  // what ended the run early; interruption() after Ctrl-C
 };
 
