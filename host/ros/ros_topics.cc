@@ -26,7 +26,8 @@ constexpr const char* kLoopback =
     "<AllowMulticast>false</AllowMulticast></General><Discovery><ParticipantIndex>auto"
     "</ParticipantIndex><MaxAutoParticipantIndex>100</MaxAutoParticipantIndex><Peers>"
     "<Peer address=\"127.0.0.1\"/></Peers></Discovery></Domain></CycloneDDS>";
-constexpr int kMaxServo = 64;  // of one read; there may be several
+constexpr int kMaxServo = 64;     // of one call
+constexpr int kMaxWaiting = 1000;  // poses between two reads; of more, the newest
 
 using Qos = std::unique_ptr<dds_qos_t, decltype(&dds_delete_qos)>;
 
@@ -35,7 +36,7 @@ Qos qos_of(bool reliable) {
   // 0: a reader that does not answer delays nothing.
   dds_qset_reliability(qos.get(), reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,
                        0);
-  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, reliable ? 1 : kMaxServo);
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, reliable ? 1 : kMaxWaiting);
   return qos;
 }
 
@@ -159,19 +160,22 @@ void RosTopics::write(const Diagnostic& diagnostic, std::int64_t utc_ns) {
 }
 
 void RosTopics::read_servo(const std::function<void(const ServoPose&)>& take) {
-  if (servo_ <= 0) return;
   std::array<void*, kMaxServo> samples{};
   std::array<dds_sample_info_t, kMaxServo> infos{};
-  const int count = dds_take(servo_, samples.data(), infos.data(), kMaxServo, kMaxServo);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(std::max(count, 0)); ++i) {
-    if (!infos[i].valid_data) continue;
-    const Pose& from = *static_cast<const Pose*>(samples[i]);
-    const auto& [p, q] = from.pose;
-    take({.frame_id = from.header.frame_id,
-          .position_m = {p.x, p.y, p.z},
-          .orientation_wxyz = {q.w, q.x, q.y, q.z}});
+  for (int read = 0; servo_ > 0 && read < kMaxWaiting;) {
+    const int count = dds_take(servo_, samples.data(), infos.data(), kMaxServo, kMaxServo);
+    if (count <= 0) return;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+      if (!infos[i].valid_data) continue;
+      const Pose& from = *static_cast<const Pose*>(samples[i]);
+      const auto& [p, q] = from.pose;
+      take({.frame_id = from.header.frame_id,
+            .position_m = {p.x, p.y, p.z},
+            .orientation_wxyz = {q.w, q.x, q.y, q.z}});
+    }
+    static_cast<void>(dds_return_loan(servo_, samples.data(), count));
+    read += count;
   }
-  if (count > 0) static_cast<void>(dds_return_loan(servo_, samples.data(), count));
 }
 
 }  // namespace tact::host::ros

@@ -22,7 +22,7 @@ import tact  # noqa: E402
 LIVER = ROOT / "model/scenes/liver.toml"
 BUILD = pathlib.Path(sys.argv.pop(1)).resolve()
 DOMAIN = str(os.getpid() % 200)
-MAX_WAIT_S = 240.0
+MAX_WAIT_S = float(os.environ.get("W", 240))
 TOPICS = ("measured_cp", "measured_cv", "measured_cf")
 RECORD = np.dtype([("topic", "u1"), ("sec", "<i4"), ("nanosec", "<u4"), ("values", "<f8", 7)])
 LOOPBACK = ('<CycloneDDS><Domain><General><Interfaces><NetworkInterface name="lo"/></Interfaces><AllowMulticast>false'
@@ -109,24 +109,24 @@ class Case(unittest.TestCase):
 
         def end():
             process.terminate()
-            for pipe in filter(None, (process.stdin, process.stdout)):
-                pipe.close()
             try:
                 process.wait(timeout=60)
             except subprocess.TimeoutExpired:
                 process.kill()
                 process.wait()
+            for pipe in filter(None, (process.stdin, process.stdout)):
+                pipe.close()
         self.addCleanup(end)
         return process
 
     def bridge(self, log, *arguments):
         """tact-ros, and what it has said so far."""
-        lines = []
+        lines, ends = [], []
+        self.addCleanup(lambda: [end() for end in ends])  # once the process has ended
         process = self.start(BUILD / "tact-ros", log, "--domain", DOMAIN, *arguments, stderr=subprocess.PIPE, text=True)
-        reader = threading.Thread(target=lambda: lines.extend(process.stderr), daemon=True)
+        reader = threading.Thread(target=lambda: [lines.append(line) for line in process.stderr], daemon=True)
         reader.start()
-        self.addCleanup(process.stderr.close)
-        self.addCleanup(reader.join)
+        ends += [reader.join, process.stderr.close]
         return process, lines
 
     def read(self, count):

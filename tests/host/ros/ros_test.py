@@ -11,6 +11,7 @@ import random
 import socket
 import subprocess
 import sys
+import time
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
@@ -27,6 +28,14 @@ def random_pose(rng):
     """Any bits as numbers, any frame but the right one."""
     frame = "".join(rng.choice("abcxyz_/~%") for _ in range(rng.randrange(1, 40)))
     return " ".join([frame, *(repr(float(value)) for value in np.frombuffer(rng.randbytes(56), "<f8"))])
+
+
+def send_random(peer, rng, count):
+    """Some at a time, as a socket's buffer holds."""
+    for _ in range(count // 100):
+        peer.stdin.write("".join(random_pose(rng) + "\n" for _ in range(100)))
+        peer.stdin.flush()
+        time.sleep(0.01)
 
 
 class Ros(Case):
@@ -76,12 +85,13 @@ class Ros(Case):
         peer.stdin.flush()
         until(lambda: self.refused(lines) >= len(BAD), "bad poses")
         self.assertEqual(self.refused(lines), len(BAD), "each is refused")
-        peer.stdin.write("".join(random_pose(rng) + "\n" for _ in range(10000)) + GOOD + "\n")
+        send_random(peer, rng, 10000)
+        until(lambda: self.refused(lines) > 9 * 10000 // 10, "most of the random poses")
+        peer.stdin.write(GOOD + "\n")
         peer.stdin.flush()
         first = np.frombuffer(receiver.recv(1000), [("head", "u1", 8), ("values", "<f8", 7)])[0]["values"]
         np.testing.assert_allclose(first, [0.01, -0.02, 0.03, 0.02, 0, 0, 0], rtol=0, atol=1e-8)
-        self.assertGreater(self.refused(lines), len(BAD))
-        print(f"{self.refused(lines)} poses refused, 1 moved the hand")
+        print(f"{self.refused(lines)} poses refused of {10000 + len(BAD)}, the good one alone moved the hand")
 
     def test_a_real_device_is_never_moved(self):
         source, _ = self.simulate("--ticks", 100)
