@@ -64,8 +64,8 @@ std::optional<Error> GrowingLog::open() {
   if (got < static_cast<ssize_t>(bytes_.size())) return close(), std::nullopt;
   ChunkHeader head;
   std::memcpy(&head, &bytes_[protocol::kMagic.size()], sizeof head);
-  const bool is_head = bytes_.starts_with(protocol::kMagic) && is_good(head) &&
-                       head.content_bytes <= kMaxHead_bytes;
+  const bool is_head =
+      bytes_.starts_with(protocol::kMagic) && is_good(head) && head.content_bytes <= kMaxHead_bytes;
   // Of another file the first bytes are enough: the reader says what is wrong.
   return begin(bytes_.size() + (is_head ? head.content_bytes : 0));
 }
@@ -79,9 +79,10 @@ std::optional<Error> GrowingLog::begin(std::size_t head_bytes) {
   auto ticks = run->unpacker<protocol::LoggedTick>();
   if (!ticks) return Error{path_ + ": " + ticks.error().message};
   if (!ticks->missing().empty())
-    return Error{fmt::format("{}: has no {} of each tick; name the file of tactd --record, of "
-                             "this version of tact",
-                             path_, ticks->missing().front())};
+    return Error{
+        fmt::format("{}: has no {} of each tick; name the file of tactd --record, of "
+                    "this version of tact",
+                    path_, ticks->missing().front())};
   ticks_ = std::move(*ticks);
   bytes_.clear();
   lseek(file_, was_here_ ? 0 : static_cast<off_t>(head_bytes), was_here_ ? SEEK_END : SEEK_SET);
@@ -91,8 +92,7 @@ std::optional<Error> GrowingLog::begin(std::size_t head_bytes) {
 
 bool GrowingLog::is_replaced() const {
   struct stat status{};
-  return stat(path_.c_str(), &status) == 0 &&
-         (status.st_dev != device_ || status.st_ino != inode_);
+  return stat(path_.c_str(), &status) == 0 && (status.st_dev != device_ || status.st_ino != inode_);
 }
 
 void GrowingLog::read_chunks() {

@@ -1,21 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // tact-ros: each tick of tactd as topics of ROS 2, and servo_cp for the simulated hand.
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/inotify.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <array>
-#include <boost/asio/buffer.hpp>
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/posix/stream_descriptor.hpp>
-#include <boost/asio/steady_timer.hpp>
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <filesystem>
+#include <regex>
 
-#include "host/net/stop_signals.h"
 #include "host/ros/ros_bridge.h"
 #include "model/io/program/command_line.h"
 #include "model/io/program/program_end.h"
@@ -26,88 +25,37 @@ namespace {
 
 constexpr int kGood = 0, kBadInput = 2;
 constexpr int kMaxDomain = 232;  // of DDS: the ports end there
-constexpr std::chrono::milliseconds kTurn{100};
+constexpr int kTurn_ms = 100;
 
 int fail(const std::string& message) {
   fmt::print(stderr, "tact-ros: {}\n", message);
   return kBadInput;
 }
 
-/// Works when something in the folder of the log changes, and each kTurn.
-class Turns {
- public:
-  Turns(boost::asio::io_context& io, RosBridge& bridge)
-      : io_(io), timer_(io), folder_(io), bridge_(bridge) {}
+volatile std::sig_atomic_t stopped = 0;
 
-  std::optional<model::Error> start(const std::filesystem::path& log) {
-    const std::string folder = log.has_parent_path() ? log.parent_path().string() : ".";
-    const int fd = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
-    if (fd >= 0) folder_.assign(fd);
-    if (fd < 0 || inotify_add_watch(fd, folder.c_str(), IN_MODIFY | IN_CREATE | IN_MOVED_TO) < 0)
-      return model::Error{fmt::format("{}: {}; name a file in a folder that can be read", folder,
-                                      std::strerror(errno))};
-    wait_for_change();
-    wait_for_turn();
-    return std::nullopt;
+/// Works when something in the folder of the log changes, and each kTurn_ms.
+int run(const std::filesystem::path& log, const RosOptions& options) {
+  RosBridge bridge(log);
+  if (const auto error = bridge.open(options)) return fail(error->message);
+  const std::string folder = log.has_parent_path() ? log.parent_path().string() : ".";
+  pollfd change{.fd = inotify_init1(IN_NONBLOCK | IN_CLOEXEC), .events = POLLIN, .revents = 0};
+  if (inotify_add_watch(change.fd, folder.c_str(), IN_MODIFY | IN_CREATE | IN_MOVED_TO) < 0)
+    return fail(fmt::format("{}: {}; name a file in a folder that can be read", folder,
+                            std::strerror(errno)));
+  for (const int number : {SIGINT, SIGTERM}) std::signal(number, [](int) { stopped = 1; });
+  while (stopped == 0) {
+    if (const auto error = bridge.work()) return fail(error->message);
+    char changes[4096];
+    if (poll(&change, 1, kTurn_ms) == 1 && ::read(change.fd, changes, sizeof changes) < 0) break;
   }
-  std::optional<model::Error> error;
-
- private:
-  void work() {
-    error = bridge_.work();
-    if (error) io_.stop();
-  }
-  void wait_for_change() {
-    folder_.async_read_some(boost::asio::buffer(changes_),
-                            [this](boost::system::error_code wrong, std::size_t) {
-                              if (wrong) return;
-                              work();
-                              wait_for_change();
-                            });
-  }
-  void wait_for_turn() {
-    timer_.expires_after(kTurn);
-    timer_.async_wait([this](boost::system::error_code wrong) {
-      if (wrong) return;
-      work();
-      wait_for_turn();
-    });
-  }
-
-  boost::asio::io_context& io_;
-  boost::asio::steady_timer timer_;
-  boost::asio::posix::stream_descriptor folder_;
-  RosBridge& bridge_;
-  std::array<char, 4096> changes_{};
-};
-
-int run(const std::string& log, const RosOptions& options) {
-  auto topics = RosTopics::open(options);
-  if (!topics) return fail(topics.error().message);
-  RosBridge bridge(log, std::move(*topics), options.servo);
-  boost::asio::io_context io(1);
-  net::StopSignals signals(io);
-  if (const auto wrong = signals.wait([&io] { io.stop(); }))
-    return fail("Ctrl-C cannot be waited for: " + wrong.message());
-  Turns turns(io, bridge);
-  if (const auto error = turns.start(log)) return fail(error->message);
-  io.run();
-  return turns.error ? fail(turns.error->message) : kGood;
+  return kGood;
 }
 
-/// As ROS wants a namespace: letters, digits, _ and / between them.
-CLI::Validator ros_name() {
-  return {[](std::string& word) {
-            bool begins = true;
-            for (const char c : word) {
-              const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-              const bool digit = c >= '0' && c <= '9';
-              if (!(letter || (!begins && (digit || c == '/')))) return word + " is no name of ROS";
-              begins = c == '/';
-            }
-            return begins ? word + " is no name of ROS" : std::string();
-          },
-          "NAME"};
+/// As ROS wants a namespace.
+std::string check_name(const std::string& word) {
+  static const std::regex kName("[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*");
+  return std::regex_match(word, kName) ? "" : word + " is no name of ROS";
 }
 
 std::optional<int> parse_options(int argc, char** argv, std::string& log, RosOptions& options) {
@@ -127,14 +75,13 @@ std::optional<int> parse_options(int argc, char** argv, std::string& log, RosOpt
       ->check(model::io::within(0, kMaxDomain));
   app.add_option("--namespace", options.name_space, "before each topic; also of the frame")
       ->capture_default_str()
-      ->check(ros_name());
+      ->check(check_name);
   app.add_option("--interface", options.interface,
                  "of the network, as eth0: everyone there may read, and move with --servo "
                  "(default: loopback alone)");
   app.add_flag("--servo", options.servo,
                "let servo_cp move the hand of a simulated device; a real device is never moved");
-  if (const auto status = model::io::parse_command_line(app, "tact-ros", argc, argv))
-    return status;
+  if (const auto status = model::io::parse_command_line(app, "tact-ros", argc, argv)) return status;
   if (options.domain < 0 || options.domain > kMaxDomain)
     return fail(fmt::format("ROS_DOMAIN_ID is {}: must be 0 to {}", id, kMaxDomain));
   return std::nullopt;

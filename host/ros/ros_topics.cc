@@ -4,13 +4,14 @@
 #include <dds/dds.h>
 #include <fmt/format.h>
 #include <net/if.h>
+#include <ros/messages.h>
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <memory>
 #include <utility>
 
-#include "messages.h"
 #include "model/time_ns.h"
 
 namespace tact::host::ros {
@@ -26,7 +27,7 @@ constexpr const char* kLoopback =
     "<AllowMulticast>false</AllowMulticast></General><Discovery><ParticipantIndex>auto"
     "</ParticipantIndex><MaxAutoParticipantIndex>100</MaxAutoParticipantIndex><Peers>"
     "<Peer address=\"127.0.0.1\"/></Peers></Discovery></Domain></CycloneDDS>";
-constexpr int kMaxServo = 64;     // of one call
+constexpr int kMaxServo = 64;      // of one call
 constexpr int kMaxWaiting = 1000;  // poses between two reads; of more, the newest
 
 using Qos = std::unique_ptr<dds_qos_t, decltype(&dds_delete_qos)>;
@@ -40,11 +41,13 @@ Qos qos_of(bool reliable) {
   return qos;
 }
 
+char* plain(const std::string& text) { return const_cast<char*>(text.c_str()); }  // only read
+
 Header header_of(std::int64_t utc_ns, const std::string& frame) {
   const std::int64_t sec = utc_ns / model::kSecond_ns;
   return {.stamp = {.sec = static_cast<std::int32_t>(sec),
                     .nanosec = static_cast<std::uint32_t>(utc_ns - sec * model::kSecond_ns)},
-          .frame_id = const_cast<char*>(frame.c_str())};  // only read
+          .frame_id = plain(frame)};
 }
 
 template <typename Out>
@@ -52,72 +55,52 @@ Out xyz(const model::Vec3& v) {
   return {.x = v.x, .y = v.y, .z = v.z};
 }
 
-char* plain(const std::string& text) { return const_cast<char*>(text.c_str()); }  // only read
-
 }  // namespace
 
-model::Result<RosTopics> RosTopics::open(const RosOptions& options) {
-  if (!options.interface.empty() && if_nametoindex(options.interface.c_str()) == 0)
-    return Error{fmt::format("--interface {}: this PC has none; take a name of `ip link`",
-                             options.interface)};
-  RosTopics topics;
-  if (auto error = topics.make(options)) return *error;
-  return topics;
+RosTopics::~RosTopics() {
+  if (domain_ > 0) dds_delete(domain_);  // and all in it
 }
 
-std::optional<Error> RosTopics::make(const RosOptions& options) {
+std::optional<Error> RosTopics::open(const RosOptions& options) {
+  const bool alone = options.interface.empty();
+  if (!alone && if_nametoindex(options.interface.c_str()) == 0)
+    return Error{fmt::format("--interface {}: this PC has none; take a name of `ip link`",
+                             options.interface)};
   const std::string bound = fmt::format(
       "<CycloneDDS><Domain><General><Interfaces><NetworkInterface name=\"{}\"/></Interfaces>"
       "</General></Domain></CycloneDDS>",
       options.interface);
   const auto domain = static_cast<dds_domainid_t>(options.domain);
-  domain_ = dds_create_domain(domain, options.interface.empty() ? kLoopback : bound.c_str());
+  domain_ = dds_create_domain(domain, alone ? kLoopback : bound.c_str());
   const dds_entity_t participant = dds_create_participant(domain, nullptr, nullptr);
   if (participant < 0)
     return Error{fmt::format("no DDS on {} ({}); `ip link` says whether it is up",
-                             options.interface.empty() ? "lo" : options.interface,
-                             dds_strretcode(-participant))};
+                             alone ? "lo" : options.interface, dds_strretcode(-participant))};
   name_ = options.name_space;
   frame_ = options.name_space + "_base";
   std::replace(frame_.begin(), frame_.end(), '/', '_');
+  if (make(participant, options.servo)) return std::nullopt;
+  return Error{"CycloneDDS makes no topics of " + name_ + "; choose another --namespace"};
+}
+
+bool RosTopics::make(dds_entity_t participant, bool servo) {
   const Qos fast = qos_of(false), sure = qos_of(true);
-  bool failed = false;
   const auto topic = [&](const std::string& name, const dds_topic_descriptor_t& type) {
     return dds_create_topic(participant, &type, ("rt/" + name).c_str(), nullptr, nullptr);
   };
   const auto writer = [&](const std::string& name, const dds_topic_descriptor_t& type,
                           const Qos& qos) {
-    const dds_entity_t made =
-        dds_create_writer(participant, topic(name, type), qos.get(), nullptr);
-    failed = failed || made < 0;
-    return made;
+    return dds_create_writer(participant, topic(name, type), qos.get(), nullptr);
   };
   pose_ = writer(name_ + "/measured_cp", geometry_msgs_msg_dds__PoseStamped__desc, fast);
   twist_ = writer(name_ + "/measured_cv", geometry_msgs_msg_dds__TwistStamped__desc, fast);
   wrench_ = writer(name_ + "/measured_cf", geometry_msgs_msg_dds__WrenchStamped__desc, fast);
   diagnostics_ = writer("diagnostics", diagnostic_msgs_msg_dds__DiagnosticArray__desc, sure);
-  if (options.servo) {
-    servo_ = dds_create_reader(
-        participant, topic(name_ + "/servo_cp", geometry_msgs_msg_dds__PoseStamped__desc),
-        fast.get(), nullptr);
-    failed = failed || servo_ < 0;
-  }
-  if (failed) return Error{"CycloneDDS makes no topic of " + name_ + "; choose another --namespace"};
-  return std::nullopt;
-}
-
-RosTopics::RosTopics(RosTopics&& other) noexcept
-    : frame_(std::move(other.frame_)),
-      name_(std::move(other.name_)),
-      domain_(std::exchange(other.domain_, 0)),
-      pose_(other.pose_),
-      twist_(other.twist_),
-      wrench_(other.wrench_),
-      diagnostics_(other.diagnostics_),
-      servo_(other.servo_) {}
-
-RosTopics::~RosTopics() {
-  if (domain_ > 0) dds_delete(domain_);  // and all in it
+  if (servo)
+    servo_ = dds_create_reader(participant,
+                               topic(name_ + "/servo_cp", geometry_msgs_msg_dds__PoseStamped__desc),
+                               fast.get(), nullptr);
+  return std::min({pose_, twist_, wrench_, diagnostics_, servo_ + 1}) > 0;
 }
 
 void RosTopics::write(const firmware::protocol::LoggedTick& tick) {
@@ -142,7 +125,7 @@ void RosTopics::write(const firmware::protocol::LoggedTick& tick) {
   static_cast<void>(dds_write(wrench_, &wrench));
 }
 
-void RosTopics::write(const Diagnostic& diagnostic, std::int64_t utc_ns) {
+void RosTopics::write(const Diagnostic& diagnostic) {
   std::vector<diagnostic_msgs_msg_dds__KeyValue_> values;
   for (const auto& [key, value] : diagnostic.values)
     values.push_back({.key = plain(key), .value = plain(value)});
@@ -153,8 +136,9 @@ void RosTopics::write(const Diagnostic& diagnostic, std::int64_t utc_ns) {
       .message = plain(diagnostic.message),
       .hardware_id = plain(diagnostic.device),
       .values = {._maximum = count, ._length = count, ._buffer = values.data(), ._release = false}};
+  const std::chrono::nanoseconds utc = std::chrono::system_clock::now().time_since_epoch();
   const diagnostic_msgs_msg_dds__DiagnosticArray_ all{
-      .header = header_of(utc_ns, frame_),
+      .header = header_of(utc.count(), frame_),
       .status = {._maximum = 1, ._length = 1, ._buffer = &status, ._release = false}};
   static_cast<void>(dds_write(diagnostics_, &all));
 }

@@ -39,25 +39,25 @@ struct Diagnostic {
 
 class RosTopics {
  public:
-  static model::Result<RosTopics> open(const RosOptions& options);
-  RosTopics(RosTopics&& other) noexcept;
-  RosTopics& operator=(RosTopics&&) = delete;
+  RosTopics() = default;
+  RosTopics(const RosTopics&) = delete;
+  RosTopics& operator=(const RosTopics&) = delete;
   ~RosTopics();
+  std::optional<model::Error> open(const RosOptions& options);
 
   /// measured_cp, measured_cv, measured_cf of this tick.
   void write(const firmware::protocol::LoggedTick& tick);
-  void write(const Diagnostic& diagnostic, std::int64_t utc_ns);
+  void write(const Diagnostic& diagnostic);
   /// All poses that have come on servo_cp, the newest last.
   void read_servo(const std::function<void(const ServoPose&)>& take);
   /// Frame W of tact, as ROS knows it.
   const std::string& frame() const { return frame_; }
 
  private:
-  RosTopics() = default;
-  std::optional<model::Error> make(const RosOptions& options);
+  bool make(std::int32_t participant, bool servo);
 
   std::string frame_, name_;
-  int domain_ = 0, pose_ = 0, twist_ = 0, wrench_ = 0, diagnostics_ = 0, servo_ = 0;  // of DDS
+  std::int32_t domain_ = 0, pose_ = 0, twist_ = 0, wrench_ = 0, diagnostics_ = 0, servo_ = 0;
 };
 
 }  // namespace tact::host::ros

@@ -69,7 +69,7 @@ ROOMS = {
     "host/net": [],
     "host/server": ["model", "model/io", *OPERATOR, "host/record", "host/net", "firmware/protocol"],
     "host/igtl": ["model", "host/pose", "host/tracking", "host/record", "host/net"],
-    "host/ros": ["model", "model/io", "host/net", "hal/sim", "firmware/loop", "firmware/protocol"],
+    "host/ros": ["model", "model/io", "hal/sim", "firmware/protocol"],
     "host/run": ["model", "model/io", *OPERATOR, "host/net", "host/record", "host/igtl", "host/server", "hal/sim",
                  "firmware/protocol"],
 }

@@ -4,6 +4,7 @@
 //     cyclone_peer DOMAIN read COUNT   writes records of three topics, until each has COUNT
 //     cyclone_peer DOMAIN servo        writes each line FRAME x y z qw qx qy qz as a pose
 #include <dds/dds.h>
+#include <ros/messages.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -15,8 +16,6 @@
 #include <sstream>
 #include <string>
 #include <string_view>
-
-#include "messages.h"
 
 namespace {
 

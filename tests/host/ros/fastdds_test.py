@@ -61,7 +61,8 @@ class FastDds(Case):
 
 
 def build_peer():
-    for words in (["-S", HERE / "fastdds", "-B", BUILD / "fastdds", "-DCMAKE_BUILD_TYPE=Release"], ["--build", BUILD / "fastdds"]):
+    for words in (["-S", HERE / "fastdds", "-B", BUILD / "fastdds", "-DCMAKE_BUILD_TYPE=Release"],
+                  ["--build", BUILD / "fastdds"]):
         done = subprocess.run(["cmake", *map(str, words)], capture_output=True, text=True)
         if done.returncode:
             sys.exit(f"{done.stdout}{done.stderr}")

@@ -99,11 +99,12 @@ class Ros(Case):
         log = Growing(source, self.folder / "run.tactlog", simulated=False, hand_socket=str(self.folder / "hand.sock"))
         log.begin()
         _, lines = self.bridge(log.path, "--servo")
-        until(lambda: any("the device is real" in line for line in lines), "its first line")
+        until(lambda: any("ticks/s" in line for line in lines), "its first line")
         peer = self.servo()
         peer.stdin.write((GOOD + "\n") * 5)
         peer.stdin.flush()
         until(lambda: self.refused(lines) == 5, "five good poses")
+        self.assertIn("the device is real", lines[-1])
         receiver.setblocking(False)
         self.assertRaises(BlockingIOError, receiver.recv, 1000)
 

@@ -79,12 +79,12 @@ int take(DataReader* reader, std::uint8_t topic) {
 }
 
 int read(DomainParticipant& participant, int count) {
-  DataReader* pose = reader_of(participant, TypeSupport(new PoseStamped_PubSubType()),
-                               "rt/tact/measured_cp");
-  DataReader* twist = reader_of(participant, TypeSupport(new TwistStamped_PubSubType()),
-                                "rt/tact/measured_cv");
-  DataReader* wrench = reader_of(participant, TypeSupport(new WrenchStamped_PubSubType()),
-                                 "rt/tact/measured_cf");
+  DataReader* pose =
+      reader_of(participant, TypeSupport(new PoseStamped_PubSubType()), "rt/tact/measured_cp");
+  DataReader* twist =
+      reader_of(participant, TypeSupport(new TwistStamped_PubSubType()), "rt/tact/measured_cv");
+  DataReader* wrench =
+      reader_of(participant, TypeSupport(new WrenchStamped_PubSubType()), "rt/tact/measured_cf");
   std::array<int, 3> got{};
   while (*std::min_element(got.begin(), got.end()) < count) {
     usleep(1000);
@@ -133,9 +133,8 @@ int servo(DomainParticipant& participant) {
 
 int main(int argc, char** argv) {
   if (argc < 3) return 2;
-  DomainParticipant* participant =
-      DomainParticipantFactory::get_instance()->create_participant(
-          static_cast<DomainId_t>(std::atoi(argv[1])), PARTICIPANT_QOS_DEFAULT);
+  DomainParticipant* participant = DomainParticipantFactory::get_instance()->create_participant(
+      static_cast<DomainId_t>(std::atoi(argv[1])), PARTICIPANT_QOS_DEFAULT);
   if (participant == nullptr) return 2;
   const bool reads = std::string_view(argv[2]) == "read" && argc == 4;
   const int status = reads ? read(*participant, std::atoi(argv[3])) : servo(*participant);
