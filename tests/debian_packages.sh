@@ -67,10 +67,10 @@ step install
 inside 'apt-get -qq install -y --no-install-recommends /root/*.deb' >"$base/root/log" 2>&1 ||
   { tail -n 30 "$base/root/log"; exit 1; }
 step "every program prints its version and has a manual page"
-inside 'for program in $(dpkg -L tact tact-view tact-tools tact-lab | grep ^/usr/bin/); do
+inside 'for program in $(dpkg -L tact tact-view tact-ros tact-tools tact-lab | grep ^/usr/bin/); do
   $program --version && man -w ${program##*/} >/dev/null; done'
 step "a manual page has examples, files and what to see also, which is there"
-inside 'for page in $(dpkg -L tact tact-view tact-tools tact-lab tact-doc | grep -o "/man./.*[.][157]"); do
+inside 'for page in $(dpkg -L tact tact-view tact-ros tact-tools tact-lab tact-doc | grep -o "/man./.*[.][157]"); do
   page=${page##*/}
   man ${page##*.} ${page%.*} >/root/page
   for part in EXAMPLES FILES "SEE ALSO"; do grep -qx "$part" /root/page || { echo "$page has no $part"; exit 1; }; done
@@ -86,7 +86,7 @@ cp -r /usr/share/doc/tact-dev/examples /root/own && cmake -S /root/own -B /root/
 /root/own/build/wall | tail -n 1 && /root/own/build/own_loop /usr/share/tact/scenes/liver.toml
 rm -r /root/own && apt-get -qq purge -y --autoremove cmake g++ make >/dev/null 2>&1'
 step "bash completes the options of every program"
-inside 'for program in $(dpkg -L tact tact-view tact-tools tact-lab | grep ^/usr/bin/); do
+inside 'for program in $(dpkg -L tact tact-view tact-ros tact-tools tact-lab | grep ^/usr/bin/); do
   name=${program##*/}
   [ $name != tact-guardian ] || continue
   bash -c "source /usr/share/bash-completion/bash_completion; source /usr/share/bash-completion/completions/$name
@@ -137,10 +137,10 @@ step "the kernel's parameters go with tact-rt"
 inside 'apt-get -qq remove -y tact-rt >/dev/null 2>&1
 grep -x quiet /boot/grub/grub.cfg'
 step "removed: scenes of /etc/tact stay; purged: nothing stays"
-inside 'apt-get -qq remove -y tact tact-view tact-tools tact-lab tact-dev tact-doc >/dev/null 2>&1
+inside 'apt-get -qq remove -y tact tact-view tact-ros tact-tools tact-lab tact-dev tact-doc >/dev/null 2>&1
 test ! -e /usr/bin/tactd && test -e /etc/tact/liver.toml
 mkdir -p /var/lib/tact/black-box
-dpkg --purge tact tact-view tact-tools tact-lab tact-dev tact-doc tact-rt >/dev/null 2>&1'
+dpkg --purge tact tact-view tact-ros tact-tools tact-lab tact-dev tact-doc tact-rt >/dev/null 2>&1'
 after=$(left_over)
 diff <(echo "$before") <(echo "$after") || { echo "debian_packages.sh: that is left"; exit 1; }
 step "all kept"

@@ -69,16 +69,18 @@ BUILD_PACKAGES=(g++ cmake ninja-build ca-certificates libfmt-dev libcli11-dev
 LIGHT_TOOL_PACKAGES=(gnuplot-nox rt-tests=cyclictest stress-ng=stress-ng)
 TOOL_PACKAGES=("${LIGHT_TOOL_PACKAGES[@]}" gmsh optional:calculix-ccx libopenblas0 libbenchmark-dev
   python3-matplotlib python3-vtk9 python3-numpy python3-scipy)
+# What tact-ros needs; without them it is left out.
+ROS_PACKAGES=(cyclonedds-dev cyclonedds-tools)
 # What the tests link or call besides.
 TEST_PACKAGES=(libopenigtlink-dev python3-jsonschema python3-numpy python3-matplotlib python3-prometheus-client
-  python3-scipy strace valgrind
+  python3-scipy strace valgrind "${ROS_PACKAGES[@]}"
   pybind11-dev python3-dev systemd=systemd-analyze)
 # What the virtual bench needs on this side (tests/rig).
 RIG_PACKAGES=(qemu-system-x86=qemu-system-x86_64 cpio kmod zstd xz-utils mmdebstrap make g++
   linux-headers-rt-amd64 linux-source)
 # The programs of others that tact works with, as its tests ask them (stage ecosystem): some 0.9 GB.
 ECOSYSTEM_PACKAGES=(prometheus python3-prometheus-client octave octave-psychtoolbox-3 snakemake
-  slurmctld slurmd slurm-client munge parallel iproute2=ip)
+  slurmctld slurmd slurm-client munge parallel iproute2=ip libfastrtps-dev fastddsgen)
 PAGE_PACKAGES=(nodejs=node npm=npm)
 # What makes and judges Debian packages (tools/package).
 DEB_PACKAGES=(cmark-gfm debhelper dpkg-dev fakeroot help2man lintian git=git python3=python3)

@@ -75,7 +75,7 @@ void RunWriter::begin_again() {
 }
 
 void RunWriter::flush() {
-  if (!error_) keep(file_->flush());
+  if (file_ && !error_) keep(file_->flush());
 }
 
 void RunWriter::keep(const std::optional<Error>& error) {

@@ -143,6 +143,7 @@ std::optional<Frame> Telemetry::next_frame() {
 }
 
 void Telemetry::publish() {
+  if (sinks_.log) sinks_.log->flush();  // who follows the log gets each tick as a viewer its frame
   if (const std::optional<Frame> frame = next_frame()) {
     if (sinks_.recorder) sinks_.recorder->add(*frame);
     if (sinks_.socket) {

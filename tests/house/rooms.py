@@ -69,6 +69,7 @@ ROOMS = {
     "host/net": [],
     "host/server": ["model", "model/io", *OPERATOR, "host/record", "host/net", "firmware/protocol"],
     "host/igtl": ["model", "host/pose", "host/tracking", "host/record", "host/net"],
+    "host/ros": ["model", "model/io", "hal/sim", "firmware/protocol"],
     "host/run": ["model", "model/io", *OPERATOR, "host/net", "host/record", "host/igtl", "host/server", "hal/sim",
                  "firmware/protocol"],
 }
@@ -132,7 +133,7 @@ PAGE_FOLDERS = {
 # Where another room is known by these headers alone.
 SINGLE_HEADERS = {
     **{(f"host/{room}", "model"): {"result.h"} for room in ("tracking", "record", "igtl", "server", "run")},
-    ("host/run", "hal/sim"): {"hand_target.h"},
+    **{(f"host/{room}", "hal/sim"): {"hand_target.h"} for room in ("ros", "run")},
 }
 # Read and write files, allocate, take their time: no header that LOOP_ROOMS include reaches them.
 OFFLINE = ("model/io/", "model/mesh/", "model/reader/", "model/scene/")

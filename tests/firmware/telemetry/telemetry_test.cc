@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -16,6 +17,7 @@
 
 #include "firmware/loop/rt_loop.h"
 #include "firmware/protocol/run_file.h"
+#include "firmware/protocol/tick_log.h"
 #include "hal/registry/open_device.h"
 #include "tests/support/message.h"
 #include "tests/support/test_scene.h"
@@ -240,6 +242,33 @@ TEST(Telemetry, ThreadAndLoopShareOnlyTheRing) {  // for the thread sanitizer
   }
   EXPECT_EQ(tests::message_of(telemetry.stop()), "");
   EXPECT_GT(telemetry.newest_frame().tick, 0u);
+}
+
+TEST(Telemetry, TheLogGrowsWithEachFrame) {
+  const std::string path = fresh_socket_path() + ".tactlog";
+  const auto tissue = std::move(*model::scene::make_tissue(tests::make_plate_scene()));
+  const auto ring = std::make_unique<loop::TickRing>();
+  const auto shapes = std::make_unique<loop::ShapeSlot>();
+  Sinks sinks;
+  sinks.log.emplace(std::move(*protocol::RunWriter::create(
+      path, protocol::start_of_run({}, {}, {protocol::schema_of<LoggedTick>()}))));
+  Telemetry telemetry(*ring, FrameBuilder(tissue->law().contact_law(), *shapes, false), FramePace{},
+                      std::move(sinks));
+  for (std::uint64_t tick = 1; tick <= 3; ++tick) {
+    loop::TickRecord record;
+    record.tick = tick;
+    ring->push(record);
+    telemetry.drain();
+    telemetry.publish();
+    auto log = protocol::TickLog::open(path);
+    ASSERT_TRUE(log);
+    LoggedTick read;
+    while (log->next(read)) continue;
+    EXPECT_EQ(read.tick, tick) << "who follows the log waits for it";
+  }
+  EXPECT_EQ(tests::message_of(telemetry.stop()), "");
+  telemetry.publish();  // after the end nothing is written
+  std::remove(path.c_str());
 }
 
 TEST(Telemetry, ASecondControllerOnTheSameSocketIsRefused) {

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the tests of tact-ros share: a tick log that grows, a peer that reads topics or writes poses, and the comparison."""
+import json
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+import zlib
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(ROOT / "tools/client"))
+sys.dont_write_bytecode = True
+import numpy as np  # noqa: E402
+import tact  # noqa: E402
+
+LIVER = ROOT / "model/scenes/liver.toml"
+BUILD = pathlib.Path(sys.argv.pop(1)).resolve()
+DOMAIN = str(os.getpid() % 200)
+MAX_WAIT_S = float(os.environ.get("W", 240))
+TOPICS = ("measured_cp", "measured_cv", "measured_cf")
+RECORD = np.dtype([("topic", "u1"), ("sec", "<i4"), ("nanosec", "<u4"), ("values", "<f8", 7)])
+LOOPBACK = ('<CycloneDDS><Domain><General><Interfaces><NetworkInterface name="lo"/></Interfaces><AllowMulticast>false'
+            '</AllowMulticast></General><Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>100'
+            '</MaxAutoParticipantIndex><Peers><Peer address="127.0.0.1"/></Peers></Discovery></Domain></CycloneDDS>')
+
+
+def until(ask, what):
+    """Its first answer that is true. An event is waited for; the bound is for a test that hangs."""
+    end = time.monotonic() + MAX_WAIT_S
+    while time.monotonic() < end:
+        answer = ask()
+        if answer:
+            return answer
+        time.sleep(0.01)
+    raise AssertionError(f"not seen within {MAX_WAIT_S:g} s: {what}")
+
+
+def expected(ticks):
+    """Per topic, its seven values of each tick, by the stamp."""
+    zero = np.zeros((len(ticks), 1))
+    rows = (np.hstack([ticks["tool_position_m"], np.roll(ticks["tool_orientation"], -1, axis=1)]),
+            np.hstack([ticks["tool_velocity_mps"], ticks["tool_angular_velocity_radps"], zero]),
+            np.hstack([ticks["force_N"], ticks["torque_Nm"], zero]))
+    stamps = tact.utc_ns(ticks)
+    return [dict(zip(stamps.tolist(), row)) for row in rows]
+
+
+def wrong_values(records, ticks):
+    """How many of the seven are not those of the log, bit by bit; a stamp that the log has not counts as seven."""
+    known, wrong = expected(ticks), 0
+    for record in records:
+        tick = known[record["topic"]].get(int(record["sec"]) * 10**9 + int(record["nanosec"]))
+        wrong += 7 if tick is None else int(np.sum(tick.view("u8") != record["values"].view("u8")))
+    return wrong
+
+
+def chunk(kind, content):
+    head = tact.CHUNK.pack(kind, len(content), zlib.crc32(content), 0)[:12]
+    return head + zlib.crc32(head).to_bytes(4, "little") + content
+
+
+class Growing:
+    """The ticks of a log, written again into another that grows."""
+
+    def __init__(self, source, path, **changes):
+        self.path, data, at, self.ticks = path, source.read_bytes(), len(tact.MAGIC), []
+        while at + tact.CHUNK.size <= len(data) and data[at:at + 8] != tact.SEAL:
+            kind, size, _, _ = tact.CHUNK.unpack_from(data, at)
+            content = data[at + tact.CHUNK.size:at + tact.CHUNK.size + size]
+            at += tact.CHUNK.size + size
+            if kind == tact.HEAD:
+                head = json.loads(content)
+                head["run"].update(changes)
+                self.head = tact.MAGIC + chunk(kind, json.dumps(head).encode())
+            elif kind == tact.TICK:
+                self.ticks.append(chunk(kind, content))
+        self.at = 0
+
+    def begin(self):
+        self.path.write_bytes(self.head)
+
+    def add(self, count):
+        with self.path.open("ab") as file:
+            file.write(b"".join(self.ticks[self.at:self.at + count]))
+        self.at += count
+
+    def grow_while(self, process, step=20):
+        """Some ticks at a time, so that a socket's buffer holds them, until the process ends or there are no more."""
+        while process.poll() is None and self.at < len(self.ticks):
+            self.add(step)
+            time.sleep(0.005)
+
+
+class Case(unittest.TestCase):
+    peer = (BUILD / "tests/cyclone_peer",)
+
+    def setUp(self):
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
+
+    def start(self, *arguments, **options):
+        environment = {**os.environ, "CYCLONEDDS_URI": LOOPBACK}
+        process = subprocess.Popen(list(map(str, arguments)), env=environment, **options)
+
+        def end():
+            process.terminate()
+            try:
+                process.wait(timeout=60)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+            for pipe in filter(None, (process.stdin, process.stdout)):
+                pipe.close()
+        self.addCleanup(end)
+        return process
+
+    def bridge(self, log, *arguments):
+        """tact-ros, and what it has said so far."""
+        lines, ends = [], []
+        self.addCleanup(lambda: [end() for end in ends])  # once the process has ended
+        process = self.start(BUILD / "tact-ros", log, "--domain", DOMAIN, *arguments, stderr=subprocess.PIPE, text=True)
+        reader = threading.Thread(target=lambda: [lines.append(line) for line in process.stderr], daemon=True)
+        reader.start()
+        ends += [reader.join, process.stderr.close]
+        return process, lines
+
+    def read(self, count):
+        """A peer that ends when each topic has so many samples, and the file of its records."""
+        out = self.folder / "records"
+        with out.open("wb") as file:
+            return self.start(*self.peer, DOMAIN, "read", count, stdout=file), out
+
+    def servo(self):
+        peer = self.start(*self.peer, DOMAIN, "servo", stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        self.assertEqual(peer.stdout.readline(), "matched\n")
+        return peer
+
+    def simulate(self, *arguments):
+        """Log and force hash of a run that is the same each time."""
+        log = self.folder / "source.tactlog"
+        done = subprocess.run([BUILD / "tactd", LIVER, "--free-run", "--no-telemetry", "--record", log, "--json",
+                               self.folder / "run.json", *map(str, arguments)], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return log, json.loads((self.folder / "run.json").read_text())["force_hash"]
+
+    def refused(self, lines):
+        """The newest number of refused poses that was reported."""
+        found = [re.search(r"servo_cp: (\d+) poses refused so far", line) for line in lines]
+        return max([int(one[1]) for one in found if one], default=0)
+
+    def check_ctrl_c(self, process):
+        began = time.monotonic()
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(timeout=60), 0)
+        print(f"Ctrl-C ends tact-ros in {time.monotonic() - began:.2f} s")

@@ -1,0 +1,142 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""tact-ros of BUILD_DIR against CycloneDDS: each value of the topics is the tick log's; bad poses and bad usage are refused.
+
+    python3 tests/host/ros/ros_test.py BUILD_DIR
+
+The tick log grows by hand, so no clock matters. Needs python3-numpy. Exit status 0 or 1.
+"""
+import pathlib
+import random
+import socket
+import subprocess
+import sys
+import time
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+sys.dont_write_bytecode = True
+from bridge import BUILD, DOMAIN, LIVER, Case, Growing, np, tact, until, wrong_values, RECORD  # noqa: E402
+
+GOOD = "tact_base 0.01 -0.02 0.03 0.9999500004 0.0099998333 0 0"
+BAD = ["other 0 0 0 1 0 0 0", "- 0 0 0 1 0 0 0", "tact_base nan 0 0 1 0 0 0", "tact_base 0 inf 0 1 0 0 0",
+       "tact_base 0 0 1e300 1 0 0 0", "tact_base 0 0 1.5 1 0 0 0", "tact_base 0 0 0 0 0 0 0", "tact_base 0 0 0 nan 0 0 0",
+       "tact_base 0 0 0 2 0 0 0"]
+
+
+def random_pose(rng):
+    """Any bits as numbers, any frame but the right one."""
+    frame = "".join(rng.choice("abcxyz_/~%") for _ in range(rng.randrange(1, 40)))
+    return " ".join([frame, *(repr(float(value)) for value in np.frombuffer(rng.randbytes(56), "<f8"))])
+
+
+def send_random(peer, rng, count):
+    """Some at a time, as a socket's buffer holds."""
+    for _ in range(count // 100):
+        peer.stdin.write("".join(random_pose(rng) + "\n" for _ in range(100)))
+        peer.stdin.flush()
+        time.sleep(0.01)
+
+
+class Ros(Case):
+    def test_topics_are_the_log_also_where_it_begins_again(self):
+        source, _ = self.simulate("--ticks", 6000)
+        log = Growing(source, self.folder / "run.tactlog")
+        process, lines = self.bridge(log.path)
+        peer, out = self.read(1000)
+        log.begin()
+        log.grow_while(peer, 20)
+        self.assertEqual(peer.wait(timeout=60), 0, f"{log.at} ticks were written\n" + "".join(lines))
+        records = np.frombuffer(out.read_bytes(), RECORD)
+        self.assertEqual(wrong_values(records, tact.read_ticks(source).ticks), 0)
+        self.assertGreaterEqual(len(records), 3000)
+        print(f"{7 * len(records)} values, 0 wrong")
+        self.check_begins_again(log, lines)
+        self.check_ctrl_c(process)
+
+    def check_begins_again(self, log, lines):
+        """As RunWriter does at its most bytes."""
+        log.path.rename(self.folder / "run.tactlog.old")
+        peer, out = self.read(100)
+        log.at = 0
+        log.begin()
+        until(lambda: sum("ticks/s" in line for line in lines) == 2, "the second log")
+        log.grow_while(peer)
+        self.assertEqual(peer.wait(timeout=60), 0)
+        ticks = tact.read_ticks(self.folder / "source.tactlog").ticks
+        self.assertEqual(wrong_values(np.frombuffer(out.read_bytes(), RECORD), ticks), 0)
+
+    def hand(self):
+        """The socket of a hand that this test plays."""
+        receiver = self.enterContext(socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM))
+        receiver.bind(str(self.folder / "hand.sock"))
+        receiver.settimeout(240.0)
+        return receiver
+
+    def test_only_good_poses_move_the_simulated_hand(self):
+        source, _ = self.simulate("--ticks", 100)
+        receiver = self.hand()
+        log = Growing(source, self.folder / "run.tactlog", simulated=True, hand_socket=str(self.folder / "hand.sock"))
+        log.begin()
+        _, lines = self.bridge(log.path, "--servo")
+        until(lambda: any("ticks/s" in line for line in lines), "its first line")
+        peer, rng = self.servo(), random.Random(1)
+        peer.stdin.write("".join(line + "\n" for line in BAD))
+        peer.stdin.flush()
+        until(lambda: self.refused(lines) >= len(BAD), "bad poses")
+        self.assertEqual(self.refused(lines), len(BAD), "each is refused")
+        send_random(peer, rng, 10000)
+        until(lambda: self.refused(lines) > 9 * 10000 // 10, "most of the random poses")
+        peer.stdin.write(GOOD + "\n")
+        peer.stdin.flush()
+        first = np.frombuffer(receiver.recv(1000), [("head", "u1", 8), ("values", "<f8", 7)])[0]["values"]
+        np.testing.assert_allclose(first, [0.01, -0.02, 0.03, 0.02, 0, 0, 0], rtol=0, atol=1e-8)
+        print(f"{self.refused(lines)} poses refused of {10000 + len(BAD)}, the good one alone moved the hand")
+
+    def test_a_real_device_is_never_moved(self):
+        source, _ = self.simulate("--ticks", 100)
+        receiver = self.hand()
+        log = Growing(source, self.folder / "run.tactlog", simulated=False, hand_socket=str(self.folder / "hand.sock"))
+        log.begin()
+        _, lines = self.bridge(log.path, "--servo")
+        until(lambda: any("ticks/s" in line for line in lines), "its first line")
+        peer = self.servo()
+        peer.stdin.write((GOOD + "\n") * 5)
+        peer.stdin.flush()
+        until(lambda: self.refused(lines) == 5, "five good poses")
+        self.assertIn("the device is real", lines[-1])
+        receiver.setblocking(False)
+        self.assertRaises(BlockingIOError, receiver.recv, 1000)
+
+    def test_forces_are_the_same_with_and_without(self):
+        _, alone = self.simulate("--ticks", 20000)
+        (self.folder / "source.tactlog").unlink()
+        process, lines = self.bridge(self.folder / "source.tactlog", "--servo")
+        peer = self.servo()
+        peer.stdin.write(GOOD + "\n")
+        peer.stdin.flush()
+        _, followed = self.simulate("--ticks", 20000)
+        until(lambda: any("ticks/s" in line for line in lines), "that it has followed")
+        self.assertEqual(followed, alone)
+        self.assertIsNone(process.poll())
+        print(f"force hash {alone} with and without")
+
+    def test_bad_usage_has_a_message(self):
+        no_log = self.folder / "no.tactlog"
+        no_log.write_text("hello, this is no log of tact at all")
+        for arguments, message in ((["log", "--domain", "233"], "--domain: 233 is not in"),
+                                   (["log", "--namespace", "/tact"], "/tact is no name of ROS"),
+                                   (["log", "--interface", "no9"], "--interface no9: this PC has none"),
+                                   ([], "LOG is required"),
+                                   ([no_log, "--domain", DOMAIN], "is no file of tact; name one that tactd --record"),
+                                   ([self.folder, "--domain", DOMAIN], "is no regular file"),
+                                   ([self.folder / "none/log", "--domain", DOMAIN], "No such file"),
+                                   ([LIVER, "--domain", DOMAIN], "is no file of tact")):
+            done = subprocess.run([BUILD / "tact-ros", *map(str, arguments)], capture_output=True, text=True, timeout=60)
+            self.assertEqual(done.returncode, 2, arguments)
+            self.assertRegex(done.stderr, r"^tact-ros: .*" + message)
+        self.assertIn("example:", subprocess.run([BUILD / "tact-ros", "--help"], capture_output=True, text=True).stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()
