@@ -31,7 +31,8 @@ class Page(unittest.TestCase):
     def setUpClass(cls):
         cls.scratch = tempfile.TemporaryDirectory()
         cls.folder = pathlib.Path(cls.scratch.name)
-        cls.done = run(cls.folder, "--plan", "step,e-stop,device-fault,power,continuous", "--json", "--location", "room <1> & {{tester}}")
+        cls.done = run(cls.folder, "--plan", "step,e-stop,device-fault,power,continuous", "--json", "--location",
+                       "room <1> & {{tester}}")
         cls.kept = json.loads((cls.folder / "limits.json").read_text())
 
     @classmethod
