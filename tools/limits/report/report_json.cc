@@ -29,7 +29,8 @@ json tightened_json(const model::Limits& here, const model::Limits& all) {
 
 /// Has it a moment to mark?
 bool has_cause(const Case& c) {
-  return c.trouble != Trouble::kNone || c.shape == Shape::kNan || c.shape == Shape::kInfinity;
+  return c.injected != InjectedFault::kNone || c.shape == Shape::kNan ||
+         c.shape == Shape::kInfinity;
 }
 
 json case_json(const CaseVerdict& v, const LimitsReport& report) {
