@@ -6,7 +6,7 @@ import pathlib
 import sys
 
 sys.dont_write_bytecode = True
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))  # build/report, share/tact/report
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))  # where page.py lies, built and installed
 
 import page  # noqa: E402
 
