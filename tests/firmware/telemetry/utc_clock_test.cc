@@ -56,7 +56,6 @@ TEST(UtcClock, EachTickOfALogHasTheNewestPairAndItsContacts) {
   Telemetry telemetry(*ring,
                       FrameBuilder(tissue->law().contact_law(), *shapes, false, {.offset_ns = 5}),
                       {.frame_rate_Hz = 200.0}, std::move(sinks));
-  ASSERT_FALSE(telemetry.start());
   loop::TickRecord record;
   std::array<model::contact::SphereContact, 2> contacts;
   contacts[1].state = model::ContactState::kHeld;
@@ -64,7 +63,8 @@ TEST(UtcClock, EachTickOfALogHasTheNewestPairAndItsContacts) {
   contacts[1].surface_point_m = {1.0, 2.0, 3.0};
   record.contacts.assign(contacts);
   record.event = 7, record.event_word = 255, record.sync = true;
-  ring->push(record);
+  ring->push(record);  // before the thread runs, so that it comes with the pair of the start
+  ASSERT_FALSE(telemetry.start());
   // Each frame has the newest pair; the thread reads it again once a second.
   for (int i = 0; i < 30'000 && telemetry.newest_frame().utc.offset_ns <= 5; ++i) {
     record.tick = static_cast<std::uint64_t>(1 + i);
