@@ -219,9 +219,9 @@ def image():
         "ready_s": float(ready_s), "ready_of_linux_s": float(linux_s)}
 
 
-# How compliance.large_strain can act: on the organ's bending, on the tip, on neither.
-STRAINS = {"shipped": [], "shipped_small": ["compliance.large_strain=false"], "tip_alone": ["law=compliance"],
-           "neither": ["law=compliance", "compliance.large_strain=false"]}
+# compliance.large_strain corrects tip and bending, or neither; with the shipped law and with the exact tip.
+STRAINS = {"shipped": [], "shipped_small": ["compliance.large_strain=false"], "exact": ["law=compliance"],
+           "exact_small": ["law=compliance", "compliance.large_strain=false"]}
 
 
 def finite_strain():

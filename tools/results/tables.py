@@ -123,13 +123,12 @@ def finite_strain(load):
                f"{judged(jaw, 10.0, f'{jaw:.2g} %')} |")
 
 
-STRAINS = {"shipped": "`rhombus`: the organ bends, the tip's law is of small strain (shipped)",
-           "shipped_small": "`rhombus`, `large_strain = false`", "tip_alone": "`compliance`: the tip alone (CT-8)",
-           "neither": "`compliance`, `large_strain = false`"}
+STRAINS = {"shipped": "`rhombus` (shipped): tip and bending", "shipped_small": "`rhombus`, `large_strain = false`: neither",
+           "exact": "`compliance`: tip and bending", "exact_small": "`compliance`, `large_strain = false`: neither"}
 
 
 def strains(load):
-    """What large strain does to the force, by what of it the law has."""
+    """What large strain does to the force."""
     found = load("finite_strain")["strain"]
     depths = list(found["shipped"]["1586"])
     yield f"| law | place | {' | '.join(f'{mm} mm' for mm in depths)} |"
