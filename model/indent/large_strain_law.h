@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // large_strain_law.h - a law that was fitted to a round tip at small strain, at large strain.
 //
-//     LS-1   F_large(d) = g(d / R) F(d)                       d > 0; g of CT-8
+//     LS-1   F_large = g(d/R) F                               d > 0; g of CT-8
 //     LS-2   dF_large/dd = g dF/dd + F (dg/dx) / R,   U_large = integral of F_large
 //
 //     d   indentation by the tip alone, m    F   force of the law, N    R   tip radius, m

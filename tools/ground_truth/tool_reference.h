@@ -2,8 +2,8 @@
 // tool_reference.h - what an elastic organ does under the whole tool, solved by tact-lab reference
 // --tool.
 //
-// All spheres of the tool are one rigid body without friction; the organ is linear elastic, or, with
-// --finite-strain, neo-Hookean. Where:
+// All spheres of the tool are one rigid body without friction; the organ is linear elastic or,
+// with --finite-strain, neo-Hookean. Where:
 // the point at which the simulated hand presses, points that its strokes slide to, and some that no
 // fit has used. Without friction a slide leaves nothing behind, so it counts as a press at its
 // end. The tool comes to each as the hand brings it to its own: turned from its rest by
