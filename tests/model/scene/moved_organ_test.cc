@@ -81,9 +81,9 @@ TEST(MovedOrgan, PressIsTheFiniteElementsWithin7PercentAtTheHand3) {
   for (const auto& truth : reference.at("places")) {
     const std::string name = truth.at("place");
     const bool is_hand = name == "hand_site";
-    const Press press = is_hand ? press_at(scene.hand_site_m, scene.hand_inward)
-                                : press_at_vertex(std::stoul(name.substr(7)),
-                                                  name == "vertex_2743" ? 90.0 : 0.0);
+    const Press press =
+        is_hand ? press_at(scene.hand_site_m, scene.hand_inward)
+                : press_at_vertex(std::stoul(name.substr(7)), name == "vertex_2743" ? 90.0 : 0.0);
     Stroke stroke(liver(), press.at(-kBefore_m));
     double worst = 0.0, worst_jaw = 0.0;
     int tick = 0;
