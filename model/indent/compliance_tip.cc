@@ -19,10 +19,10 @@ constexpr std::array<double, 4> kNode{0.1834346424956498, 0.5255324099163290, 0.
 constexpr std::array<double, 4> kWeight{0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
                                         0.1012285362903763};
 
-/// CT-8 and CT-9 in place of CT-2 and CT-3; s > 0, so that dt/dx is finite. x stops at its reach.
-void enlarge_strain(const ElasticTip& tip, double s, TipState& state) RT_SAFE {
-  const double w = 1.0 - 2.0 * tip.poisson_ratio, t = std::tanh(s), x = s * t;
-  // CT-9  d(a/R)/dx, as t = a/R = tanh s and x = s t
+/// CT-8 at s > 0, so that dt/dx is finite; t = a/R = tanh s and x = s t.
+StrainFactor factor_at(double poisson_ratio, double s) RT_SAFE {
+  const double w = 1.0 - 2.0 * poisson_ratio, t = std::tanh(s), x = s * t;
+  // CT-9  d(a/R)/dx
   const double dt_dx = (1.0 - t * t) / (t + s * (1.0 - t * t));
   // Beyond the reach of the fit the terms in x stay as they are there; the one in a/R goes on.
   const double y = std::fmin(x, kDeepestIndentation_ratio);
@@ -30,8 +30,7 @@ void enlarge_strain(const ElasticTip& tip, double s, TipState& state) RT_SAFE {
   const double g = 1.0 + y * (-0.1210 + y * (0.0651 - y * 0.0259)) + w * (0.2559 * t + 0.2525 * y);
   double dg_dx = w * 0.2559 * dt_dx;
   if (x < kDeepestIndentation_ratio) dg_dx += -0.1210 + x * (0.1302 - x * 0.0777) + w * 0.2525;
-  state.stiffness_N_per_m = g * state.stiffness_N_per_m + dg_dx * state.force_N / tip.radius_m;
-  state.force_N *= g;
+  return {g, dg_dx};
 }
 
 }  // namespace
@@ -75,8 +74,23 @@ TipState tip_state(const ElasticTip& tip, double s) RT_SAFE {
                .force_N = 0.5 * stiff_N_per_m * r_m * f,
                .stiffness_N_per_m = stiff_N_per_m * t,
                .contact_radius_m = r_m * t};
-  if (tip.large_strain && s > 0.0) enlarge_strain(tip, s, out);
+  if (tip.large_strain && s > 0.0) {  // CT-8 and CT-9
+    const StrainFactor g = factor_at(tip.poisson_ratio, s);
+    out.stiffness_N_per_m = g.factor * out.stiffness_N_per_m + g.slope * out.force_N / r_m;
+    out.force_N *= g.factor;
+  }
   return out;
+}
+
+StrainFactor large_strain_factor(double poisson_ratio, double x) {
+  // x = s tanh s by Newton's method, from above: there the slope is between x/s and 1.2.
+  constexpr int kSteps = 50;
+  double s = x + std::sqrt(x);
+  for (int i = 0; i < kSteps; ++i) {
+    const double t = std::tanh(s);
+    s -= (s * t - x) / (t + s * (1.0 - t * t));
+  }
+  return factor_at(poisson_ratio, s);
 }
 
 double pressed_shape_m(const ElasticTip& tip, const TipState& state, double rho_m) RT_SAFE {

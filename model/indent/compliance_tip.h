@@ -61,6 +61,15 @@ struct TipState {
 
 inline constexpr double kDeepestIndentation_ratio = 2.15;  // x, CT-8 is valid up to here
 
+/// CT-8: g, and its slope dg/dx.
+struct StrainFactor {
+  double factor = 1.0, slope = 0.0;
+};
+
+/// At an indentation of x radii, x > 0; for set-up. Beyond kDeepestIndentation_ratio only the term
+/// in a/R goes on.
+StrainFactor large_strain_factor(double poisson_ratio, double x);
+
 /// CT-1 to CT-3 at s >= 0, or CT-8 and CT-9, with x in g limited to kDeepestIndentation_ratio.
 TipState tip_state(const ElasticTip& tip, double s) RT_SAFE;
 /// CT-4, rho >= 0.

@@ -94,6 +94,7 @@ Result<Curve> table(const Scene& scene) {
   // A table of its own, denser at light touch than the loop's.
   return Curve{.law = owned(std::move(*law)),
                .title = std::move(title),
+               .is_measured = true,
                .untabled_bytes = sizeof(indent::TableLaw)};
 }
 

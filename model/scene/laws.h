@@ -36,6 +36,7 @@ struct Curve {
   std::unique_ptr<law::Law> law;
   std::string title{};             // for people
   bool draws_tissue = false;       // by its own profile, not as a half-space
+  bool is_measured = false;        // its strain is that of the tissue, not a small one
   std::size_t untabled_bytes = 0;  // size of a law that the loop calls itself; 0: it reads a table
 };
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "model/law/tabulated_law.h"
 #include "model/scene/tissue_law_builder.h"
@@ -18,6 +19,7 @@ TissueLawBuilder::Step TissueLawBuilder::add_curve(const LawRow& row) {
   if (!curve) return blame(curve.error());
   law_->title_ = curve->title;
   draws_tissue_ = curve->draws_tissue;
+  is_measured_ = curve->is_measured;
   law_->owned_.push_back(std::move(curve->law));
   const auto pulled = with_pull(*law_->owned_.back());
   if (!pulled) return pulled.error();
@@ -29,11 +31,32 @@ TissueLawBuilder::Step TissueLawBuilder::add_curve(const LawRow& row) {
   return finish_curve(keep(std::move(*table)));
 }
 
+/// At large strain the tip's own indentation is a curve, too, on the organ that bends.
 TissueLawBuilder::Step TissueLawBuilder::add_compliance() {
-  const bool large_strain = scene_.compliance.large_strain;
-  law_->title_ = fmt::format("elastic compliance, {} strain under the tip, {} curves",
-                             large_strain ? "large" : "small", scene_.compliance.curves);
-  auto family = read_scene_family(scene_, large_strain);
+  if (!scene_.compliance.large_strain) return add_small_compliance();
+  law_->title_ = "elastic compliance, large strain under the tip";
+  const auto tip_radius_m = scene_tip_radius_m(scene_);
+  if (!tip_radius_m) return blame(tip_radius_m.error());
+  if (auto map = read_scene_map(scene_); !map) return map.error();
+  auto curve =
+      indent::make_compliance_curve({.tip = {.youngs_modulus_Pa = scene_.elastic->youngs_modulus_Pa,
+                                             .poisson_ratio = scene_.elastic->poisson_ratio,
+                                             .radius_m = *tip_radius_m,
+                                             .large_strain = true},
+                                     .working_depth_m = scene_.compliance.working_depth_m,
+                                     .ring_pitch_m = *tip_radius_m,
+                                     .ring_m_per_N = std::array{0.0},
+                                     .table_knots = scene_.table_knots});
+  if (!curve) return blame(curve.error());
+  law_->memory_bytes_ += curve->memory_bytes();
+  return bend(keep(std::move(*curve)), scene_.compliance.working_depth_m);
+}
+
+// The organ's bending is of small strain, so the tip is, too.
+TissueLawBuilder::Step TissueLawBuilder::add_small_compliance() {
+  law_->title_ = fmt::format("elastic compliance, small strain under the tip, {} curves",
+                             scene_.compliance.curves);
+  auto family = read_scene_family(scene_);
   if (!family) return family.error();
   for (indent::ComplianceCurve& curve : family->curve) {
     law_->memory_bytes_ += curve.memory_bytes();
@@ -61,7 +84,7 @@ TissueLawBuilder::Step TissueLawBuilder::add_spring_patch() {
   parameters.relaxation = *relaxation;
   if (scene_.varies_by_place) {
     const std::string net = law_->title_;
-    if (auto failed = add_compliance()) return failed;
+    if (auto failed = add_small_compliance()) return failed;
     law_->title_ = net + ", under the tool " + law_->title_;
     law_->organ_law_ = std::move(law_->contact_law_);
     parameters.organ = law_->organ_law_.get();

@@ -27,10 +27,12 @@ class TissueLawBuilder {
   std::unique_ptr<TissueLaw> take() { return std::move(law_); }
 
  private:
+  Step add_small_compliance();
   Result<const law::Law*> with_pull(const law::Law& press);
   Step finish_curve(const law::Law& curve);
   Step vary_by_place(const law::Law& curve);
-  Step bend(const law::Law& curve);
+  Step enlarge_strain(const law::Law& curve);
+  Step bend(const law::Law& curve, double organ_range_m);
   Step finish_field(const law::Law* shape = nullptr);
   tissue::ElasticNeighbours neighbours();
   void measure(const law::Law& curve);
@@ -47,6 +49,7 @@ class TissueLawBuilder {
 
   const Scene& scene_;
   bool draws_tissue_ = false;  // the law itself, not as springs in a row
+  bool is_measured_ = false;   // the law's strain is large where the tissue's is
   std::unique_ptr<TissueLaw> law_ = std::make_unique<TissueLaw>();
 };
 

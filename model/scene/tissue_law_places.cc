@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "model/contact/fair_surface.h"
+#include "model/indent/large_strain_law.h"
 #include "model/law/law_bounds.h"
 #include "model/law/series_law.h"
 #include "model/law/tabulated_law.h"
@@ -28,7 +29,7 @@ double stiffer_N_per_m(double a, double b) { return a >= b || std::isnan(a) ? a 
 /// One law everywhere, or in series with the compliance of each place.
 TissueLawBuilder::Step TissueLawBuilder::finish_curve(const law::Law& curve) {
   if (scene_.varies_by_place)
-    return scene_.compliance.large_strain ? bend(curve) : vary_by_place(curve);
+    return scene_.compliance.large_strain ? enlarge_strain(curve) : vary_by_place(curve);
   law_->curves_.push_back(&curve);
   if (draws_tissue_) return finish_field();
   auto shape = indent::half_space_under(scene_.tool.spheres[0].radius_m, curve.range().press_m);
@@ -39,7 +40,7 @@ TissueLawBuilder::Step TissueLawBuilder::finish_curve(const law::Law& curve) {
 // The law is the tip's own indentation, the same everywhere; each curve of the family adds its
 // compliance, which is one of small strain.
 TissueLawBuilder::Step TissueLawBuilder::vary_by_place(const law::Law& curve) {
-  auto family = read_scene_family(scene_, false);
+  auto family = read_scene_family(scene_);
   if (!family) return family.error();
   const law::LawRange range = curve.range();
   const double least_m_per_N =
@@ -61,8 +62,25 @@ TissueLawBuilder::Step TissueLawBuilder::vary_by_place(const law::Law& curve) {
   return finish_field();
 }
 
+// The tip's indentation and the organ's bending are both of large strain.
+TissueLawBuilder::Step TissueLawBuilder::enlarge_strain(const law::Law& curve) {
+  if (is_measured_) return bend(curve, curve.range().press_m);
+  const auto tip_radius_m = scene_tip_radius_m(scene_);
+  if (!tip_radius_m) return blame(tip_radius_m.error());
+  if (auto map = read_scene_map(scene_); !map) return map.error();
+  auto large =
+      indent::make_large_strain_law(curve,
+                                    {.youngs_modulus_Pa = scene_.elastic->youngs_modulus_Pa,
+                                     .poisson_ratio = scene_.elastic->poisson_ratio,
+                                     .radius_m = *tip_radius_m},
+                                    scene_.table_knots);
+  if (!large) return blame(large.error());
+  law_->memory_bytes_ += large->memory_bytes();
+  return bend(keep(std::move(*large)), curve.range().press_m);
+}
+
 // The law is the tip's own indentation; the organ moves with its compliance, by finite rotations.
-TissueLawBuilder::Step TissueLawBuilder::bend(const law::Law& curve) {
+TissueLawBuilder::Step TissueLawBuilder::bend(const law::Law& curve, double organ_range_m) {
   const auto tip_radius_m = scene_tip_radius_m(scene_);
   if (!tip_radius_m) return blame(tip_radius_m.error());
   auto map = read_scene_map(scene_);
@@ -88,7 +106,7 @@ TissueLawBuilder::Step TissueLawBuilder::bend(const law::Law& curve) {
                   .contact_modulus_Pa = ball.contact_modulus_Pa(),
                   .poisson_ratio = elastic.poisson_ratio,
                   .held_N_per_m = held_N_per_m,
-                  .range_m = range.press_m,
+                  .range_m = organ_range_m,
                   .creep = law::Creep(*relaxation)};
   law_->title_ += ", on an organ that bends";
   law_->curves_.push_back(&curve);

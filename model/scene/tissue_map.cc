@@ -73,14 +73,13 @@ Result<double> scene_tip_radius_m(const Scene& scene) {
   return spheres[0].radius_m;
 }
 
-Result<tissue::ComplianceFamily> read_scene_family(const Scene& scene, bool large_strain) {
+Result<tissue::ComplianceFamily> read_scene_family(const Scene& scene) {
   const auto tip_radius_m = scene_tip_radius_m(scene);
   if (!tip_radius_m) return Error{scene.path + ": " + tip_radius_m.error().message};
   auto map = read_scene_map(scene);
   if (!map) return map.error();
   auto family = make_compliance_family(*map, {.youngs_modulus_Pa = scene.elastic->youngs_modulus_Pa,
                                               .tip_radius_m = *tip_radius_m,
-                                              .large_strain = large_strain,
                                               .working_depth_m = scene.compliance.working_depth_m,
                                               .curves = scene.compliance.curves,
                                               .table_knots = scene.table_knots});

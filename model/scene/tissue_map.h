@@ -16,8 +16,7 @@ Result<tissue::ComplianceMap> read_scene_map(const Scene& scene);
 /// R of the tool's tip; an error where its spheres differ.
 Result<double> scene_tip_radius_m(const Scene& scene);
 
-/// The scene's organ under its tool's tip, which must be the same on every sphere; the scene's
-/// compliance.large_strain is not asked.
-Result<tissue::ComplianceFamily> read_scene_family(const Scene& scene, bool large_strain);
+/// The scene's organ under its tool's tip, which must be the same on every sphere, at small strain.
+Result<tissue::ComplianceFamily> read_scene_family(const Scene& scene);
 
 }  // namespace tact::model::scene

@@ -155,8 +155,7 @@ Result<ComplianceFamily> make_compliance_family(const ComplianceMap& map,
   if (map.vertices() == 0) return Error{"compliance: the map has no vertices"};
   const indent::ElasticTip tip{.youngs_modulus_Pa = p.youngs_modulus_Pa,
                                .poisson_ratio = map.poisson_ratio,
-                               .radius_m = p.tip_radius_m,
-                               .large_strain = p.large_strain};
+                               .radius_m = p.tip_radius_m};
   const Compliances of = compliances_of(map, tip);
   const Scale scale = scale_of(of, 1.0 / tip.pulled_stiffness_N_per_m(), p.curves);
   ComplianceFamily out;

@@ -46,7 +46,6 @@ struct ComplianceFamily {
 struct ComplianceFamilyParameters {
   double youngs_modulus_Pa = 0.0;
   double tip_radius_m = 0.0;
-  bool large_strain = false;  // under the tip, CT-8
   double working_depth_m = 0.0;
   std::size_t curves = 17;       // K
   std::size_t table_knots = 65;  // of each curve in press

@@ -28,6 +28,7 @@ ToolPoint place_of(const json& j) {
   const json &v = j.at("vertex"), &q = j.at("orientation_wxyz");
   ToolPoint place{.vertex = {},
                   .slid_m = j.contains("slid_m") ? vector_of(j.at("slid_m")) : Vec3{},
+                  .tilt_deg = j.value("tilt_deg", 0.0),
                   .point_m = vector_of(j.at("point_m")),
                   .direction = vector_of(j.at("direction")),
                   .orientation = {q.at(0).get<double>(), q.at(1).get<double>(),
@@ -77,6 +78,7 @@ std::optional<Error> check_tool(const ToolReference& data) {
 
 std::string name_of(const ToolPoint& place) {
   if (place.vertex) return std::to_string(*place.vertex);
+  if (place.tilt_deg != 0.0) return fmt::format("tilted {:g}", place.tilt_deg);
   if (place.slid_m == Vec3{}) return "hand's";
   return fmt::format("slid {:.3g} mm", norm(place.slid_m) * 1e3);
 }

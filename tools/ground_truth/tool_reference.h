@@ -2,7 +2,8 @@
 // tool_reference.h - what an elastic organ does under the whole tool, solved by tact-lab reference
 // --tool.
 //
-// All spheres of the tool are one rigid body without friction; the organ is linear elastic. Where:
+// All spheres of the tool are one rigid body without friction; the organ is linear elastic or,
+// with --finite-strain, neo-Hookean. Where:
 // the point at which the simulated hand presses, points that its strokes slide to, and some that no
 // fit has used. Without friction a slide leaves nothing behind, so it counts as a press at its
 // end. The tool comes to each as the hand brings it to its own: turned from its rest by
@@ -33,6 +34,7 @@ struct ToolCase {
 struct ToolPoint {
   std::optional<std::uint32_t> vertex;  // of the organ's mesh; none: the hand's own site, slid
   model::Vec3 slid_m{};                 // from the hand's own site by a stroke, 0: not
+  double tilt_deg = 0.0;                // the tool is turned so far at the hand's own site
   model::Vec3 point_m{};                // of the tool's lowest point at depth 0, mesh's own frame
   model::Vec3 direction{};              // into the tissue, unit
   model::Quat orientation{};
@@ -46,7 +48,7 @@ struct ToolReference {
   std::vector<ToolPoint> places;
 };
 
-/// "hand's", "slid 10 mm", "1586"
+/// "hand's", "slid 10 mm", "tilted 20", "1586"
 std::string name_of(const ToolPoint& place);
 
 /// An error names the file and the key.

@@ -96,8 +96,7 @@ std::optional<Error> add_hashes(json& row, const Scene& scene, const std::string
   const auto hash = model::scene::hash_of_linear_forces(scene, law_name);
   if (!hash) return hash.error();
   row["law_hash"] = *hash;
-  row["large_strain_off"] =
-      scene.compliance.large_strain && ((*law)->organ() != nullptr || law_name == "compliance");
+  row["large_strain_off"] = scene.compliance.large_strain && (*law)->organ() != nullptr;
   return std::nullopt;
 }
 

@@ -73,22 +73,23 @@ TEST(MovedOrgan, ForceIsTheSlopeOfTheEnergyAtFixedSurfacePoints) {
   RecordProperty("worst", std::to_string(worst * 1e9) + "e-9");
 }
 
-TEST(MovedOrgan, PressedSquareIsTheFiniteElementsWithin7Percent) {
+TEST(MovedOrgan, PressIsTheFiniteElementsWithin7PercentAtTheHand3) {
   std::ifstream file(TACT_SOURCE_DIR "/tests/data/reference/finite_strain_liver.json");
   const auto reference = nlohmann::json::parse(file);
   ASSERT_EQ(reference.at("places").size(), 3U);
   const Scene& scene = liver().scene;
   for (const auto& truth : reference.at("places")) {
     const std::string name = truth.at("place");
-    const Press press = name == "hand_site" ? press_at(scene.hand_site_m, scene.hand_inward)
-                                            : press_at_vertex(std::stoul(name.substr(7)),
-                                                              name == "vertex_2743" ? 90.0 : 0.0);
+    const bool is_hand = name == "hand_site";
+    const Press press =
+        is_hand ? press_at(scene.hand_site_m, scene.hand_inward)
+                : press_at_vertex(std::stoul(name.substr(7)), name == "vertex_2743" ? 90.0 : 0.0);
     Stroke stroke(liver(), press.at(-kBefore_m));
     double worst = 0.0, worst_jaw = 0.0;
     int tick = 0;
     for (std::size_t k = 0; k < truth.at("depth_m").size(); ++k) {
       const double depth_m = truth["depth_m"][k], want_N = truth["force_N"][k];
-      if (depth_m < 0.99_mm || depth_m > 10.01_mm) continue;
+      if (depth_m < 0.99_mm || depth_m > 12.01_mm) continue;
       for (; tick <= ticks_to(depth_m); ++tick) stroke.go(press.at(depth_at(tick)));
       worst = std::max(worst, std::abs(-dot(stroke.force_N, press.inward) / want_N - 1.0));
       // The jaws of the reference have no names: as they fit.
@@ -100,7 +101,7 @@ TEST(MovedOrgan, PressedSquareIsTheFiniteElementsWithin7Percent) {
       };
       worst_jaw = std::max(worst_jaw, std::min(miss_N(a_N, b_N), miss_N(b_N, a_N)) / want_N);
     }
-    EXPECT_LT(worst, 0.07) << name;
+    EXPECT_LT(worst, is_hand ? 0.03 : 0.07) << name;
     EXPECT_LT(worst_jaw, 0.10) << name << ", of the pair's force";
     EXPECT_LT(stroke.max_change_N, 1e-3) << name;
     RecordProperty(name, std::to_string(worst) + ", jaw " + std::to_string(worst_jaw));
@@ -193,16 +194,19 @@ TEST(MovedOrgan, ForthAndBackGivesNoEnergyWithOrWithoutFriction) {
   double max_given_energy_J = 0.0;
   for (const double friction_ratio : {0.4, 0.0}) {
     int count = 0, unsolved = 0;
+    std::string where;
     for (std::size_t v = 7; v < liver().scene.organ_mesh.vertex_m.size(); v += 4 * kStride) {
       const Stroke stroke = forth_and_back(v, friction_ratio);
       unsolved += stroke.unsolved;
+      if (stroke.unsolved > 0) where += " " + std::to_string(v);
       EXPECT_GT(stroke.work_J, -stroke.max_tick_J) << v;
       EXPECT_GT(stroke.work_J, friction_ratio > 0.0 ? 0.0 : -kTolerated_J) << v;
       max_given_energy_J = std::max(max_given_energy_J, -stroke.work_J);
       ++count;
     }
     EXPECT_GE(count, 25);
-    EXPECT_LE(unsolved, 1) << "vertex 3107, with friction: it keeps its force for that tick";
+    EXPECT_LE(unsolved, 2) << "it keeps its force for that tick, with friction; vertices" << where;
+    RecordProperty(friction_ratio > 0.0 ? "unsolved_with" : "unsolved_without", where);
   }
   RecordProperty("most_given_uJ", std::to_string(max_given_energy_J * 1e6));
 }

@@ -61,25 +61,19 @@ TEST(ComplianceFamily, IsSortedFromSoftToStiff) {
 TEST(ComplianceFamily, TheBlendIsTheLawOfThePlaceWithinHalfAPercent) {
   const ComplianceMap map = lobe();
   const std::vector<double> flat(20, 0.0);
-  for (const bool large_strain : {false, true}) {
-    ComplianceFamilyParameters p = kLiver;
-    p.large_strain = large_strain;
-    const ComplianceFamily family = make(map, p);
-    for (std::size_t v = 40; v < 200; v += 7) {
-      const double r = static_cast<double>(map.regular_times_E_per_m[v]) / 5000.0;
-      const auto own = indent::make_compliance_curve({.tip = {5000.0, 0.45, 4_mm, large_strain},
-                                                      .regular_m_per_N = r,
-                                                      .working_depth_m = 10_mm,
-                                                      .ring_pitch_m = 2_mm,
-                                                      .ring_m_per_N = flat});
-      ASSERT_TRUE(own);
-      for (const double d : {-9_mm, 0.5_mm, 2_mm, 5_mm, 9.9_mm}) {
-        const double kappa = static_cast<double>(family.press_coordinate[v]);
-        const bool is_known = d < family.curve[static_cast<std::size_t>(kappa) + 1].range().press_m;
-        EXPECT_NEAR(blended_N(family, kappa, d) / own->respond(d).force_N, 1.0,
-                    is_known ? 0.005 : 0.015)
-            << "vertex " << v << " depth " << d;
-      }
+  const ComplianceFamily family = make(map);
+  for (std::size_t v = 40; v < 200; v += 7) {
+    const double r = static_cast<double>(map.regular_times_E_per_m[v]) / 5000.0;
+    const auto own = indent::make_compliance_curve({.tip = {5000.0, 0.45, 4_mm},
+                                                    .regular_m_per_N = r,
+                                                    .working_depth_m = 10_mm,
+                                                    .ring_pitch_m = 2_mm,
+                                                    .ring_m_per_N = flat});
+    ASSERT_TRUE(own);
+    for (const double d : {-9_mm, 0.5_mm, 2_mm, 5_mm, 9.9_mm}) {
+      const double kappa = static_cast<double>(family.press_coordinate[v]);
+      EXPECT_NEAR(blended_N(family, kappa, d) / own->respond(d).force_N, 1.0, 0.005)
+          << "vertex " << v << " depth " << d;
     }
   }
 }

@@ -53,6 +53,16 @@ TEST(ToolReference, IsReadWithAllItsPlaces) {
   EXPECT_EQ(data.sphere[1].offset_m.y, 0.004);
 }
 
+TEST(ToolReference, ATiltedPlaceHasANameOfItsOwn) {
+  const std::string hands = R"({"vertex": null, "point_m": [0, 0, 0],)";
+  std::string text = kExample;
+  text.replace(text.find(hands), hands.size(), hands + R"( "tilt_deg": 20,)");
+  const auto data = tests::read_text(read_tool_reference, text);
+  ASSERT_TRUE(data) << data.error().message;
+  EXPECT_EQ(name_of(data->places[0]), "tilted 20");
+  EXPECT_EQ(data->places[1].tilt_deg, 0.0);
+}
+
 TEST(ToolReference, NamesTheFileAndTheKeyOfADamage) {
   expect_error(kExample, "tact-tool-reference/1", "tact-reference/1", "schema");
   expect_error(kExample, "\"force_N\"", "\"force_mN\"", "force_N");
