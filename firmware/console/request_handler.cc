@@ -31,7 +31,7 @@ void pause_a_moment() {
   nanosleep(&kMoment, nullptr);
 }
 
-void RequestHandler::obey(std::int64_t longest_ns) {
+void RequestHandler::serve(std::int64_t longest_ns) {
   const bool ends = signals_.wait_for_end(longest_ns, control_ != nullptr ? control_->fd() : -1);
   // Taken before show(): a request made before the ready message must not count as a response to
   // it.

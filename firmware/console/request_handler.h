@@ -43,7 +43,7 @@ class RequestHandler {
         set_(std::move(set)) {}
 
   /// Waits at most `longest_ns` for a request, shows the newest frame, then handles the request.
-  void obey(std::int64_t longest_ns);
+  void serve(std::int64_t longest_ns);
 
  private:
   std::optional<ControlRequest> next_request() const;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // thermal_limit.h - limits force by motor temperature: peak for a short time, RMS without end.
 //
-//     GT-4   heat   dh/dt = (F^2 - h) / tau   h: square of the RMS of the force, first order
+//     GT-4   thermal   dh/dt = (F^2 - h) / tau   h: square of the RMS of the force, first order
 //                   A^2 = min(Fc^2 + kappa max(Fc^2 - h, 0), Fp^2),   kappa = 2 (Fp^2 / Fc^2 - 1)
 //
 //     F    written force, N    Fp  peak, N    Fc  continuous, N, <= Fp    tau  time constant, s

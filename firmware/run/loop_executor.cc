@@ -29,8 +29,8 @@ LoopExecutor::LoopExecutor(const GuardedLoop& guarded)
     if (!ended_.load()) guarded_.device.stop();
     stopped_.store(true);
   });
-  auto executor =
-      stopper ? hal::threads::start_thread("tact-executor", [this] { keep(); }) : stopper.error();
+  auto executor = stopper ? hal::threads::start_thread("tact-executor", [this] { run_all(); })
+                          : stopper.error();
   if (!executor) {
     error_ = executor.error();
     guarded_.device.stop();
@@ -49,16 +49,16 @@ LoopExecutor::~LoopExecutor() {
 }
 
 // Not in the loop's thread, whose filter would refuse the system calls of Device::stop().
-void LoopExecutor::keep() {
-  for (const LoopRun& turn : guarded_.turns) {
-    error_ = take(turn);
+void LoopExecutor::run_all() {
+  for (const LoopRun& one : guarded_.runs) {
+    error_ = run_one(one);
     if (error_ || guarded_.requests.stop.load()) break;
   }
   guarded_.device.stop();  // at once, because drives expect cyclic messages of their host
   ended_.store(true);
 }
 
-std::optional<model::Error> LoopExecutor::take(const LoopRun& turn) {
+std::optional<model::Error> LoopExecutor::run_one(const LoopRun& one) {
   // The watch starts before the loop's thread and stops after it, so it monitors every tick.
   watch::GuardianLink link;
   if (const auto* guardian = guarded_.guardian)
@@ -66,10 +66,10 @@ std::optional<model::Error> LoopExecutor::take(const LoopRun& turn) {
             .own_count = &guardian->page().holder_count,
             .its_count = &guardian->page().waiter_count};
   watch::LoopMonitor watch(watch::StallDetector(guarded_.period_ns, guarded_.hard_real_time),
-                           turn.progress, guarded_.requests, guarded_.lines, link);
+                           one.progress, guarded_.requests, guarded_.lines, link);
   if (auto error = watch.start(guarded_.rt)) return error;
   auto loop = hal::threads::start_thread("tact-loop", [&] {
-    add_to(costs_, run_as_loop_thread(guarded_.rt, turn.run, guarded_.filter));
+    add_to(costs_, run_as_loop_thread(guarded_.rt, one.run, guarded_.filter));
   });
   if (!loop) return loop.error();
   loop->join();

@@ -5,7 +5,7 @@
 //     tact-watch   monitors it (watch/loop_monitor.h)
 //     executor     starts the loop; stops the device as soon as the loop has ended
 //     tact-stop    stops the device of a loop that hangs
-//     main         signals, status line, hangs (serve_operator in session.cc)
+//     main         signals, status line, hangs (operator_service.h)
 //
 // Several loops may run one after another on one device, each in its own thread behind the same
 // filter. A loop that does not end after a stop request is abandoned: the process exits without
@@ -34,7 +34,7 @@ struct LoopRun {
 };
 
 struct GuardedLoop {
-  std::vector<LoopRun> turns;  // run one after another, until a stop request
+  std::vector<LoopRun> runs;  // run one after another, until a stop request
   hal::Device& device;
   hal::SafetyLines& lines;
   loop::Requests& requests;
@@ -61,12 +61,12 @@ class LoopExecutor {
   /// and exits within 6 s. The kernel then closes all files; drives with a watchdog remove the
   /// force.
   [[noreturn]] void leave_behind(int status, const std::function<void()>& shutdown_frames);
-  /// Sum over all turns; call after join().
+  /// Sum over all runs; call after join().
   const ThreadCosts& costs() const { return costs_; }
 
  private:
-  void keep();
-  std::optional<model::Error> take(const LoopRun& turn);
+  void run_all();
+  std::optional<model::Error> run_one(const LoopRun& one);
 
   GuardedLoop guarded_;
   watch::RunawayGuard runaway_;

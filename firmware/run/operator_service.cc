@@ -34,7 +34,7 @@ void serve_operator(const ServiceParts& s, LoopExecutor& executor) {
   while (!executor.ended()) {
     const std::int64_t now_ns = clock.now_ns();
     const std::int64_t until_ns = loop::next_half_way_ns(now_ns + kStatusPeriod_ns, s.period_ns);
-    request_handler.obey(until_ns - now_ns);
+    request_handler.serve(until_ns - now_ns);
     service.report({now_ns, view.why_not_arm().empty(), s.progress.ticks(), view.status()});
     report_news();
     if (!executor.hangs()) continue;

@@ -191,7 +191,7 @@ std::optional<model::Error> Session::run_real_time() {
       LawUpdater::make({scene_, *parts_.device, requests_, loop_->contacts(), *telemetry_});
   if (!updater) return updater.error();
   law_updater_ = std::move(*updater);
-  LoopExecutor executor({.turns = {{loop_->progress(), [this] { loop_->run(); }}},
+  LoopExecutor executor({.runs = {{loop_->progress(), [this] { loop_->run(); }}},
                          .device = *parts_.device,
                          .lines = *parts_.lines,
                          .requests = requests_,

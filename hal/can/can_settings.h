@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// can_settings.h - a delta of one's own with three drives on one bus.
+// can_settings.h - settings of a self-built delta with three drives on one bus.
 #pragma once
 
 #include <fmt/format.h>
@@ -119,8 +119,8 @@ inline bool is_on_can(const model::DeviceSettings& device) {
   return device.kind.starts_with("can-");
 }
 
-/// Of a key in [device.can] that one kind of drives takes: another would leave it aside without a
-/// word, as a current without a limit.
+/// Refuses a key in [device.can] that another kind of drives has: it would be ignored in silence,
+/// as a current limit.
 inline void refuse_of_others(model::ParameterVisitor& k, const model::DeviceSettings& device,
                              std::string_view kind, std::string_view key, std::string_view owner) {
   if (is_on_can(device) && device.kind != kind)

@@ -5,7 +5,7 @@
 // later, velocity from the shared observer, forces turned into joint torques and held until the
 // next write, saturation that keeps the direction of the force, gravity that the device balances by
 // itself from the pose it has measured. Physics runs in between_ticks in steps of at most 0.25 ms.
-// The same calls give the same bits: no clock and no chance inside.
+// The same calls give the same bits: it reads no clock and no random number.
 #pragma once
 
 #include <array>
@@ -26,7 +26,7 @@
 
 namespace tact::hal::sim {
 
-/// Misfortunes for tests; may be set from any thread.
+/// Faults for tests; may be set from any thread.
 struct SimFaults {
   std::atomic<int> drop_samples{0};         // so many reads find nothing fresh
   std::atomic<bool> nan_sample{false};      // positions are NaN while set
@@ -59,7 +59,7 @@ struct SimDeviceSettings {
   }
 };
 
-/// sim-ideal, for who only wants to see: with the damping of its hand it bears 40 kN/m at 1 kHz.
+/// sim-ideal, to look at a scene: with the damping of its hand it bears 40 kN/m at 1 kHz.
 inline constexpr SimDeviceSettings kIdeal{.counts_per_turn = 1e8,
                                           .joint_damping_Nms_per_rad = 1.0,
                                           .observer_bandwidth_Hz = 500.0,
@@ -89,7 +89,7 @@ class SimDelta final : public Device {
   /// The truth behind the encoders, in the axes of its base.
   const DeltaPlant& plant() const { return plant_; }
   const SimHand& hand() const { return hand_; }
-  /// On its fingers, opening positive; they are held as the hand wants them.
+  /// On its fingers, opening positive; the hand holds their gap.
   double grip_force_N() const { return grip_N_; }
   Vec3 true_position_W_m() const RT_SAFE;
 

@@ -12,6 +12,6 @@ namespace tact::host::server {
 using ConnectionSlot = std::shared_ptr<const void>;
 
 constexpr long kMaxConnections = 64;
-constexpr std::size_t kMaxStrangers = 64;  // connections without a slot
+constexpr std::size_t kMaxUnauthenticated = 64;  // connections without a slot
 
 }  // namespace tact::host::server

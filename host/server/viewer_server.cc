@@ -88,17 +88,17 @@ std::optional<Error> ViewerServer::listen(const tcp::endpoint& endpoint) {
 
 void ViewerServer::start() {
   acceptor_.start([this](tcp::socket socket) {
-    std::erase_if(strangers_, [](const auto& one) {
+    std::erase_if(unauthenticated_, [](const auto& one) {
       const auto session = one.lock();
       return !session || session->has_slot();
     });
-    if (strangers_.size() == kMaxStrangers) {
-      strangers_.front().lock()->stop();
-      strangers_.pop_front();
+    if (unauthenticated_.size() == kMaxUnauthenticated) {
+      unauthenticated_.front().lock()->stop();
+      unauthenticated_.pop_front();
     }
     const auto session =
         std::make_shared<HttpSession>(boost::beast::tcp_stream(std::move(socket)), site_);
-    strangers_.push_back(session);
+    unauthenticated_.push_back(session);
     session->start();
   });
 }

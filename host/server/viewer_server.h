@@ -59,8 +59,8 @@ class ViewerServer {
   Site site_;
   Warn warn_;
   ConnectionSlot slot_;  // its copies are the connections that have shown the token
-  std::deque<std::weak_ptr<HttpSession>> strangers_;  // the others, oldest first
-  std::deque<std::string> warned_;                    // the last texts of warn_once
+  std::deque<std::weak_ptr<HttpSession>> unauthenticated_;  // the others, oldest first
+  std::deque<std::string> warned_;                          // the last texts of warn_once
   std::uint64_t turned_away_ = 0;
   std::chrono::steady_clock::time_point reported_;
 };

@@ -4,8 +4,8 @@
 // Each sphere has one contact point and one of four states (transitions: detect.h):
 //
 //   free      no force
-//   touching  force from organ_contact.h: the negative gradient of one potential W
-//   held      as touching, bonded to the surface point where the grip closed: the force may pull.
+//   contact   force from organ_contact.h: the negative gradient of one potential W
+//   held      as in contact, bonded to the surface point where the grip closed: the force may pull.
 //             Ends when the grip opens or the pulling force exceeds the tear force
 //   inside    no force: the sphere was inside the organ at the start or after a loss of contact;
 //             ends when the whole sphere is outside

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // detect.h - state transitions of each sphere, for any path of the tool.
 //
-//     located outside -> free        located overlapping the organ -> inside
-//     free            -> touching    the nearest point of the surface is nearer than r
-//     free            -> inside      deeper than its displacement: it came through a hole of an
-//                                    open surface
-//     inside          -> free        entirely outside: phi >= r
-//     touching        -> free        r - phi - offset <= 0 at the proxy; touching again in the same
-//                                    step, with an offset, if another part is nearer than r
-//     touching        -> lets go     entirely outside, and either beyond its law or with nothing of
-//                                    the organ between it and its surface point: depth shrinks to 0
-//     lets go         -> free
-//     touching        -> located again   no solution for 0.1 s or one radius of motion
+//     located outside -> free       located overlapping the organ -> inside
+//     free            -> contact    the nearest point of the surface is nearer than r
+//     free            -> inside     deeper than its displacement: it came through a hole of an
+//                                   open surface
+//     inside          -> free       entirely outside: phi >= r
+//     contact         -> free       r - phi - offset <= 0 at the proxy; in contact again in the
+//                                   same step, with an offset, if another part is nearer than r
+//     contact         -> ending     entirely outside, and either beyond its law or with nothing of
+//                                   the organ between it and its surface point: depth shrinks to 0
+//     ending          -> free
+//     contact         -> located again   no solution for 0.1 s or one radius of motion
 //
-// Closing and opening the grip lead from touching to held and back. Held becomes free if the sphere
+// Closing and opening the grip lead from contact to held and back. Held becomes free if the sphere
 // was pulled out of the surface (contact.h).
 #pragma once
 

@@ -170,7 +170,7 @@ bool MovedContact::solve_fixed() RT_SAFE {
   for (int i = 0; i <= kMaxFixedSteps; ++i) {  // bound: kMaxFixedSteps + 1 (evaluations)
     const double residual_m = evaluate(organ_);
     if (residual_m < kSolved_m) return true;
-    // Without damping a sphere could alternate for ever between touching and not touching.
+    // Without damping a sphere could alternate for ever between contact and no contact.
     share = residual_m < kMaxResidual_ratio * before_m ? std::min(2.0 * share, 1.0) : 0.5 * share;
     before_m = residual_m;
     if (i == kMaxFixedSteps || !find_slope(organ_) || !newton_step(organ_, kMaxFixedStep_m, share))

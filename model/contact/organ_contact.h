@@ -32,9 +32,9 @@ class OrganContact {
                      double explained_m) RT_SAFE = 0;
   virtual void leave(std::size_t sphere) RT_SAFE = 0;
 
-  /// One step of the centre of a touching sphere.
+  /// One step of the centre of a sphere in contact.
   virtual Step step(Sphere& sphere, const Vec3& moved_m) RT_SAFE = 0;
-  /// Sets the position of a touching sphere for this tick.
+  /// Sets the position of a sphere in contact for this tick.
   virtual void move(const Sphere& sphere) RT_SAFE = 0;
   /// True if the sphere is outside, and either beyond its law or with nothing of the organ between
   /// it and its surface point.

@@ -4,7 +4,7 @@
 // One potential for each sphere (letters: README.md; phi and n of the surface at the proxy,
 // proxy.h):
 //
-//   touching  W = U(e, s) + f . t / 2,   d = r - phi - offset,   |f| <= mu F  (Coulomb cap)
+//   contact   W = U(e, s) + f . t / 2,   d = r - phi - offset,   |f| <= mu F  (Coulomb cap)
 //   held      W = U(e, s) + f . t / 2,   d, s and t relative to the frame at the moment of
 //             gripping, no cap, d may be negative (pull)
 //
@@ -31,7 +31,7 @@
 
 namespace tact::model::contact {
 
-/// A touching sphere.
+/// A sphere in contact.
 struct RestSphere {
   bool is_held = false, is_new = false;  // new: since this tick
   Vec3 centre_m, moved_m, velocity_mps;  // of this tick

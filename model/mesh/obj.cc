@@ -133,7 +133,7 @@ void turn_inside_out(SurfaceMesh& mesh) {
 
 }  // namespace
 
-Result<ObjMesh> load_obj(const std::string& path, double unit_m) {
+Result<ObjMesh> load_obj(const std::string& path, double unit_m, const ObjErrorText& error_text) {
   if (!(unit_m >= 1e-9 && unit_m <= 1e3)) {
     return Error{
         fmt::format("{}: a file unit of {} m is not between 1e-9 m and 1e3 m; "
@@ -155,8 +155,12 @@ Result<ObjMesh> load_obj(const std::string& path, double unit_m) {
     for (const std::uint32_t v : found.file_vertex) obj.vertex_color.push_back(text.color[v - 1]);
 
   SurfaceOrDefect built = build_surface(std::move(found.vertex_m), std::move(found.triangle));
-  if (const auto* defect = std::get_if<MeshDefect>(&built))
+  if (const auto* defect = std::get_if<MeshDefect>(&built)) {
+    if (!error_text.subject.empty())
+      return Error{fmt::format("{} the face {}; {}", error_text.subject, what(defect->flaw),
+                               error_text.remedy)};
     return defect_error(path, *defect, found.line, found.file_vertex);
+  }
   obj.mesh = std::move(*std::get_if<SurfaceMesh>(&built));
   const MeshSummary sum = summarize(obj.mesh);
   // An open surface has no volume, so nothing says which side is out: it is left as it is.

@@ -28,7 +28,12 @@ struct ObjMesh {
   bool flipped = false;             // normals pointed inwards in the file
 };
 
+/// How the error of a mesh that is no surface calls its file, where a person cannot open that.
+struct ObjErrorText {
+  std::string subject, remedy;  // in place of "PATH:LINE:" and of what the flaw asks for
+};
+
 /// `unit_m` is the length of one file unit, 1e-9 to 1e3 m.
-Result<ObjMesh> load_obj(const std::string& path, double unit_m);
+Result<ObjMesh> load_obj(const std::string& path, double unit_m, const ObjErrorText& text = {});
 
 }  // namespace tact::model::mesh

@@ -39,6 +39,8 @@ struct ToolSettings {
 };
 
 inline constexpr Range kRate_Hz{100.0, 10000.0};
+inline constexpr Range kYoungs_modulus_Pa{1.0, 1e9};
+inline constexpr Range kPoisson_ratio{0.0, 0.495};
 inline constexpr std::size_t kMaxPieces = 4;  // of the organ, with a colour each
 
 /// What the viewer paints. No force depends on it.

@@ -24,14 +24,14 @@ void visit_elastic(Keys& k, ElasticSettings& elastic) {
            elastic.fixed_min_m);
   k.vector("fixed_max_m", {-1e6, 1e6}, "high corner; both of the turned mesh, without position_m",
            elastic.fixed_max_m);
-  k.entries("inclusion", {0, kMaxInclusions}, "a round lump of another modulus, to be found",
-            [&](Keys& keys) {
-              Inclusion& lump = elastic.inclusions.emplace_back();
-              keys.vector("center_m", {-1e6, 1e6}, "deeper than its radius, as the box",
-                          lump.center_m);
-              keys.number("radius_m", {1e-4, 0.1}, "of the lump", lump.radius_m);
-              keys.number("youngs_modulus_Pa", {1.0, 1e9}, "E in it", lump.youngs_modulus_Pa);
-            });
+  k.entries(
+      "inclusion", {0, kMaxInclusions}, "a round lump of another modulus, to be found",
+      [&](Keys& keys) {
+        Inclusion& lump = elastic.inclusions.emplace_back();
+        keys.vector("center_m", {-1e6, 1e6}, "deeper than its radius, as the box", lump.center_m);
+        keys.number("radius_m", {1e-4, 0.1}, "of the lump", lump.radius_m);
+        keys.number("youngs_modulus_Pa", kYoungs_modulus_Pa, "E in it", lump.youngs_modulus_Pa);
+      });
 }
 
 void visit_tolerance(Keys& k, ToleranceSettings& tolerance) {
@@ -46,8 +46,8 @@ void visit_tolerance(Keys& k, ToleranceSettings& tolerance) {
 }  // namespace
 
 void visit(ParameterVisitor& v, ElasticSettings& elastic) {
-  v.number("youngs_modulus_Pa", {1.0, 1e9}, "E", elastic.youngs_modulus_Pa);
-  v.number("poisson_ratio", {0.0, 0.495}, "nu", elastic.poisson_ratio);
+  v.number("youngs_modulus_Pa", kYoungs_modulus_Pa, "E", elastic.youngs_modulus_Pa);
+  v.number("poisson_ratio", kPoisson_ratio, "nu", elastic.poisson_ratio);
 }
 
 void visit_laws(Keys& k, Scene& scene) {

@@ -15,7 +15,7 @@ void visit_keys(Keys& k, Limits& limits) {
   k.number("force_N", {0.0, 20.0}, "largest force on the hand", limits.force_N);
   k.number("torque_Nm", {0.0, 2.0}, "largest torque on the hand", limits.torque_Nm);
   k.number("slew_N_per_s", {1.0, 1e4}, "largest change of the force", limits.slew_N_per_s);
-  k.number("ramp_s", {0.1, 10.0}, "fade-in of the force after arming", limits.ramp_s);
+  k.number("ramp_s", {0.1, 10.0}, "ramp of the force after arming", limits.ramp_s);
   k.number("workspace_radius_m", {0.01, 0.5}, "of the cylinder about the x axis of W",
            limits.workspace_radius_m);
   k.number("workspace_half_length_m", {0.01, 0.5}, "of the cylinder, from the origin of W",
@@ -43,7 +43,7 @@ void visit_keys(Keys& k, Limits& limits) {
 /// Rounded up to what a person would write.
 double rounded_up(double value) { return std::ceil(1e3 * value) * 1e-3; }
 
-/// RT-15: in 10 ms the gate fades the largest force to zero, and its slew must not hold that up.
+/// RT-15: the gate ramps the largest force down to zero in 10 ms; its slew must not prevent that.
 void refuse_slow_slew(Keys& k, const Limits& limits) {
   // The gate keeps force_N / ramp_s of the slew for its ramp.
   const double least_N_per_s = limits.force_N / kStaleRampDown_s + limits.force_N / limits.ramp_s;

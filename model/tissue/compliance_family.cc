@@ -142,7 +142,7 @@ std::vector<TangentTensors> tangent_compliance(const ComplianceMap& map,
     const double most = n1 * n1 / room(s1) + n2 * n2 / room(s2);
     const double share = 1.0 / std::max(normal, most);
     const Mat3 s = square(s1, a1) + square(s2, a2);
-    out.push_back({.touching_per_m = symmetric(s),
+    out.push_back({.contact_per_m = symmetric(s),
                    .held_per_m = symmetric(s + square(-share, n1 * a1 + n2 * a2))});
   }
   return out;

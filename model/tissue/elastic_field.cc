@@ -200,7 +200,7 @@ contact::TangentCompliance ElasticField::tangent_compliance(
     const double weight_per_Pa = surface_point.weight[i] / near.youngs_modulus_Pa;
     for (std::size_t k = 0; k < s.size(); ++k)
       s[k] +=
-          weight_per_Pa * static_cast<double>(held ? both.held_per_m[k] : both.touching_per_m[k]);
+          weight_per_Pa * static_cast<double>(held ? both.held_per_m[k] : both.contact_per_m[k]);
   }
   const Mat3 s_m_per_N{{Vec3{s[0], s[5], s[4]}, Vec3{s[5], s[1], s[3]}, Vec3{s[4], s[3], s[2]}}};
   const Vec3 &a = axes.unit[0], &b = axes.unit[1], s_a = s_m_per_N * a, s_b = s_m_per_N * b;

@@ -36,7 +36,7 @@ namespace tact::model::tissue {
 
 /// S E of a vertex, tangential, symmetric, in the scene's axes: where it may sink, and held.
 struct TangentTensors {
-  std::array<float, 6> touching_per_m{}, held_per_m{};  // xx yy zz yz zx xy
+  std::array<float, 6> contact_per_m{}, held_per_m{};  // xx yy zz yz zx xy
 };
 
 /// What two contact points of one elastic body are to each other. Without a map the body is a

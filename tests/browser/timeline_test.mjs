@@ -177,7 +177,7 @@ async function check_plots(page) {
     ["mm", "N", "µs"].every((unit, i) => captions[i].includes(`, ${unit}`)),
     captions.join(" | "),
   );
-  check("... and which line is which", /asked by the law/.test(captions[1]) && /given/.test(captions[1]));
+  check("... and which line is which", /wanted \(law\)/.test(captions[1]) && /written \(gate\)/.test(captions[1]));
   const over = await page.locator("#plot_force .u-over").boundingBox();
   await page.mouse.move(over.x + over.width - 4, over.y + over.height / 2);
   check(

@@ -12,6 +12,7 @@
 #include "model/io/json.h"
 #include "model/io/program/installed.h"
 #include "model/io/program/within.h"
+#include "model/scene/scene.h"
 #include "tools/jitter/report/jitter_report.h"
 #include "tools/jitter/run/load.h"
 #include "tools/jitter/trace/tick_trace.h"
@@ -44,7 +45,8 @@ void add_run_options(CLI::App& app, Options& o) {
       ->check(tact::model::io::within(0.1, 1e7))
       ->capture_default_str();
   app.add_option("--rate", o.run.rate_Hz, "ticks per second, Hz (default: the scene's, or 1000)")
-      ->check(tact::model::io::within(100.0, 10000.0));
+      ->check(tact::model::io::within(tact::model::scene::kRate_Hz.low,
+                                      tact::model::scene::kRate_Hz.high));
   app.add_option("--core", o.run.core,
                  "CPU core of the loop (default: an isolated one, or the last)")
       ->check(tact::model::io::within(0, CPU_SETSIZE - 1));

@@ -11,6 +11,7 @@
 #include "model/io/input_file.h"
 #include "model/io/program/installed.h"
 #include "model/io/program/within.h"
+#include "model/scene/scene.h"
 #include "tools/lab/commands.h"
 #include "tools/lab/script.h"
 #include "tools/mesh/repair_file.h"
@@ -42,10 +43,12 @@ void add_options(CLI::App& app, Options& o) {
                  "more, else m)")
       ->transform(CLI::CheckedTransformer(mesh::units_m(), CLI::ignore_case).description(""));
   app.add_option("--youngs-modulus-Pa", o.youngs_modulus_Pa, "E of the tissue")
-      ->check(model::io::within(100.0, 1e6))
+      ->check(model::io::within(model::scene::kYoungs_modulus_Pa.low,
+                                model::scene::kYoungs_modulus_Pa.high))
       ->capture_default_str();
   app.add_option("--poisson-ratio", o.poisson_ratio, "nu of the tissue")
-      ->check(model::io::within(0.0, 0.495))
+      ->check(
+          model::io::within(model::scene::kPoisson_ratio.low, model::scene::kPoisson_ratio.high))
       ->capture_default_str();
   app.add_option("--faces", o.faces, "leave at most about so many")
       ->check(model::io::within(100, 40'000))

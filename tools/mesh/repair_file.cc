@@ -219,17 +219,10 @@ Result<Repaired> repair_file(const RepairOrder& order,
 
   auto text = model::io::read_file(target, "try again", model::mesh::kMaxObjBytes);
   if (!text) return text.error();
-  auto obj = model::mesh::load_obj(target, 1.0);
-  if (!obj) {
-    // "PATH:LINE: the face ...; remedy in a mesh editor"
-    const std::string& reported = obj.error().message;
-    const std::size_t what = reported.find(": ", target.size());
-    std::string message = what == std::string::npos ? reported : reported.substr(what + 2);
-    // The reader's remedy is this repair.
-    message.resize(std::min(message.find("; "), message.size()));
-    return Error{fmt::format("{}: after these steps {}; {}", order.source, message,
-                             remedy_of(order.options))};
-  }
+  auto obj = model::mesh::load_obj(
+      target, 1.0,
+      {.subject = order.source + ": after these steps", .remedy = remedy_of(order.options)});
+  if (!obj) return obj.error();
   return Repaired{
       .steps = std::move(listener.steps), .obj_text = std::move(*text), .obj = std::move(*obj)};
 }

@@ -60,7 +60,7 @@ class Requests : public testing::Test {
   }
   Answer ask(const char* word) {
     const int fd = say(word);
-    request_handler->obey(1'000'000'000);
+    request_handler->serve(1'000'000'000);
     return hear(fd);
   }
   std::string refusal(const char* word) {
@@ -73,7 +73,7 @@ class Requests : public testing::Test {
     testing::internal::GetCapturedStderr();
     testing::internal::CaptureStderr();
     frame.state = state;
-    request_handler->obey(0);
+    request_handler->serve(0);
     const std::string reported = testing::internal::GetCapturedStderr();
     testing::internal::CaptureStderr();
     return reported;
@@ -138,7 +138,7 @@ TEST_F(Requests, AnswersByTheLoopsOwnCountersWithTheirAge) {
 TEST_F(Requests, RequestBeforeTheReadyMessageIsRefused) {
   const std::array<int, 3> early{say("arm"), say("arm"), say("reset")};
   show(State::kReady);
-  request_handler->obey(0);
+  request_handler->serve(0);
   for (const int one : early)
     EXPECT_NE(hear(one).message.find("came before it was ready"), std::string::npos);
   EXPECT_TRUE(edges.empty()) << "queued";
@@ -269,7 +269,7 @@ TEST_F(Requests, ASignalToEndIsHeardBesideARequest) {
   show(State::kReady);
   const int fd = say("status");
   raise(SIGTERM);
-  request_handler->obey(1'000'000'000);
+  request_handler->serve(1'000'000'000);
   EXPECT_TRUE(hear(fd).done);
   EXPECT_TRUE(requests.stop.load());
 }

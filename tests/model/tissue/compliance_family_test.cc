@@ -99,7 +99,7 @@ TEST(ComplianceFamily, AHeldPatchIsStifferSidewaysThanOneThatMaySink) {
   map.sideways_times_E_per_m[190].axis = {0.0F, 1.0F, 0.0F};
   const std::vector<Vec3> up(200, Vec3{0.0, 0.0, 1.0});
   const TangentTensors give = tangent_compliance(map, up, 4_mm).at(190);
-  EXPECT_EQ(give.touching_per_m, (std::array{10.0F, 40.0F, 0.0F, 0.0F, 0.0F, 0.0F}));
+  EXPECT_EQ(give.contact_per_m, (std::array{10.0F, 40.0F, 0.0F, 0.0F, 0.0F, 0.0F}));
   EXPECT_NEAR(give.held_per_m[0], 10.0, 1e-4);
   EXPECT_NEAR(give.held_per_m[1], 40.0 - 900.0 / (disc + 100.0), 1e-4);
 }
@@ -111,7 +111,7 @@ TEST(ComplianceFamily, TangentStiffnessIsAtMostThreeTimesThatOfAHalfSpace) {
   map.sideways_times_E_per_m[7] = {.n1 = 500.0F, .n2 = 90.0F, .s1 = -1e4F, .s2 = 5.0F};
   const std::vector<Vec3> up(200, Vec3{0.0, 0.0, 1.0});
   const TangentTensors give = tangent_compliance(map, up, 4_mm).at(7);
-  for (const std::array<float, 6>& s : {give.touching_per_m, give.held_per_m}) {
+  for (const std::array<float, 6>& s : {give.contact_per_m, give.held_per_m}) {
     const contact::Tensor2 whole{half_space + static_cast<double>(s[0]), static_cast<double>(s[5]),
                                  half_space + static_cast<double>(s[1])};
     EXPECT_GE(whole.least_eigenvalue(), half_space / contact::kMaxStiffness_ratio - 1e-4);

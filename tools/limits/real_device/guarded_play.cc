@@ -17,17 +17,17 @@ namespace {
 
 constexpr auto kLook = std::chrono::milliseconds(100);
 
-std::vector<firmware::run::LoopRun> turns_of(const Runs& runs, firmware::loop::Requests& requests,
-                                             std::atomic<std::size_t>& done) {
-  std::vector<firmware::run::LoopRun> turns;
+std::vector<firmware::run::LoopRun> runs_of(const Runs& runs, firmware::loop::Requests& requests,
+                                            std::atomic<std::size_t>& done) {
+  std::vector<firmware::run::LoopRun> out;
   for (const auto& run : runs)
-    turns.push_back({run->progress(), [&run, &requests, &done] {
-                       if (run->play())
-                         done.fetch_add(1);
-                       else
-                         requests.stop.store(true);
-                     }});
-  return turns;
+    out.push_back({run->progress(), [&run, &requests, &done] {
+                     if (run->play())
+                       done.fetch_add(1);
+                     else
+                       requests.stop.store(true);
+                   }});
+  return out;
 }
 
 }  // namespace
@@ -37,7 +37,7 @@ firmware::run::ThreadCosts play_guarded(const Runs& runs, const LimitsBench& ben
                                         const PlanProgress& progress) {
   firmware::loop::Requests& requests = *bench.requests;
   std::atomic<std::size_t> done{0};
-  firmware::run::LoopExecutor executor({.turns = turns_of(runs, requests, done),
+  firmware::run::LoopExecutor executor({.runs = runs_of(runs, requests, done),
                                         .device = *bench.device,
                                         .lines = *bench.lines,
                                         .requests = requests,

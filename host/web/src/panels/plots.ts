@@ -42,8 +42,8 @@ export class Plots {
       range: (values) => whole_range(values, 0.5),
       headline: ([, given_N]) => given_N,
       lines: [
-        { label: "asked by the law", color: "#8c99a8", dash: [4, 4] },
-        { label: "given", color: "#f2b04e", fill: "rgba(242,176,78,0.12)" },
+        { label: "wanted (law)", color: "#8c99a8", dash: [4, 4] },
+        { label: "written (gate)", color: "#f2b04e", fill: "rgba(242,176,78,0.12)" },
       ],
     });
     this.margin = new Plot(byId("plot_margin"), {
