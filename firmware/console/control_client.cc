@@ -21,8 +21,8 @@ namespace {
 using model::Error;
 using model::Result;
 
-// Chosen: a running tactd answers at once.
-constexpr timeval kTimeout{.tv_sec = 5, .tv_usec = 0};
+// Chosen: a running tactd answers at once; before it answers `set` it computes the new law.
+constexpr timeval kTimeout{.tv_sec = 5, .tv_usec = 0}, kSetTimeout{.tv_sec = 60, .tv_usec = 0};
 
 /// A connected socket; -1: no process listens, the peer is not trusted, or (errno EACCES) a
 /// refusal.
@@ -66,6 +66,8 @@ Error why_none(const ControlQuestion& question, const ControlName& closed) {
 /// Sends one word and receives one message.
 Result<Answer> talk(int fd, const ControlName& control, const std::string& word) {
   std::array<char, kLongestControlMessage> message{};
+  if (word.starts_with("set "))
+    setsockopt(fd, SOL_SOCKET, SO_RCVTIMEO, &kSetTimeout, sizeof kSetTimeout);
   const bool sent =
       send(fd, word.data(), word.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(word.size());
   // tactd answers a refused client before its request: the answer is read after the hang-up.

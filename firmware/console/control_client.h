@@ -13,7 +13,8 @@ struct ControlQuestion {
   std::string word;        // arm, disarm, reset, stop, status, "set KEY=VALUE ..." or "event N"
 };
 
-/// tactd's answer; an error if there is no such tactd, if there are several, or after 5 s.
+/// tactd's answer; an error if there is no such tactd, if there are several, or after 5 s
+/// (60 s of `set`, whose law is computed first).
 model::Result<Answer> ask_tactd(const ControlQuestion& question);
 
 }  // namespace tact::firmware::console

@@ -85,7 +85,7 @@ TEST(Override, MalformedOverrideIsQuotedAsTyped) {
       {"rate_Hz=nan", "rate_Hz = nan is not finite; allowed: 100 .. 10000 Hz"},
       {"rate_Hz=fast", "rate_Hz is text, not a number; allowed: 100 .. 10000 Hz"},
       {"rhombus.unit=5",
-       "rhombus.unit is no key here; did you mean units? allowed: 1 .. 31, whole"},
+       "rhombus.unit is no key here; did you mean units? allowed: 1 .. 64, whole"},
       {"hand.stroke.0.depth_mm=9",
        "hand.stroke.0.depth_mm has the wrong unit; write depth_m, allowed: 0 .. 0.05 "
        "m"},
