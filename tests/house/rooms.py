@@ -133,6 +133,7 @@ PAGE_FOLDERS = {
 # Where another room is known by these headers alone.
 SINGLE_HEADERS = {
     **{(f"host/{room}", "model"): {"result.h"} for room in ("tracking", "record", "igtl", "server", "run")},
+    ("host/ros", "model"): {"result.h", "time_ns.h"},
     **{(f"host/{room}", "hal/sim"): {"hand_target.h"} for room in ("ros", "run")},
 }
 # Read and write files, allocate, take their time: no header that LOOP_ROOMS include reaches them.
