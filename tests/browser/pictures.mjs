@@ -14,7 +14,8 @@ const kPictures = {
     scene: "liver",
     is_shown: () =>
       window.tact.tick > 9000 && // the plots are full
-      window.tact.most_m > 0.006 && parseFloat(document.getElementById("depth").textContent) > 8.5,
+      window.tact.most_m > 0.006 &&
+      parseFloat(document.getElementById("depth").textContent) > 8.5,
   },
   cut: { scene: "gum", is_shown: () => window.tact.cut_triangles >= 8 && window.tact.most_m > 0.0005 },
   maintenance: {
