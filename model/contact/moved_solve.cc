@@ -162,7 +162,7 @@ bool MovedContact::solve_sliding() RT_SAFE {
 }
 
 bool MovedContact::solve_fixed() RT_SAFE {
-  constexpr double kMaxResidual_ratio = 0.7;
+  constexpr double kMaxResidual_ratio = 0.95;
   status_.is_fixed = true;
   organ_.has_slope = false;
   for (std::size_t i = 0; i < organ_.count; ++i) organ_.sphere[i].slides = false;  // bound: spheres
