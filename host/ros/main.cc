@@ -9,7 +9,6 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <filesystem>
@@ -69,9 +68,8 @@ std::optional<int> parse_options(int argc, char** argv, std::string& log, RosOpt
       "Exit status: 0 ended by Ctrl-C or TERM, 2 bad usage or input."};
   app.add_option("LOG", log, "the file of tactd --record; waited for if it is not there yet")
       ->required();
-  const char* id = std::getenv("ROS_DOMAIN_ID");
-  options.domain = id != nullptr ? std::atoi(id) : 0;
   app.add_option("--domain", options.domain, "of DDS (default: ROS_DOMAIN_ID, else 0)")
+      ->envname("ROS_DOMAIN_ID")
       ->check(model::io::within(0, kMaxDomain));
   app.add_option("--namespace", options.name_space, "before each topic; also of the frame")
       ->capture_default_str()
@@ -81,10 +79,7 @@ std::optional<int> parse_options(int argc, char** argv, std::string& log, RosOpt
                  "(default: loopback alone)");
   app.add_flag("--servo", options.servo,
                "let servo_cp move the hand of a simulated device; a real device is never moved");
-  if (const auto status = model::io::parse_command_line(app, "tact-ros", argc, argv)) return status;
-  if (options.domain < 0 || options.domain > kMaxDomain)
-    return fail(fmt::format("ROS_DOMAIN_ID is {}: must be 0 to {}", id, kMaxDomain));
-  return std::nullopt;
+  return model::io::parse_command_line(app, "tact-ros", argc, argv);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ import tact  # noqa: E402
 LIVER = ROOT / "model/scenes/liver.toml"
 BUILD = pathlib.Path(sys.argv.pop(1)).resolve()
 DOMAIN = str(os.getpid() % 200)
-MAX_WAIT_S = float(os.environ.get("W", 240))
+MAX_WAIT_S = 120.0  # against a test that hangs
 TOPICS = ("measured_cp", "measured_cv", "measured_cf")
 RECORD = np.dtype([("topic", "u1"), ("sec", "<i4"), ("nanosec", "<u4"), ("values", "<f8", 7)])
 LOOPBACK = ('<CycloneDDS><Domain><General><Interfaces><NetworkInterface name="lo"/></Interfaces><AllowMulticast>false'
@@ -90,11 +90,14 @@ class Growing:
             file.write(b"".join(self.ticks[self.at:self.at + count]))
         self.at += count
 
-    def grow_while(self, process, step=20):
-        """Some ticks at a time, so that a socket's buffer holds them, until the process ends or there are no more."""
+    def grow_while(self, process, out, step=20):
+        """Some ticks at a time, each once the process has written what came of those before (0.2 s: they are lost, as best
+        effort may), until it ends or there are no more."""
         while process.poll() is None and self.at < len(self.ticks):
+            size, end = out.stat().st_size, time.monotonic() + 0.2
             self.add(step)
-            time.sleep(0.005)
+            while out.stat().st_size == size and process.poll() is None and time.monotonic() < end:
+                time.sleep(0.002)
 
 
 class Case(unittest.TestCase):
@@ -130,15 +133,26 @@ class Case(unittest.TestCase):
         return process, lines
 
     def read(self, count):
-        """A peer that ends when each topic has so many samples, and the file of its records."""
+        """A peer that ends when each topic has so many samples, and the file of its records. It has found tact-ros."""
         out = self.folder / "records"
         with out.open("wb") as file:
-            return self.start(*self.peer, DOMAIN, "read", count, stdout=file), out
+            peer = self.start(*self.peer, DOMAIN, "read", count, stdout=file, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(peer.stderr.close)
+        self.assertEqual(peer.stderr.readline(), "matched\n")
+        return peer, out
 
     def servo(self):
         peer = self.start(*self.peer, DOMAIN, "servo", stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
         self.assertEqual(peer.stdout.readline(), "matched\n")
         return peer
+
+    def send_until(self, peer, poses, done, what):
+        """Sends poses() again and again, as any of them may be lost, until done()."""
+        def sent():
+            peer.stdin.write("".join(pose + "\n" for pose in poses()))
+            peer.stdin.flush()
+            return done()
+        return until(sent, what)
 
     def simulate(self, *arguments):
         """Log and force hash of a run that is the same each time."""

@@ -3,6 +3,8 @@
 //
 //     cyclone_peer DOMAIN read COUNT   writes records of three topics, until each has COUNT
 //     cyclone_peer DOMAIN servo        writes each line FRAME x y z qw qx qy qz as a pose
+//
+// Once tact-ros is found: "matched", on standard error or output.
 #include <dds/dds.h>
 #include <ros/messages.h>
 #include <unistd.h>
@@ -64,6 +66,12 @@ int read(dds_entity_t participant, int count) {
     readers[i] =
         dds_create_reader(participant, topic, qos_of(DDS_RELIABILITY_BEST_EFFORT), nullptr);
   }
+  const auto has_writer = [](dds_entity_t reader) {
+    dds_subscription_matched_status_t matched{};
+    return dds_get_subscription_matched_status(reader, &matched) == 0 && matched.current_count > 0;
+  };
+  while (!std::all_of(readers.begin(), readers.end(), has_writer)) usleep(1000);
+  std::fprintf(stderr, "matched\n");
   std::array<int, 3> got{};
   while (*std::min_element(got.begin(), got.end()) < count) {
     usleep(1000);

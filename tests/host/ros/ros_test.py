@@ -8,10 +8,10 @@ The tick log grows by hand, so no clock matters. Needs python3-numpy. Exit statu
 """
 import pathlib
 import random
+import select
 import socket
 import subprocess
 import sys
-import time
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
@@ -30,14 +30,6 @@ def random_pose(rng):
     return " ".join([frame, *(repr(float(value)) for value in np.frombuffer(rng.randbytes(56), "<f8"))])
 
 
-def send_random(peer, rng, count):
-    """Some at a time, as a socket's buffer holds."""
-    for _ in range(count // 100):
-        peer.stdin.write("".join(random_pose(rng) + "\n" for _ in range(100)))
-        peer.stdin.flush()
-        time.sleep(0.01)
-
-
 class Ros(Case):
     def test_topics_are_the_log_also_where_it_begins_again(self):
         source, _ = self.simulate("--ticks", 6000)
@@ -45,7 +37,7 @@ class Ros(Case):
         process, lines = self.bridge(log.path)
         peer, out = self.read(1000)
         log.begin()
-        log.grow_while(peer, 20)
+        log.grow_while(peer, out)
         self.assertEqual(peer.wait(timeout=60), 0, f"{log.at} ticks were written\n" + "".join(lines))
         records = np.frombuffer(out.read_bytes(), RECORD)
         self.assertEqual(wrong_values(records, tact.read_ticks(source).ticks), 0)
@@ -61,52 +53,39 @@ class Ros(Case):
         log.at = 0
         log.begin()
         until(lambda: sum("ticks/s" in line for line in lines) == 2, "the second log")
-        log.grow_while(peer)
+        log.grow_while(peer, out)
         self.assertEqual(peer.wait(timeout=60), 0)
         ticks = tact.read_ticks(self.folder / "source.tactlog").ticks
         self.assertEqual(wrong_values(np.frombuffer(out.read_bytes(), RECORD), ticks), 0)
 
-    def hand(self):
-        """The socket of a hand that this test plays."""
-        receiver = self.enterContext(socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM))
-        receiver.bind(str(self.folder / "hand.sock"))
-        receiver.settimeout(240.0)
-        return receiver
+    def served(self, simulated):
+        """tact-ros --servo, what it has said, a peer that sends poses, and the socket of the hand that this test plays."""
+        source, _ = self.simulate("--ticks", 100)
+        hand = self.enterContext(socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM | socket.SOCK_NONBLOCK))
+        hand.bind(str(self.folder / "hand.sock"))
+        log = Growing(source, self.folder / "run.tactlog", simulated=simulated, hand_socket=str(self.folder / "hand.sock"))
+        log.begin()
+        _, lines = self.bridge(log.path, "--servo")
+        until(lambda: any("ticks/s" in line for line in lines), "its first line")
+        return lines, self.servo(), hand
 
     def test_only_good_poses_move_the_simulated_hand(self):
-        source, _ = self.simulate("--ticks", 100)
-        receiver = self.hand()
-        log = Growing(source, self.folder / "run.tactlog", simulated=True, hand_socket=str(self.folder / "hand.sock"))
-        log.begin()
-        _, lines = self.bridge(log.path, "--servo")
-        until(lambda: any("ticks/s" in line for line in lines), "its first line")
-        peer, rng = self.servo(), random.Random(1)
-        peer.stdin.write("".join(line + "\n" for line in BAD))
-        peer.stdin.flush()
-        until(lambda: self.refused(lines) >= len(BAD), "bad poses")
-        self.assertEqual(self.refused(lines), len(BAD), "each is refused")
-        send_random(peer, rng, 10000)
-        until(lambda: self.refused(lines) > 9 * 10000 // 10, "most of the random poses")
-        peer.stdin.write(GOOD + "\n")
-        peer.stdin.flush()
-        first = np.frombuffer(receiver.recv(1000), [("head", "u1", 8), ("values", "<f8", 7)])[0]["values"]
+        lines, peer, hand = self.served(simulated=True)
+        rng, count = random.Random(1), 10000
+        self.send_until(peer, lambda: BAD, lambda: self.refused(lines) > 10 * len(BAD), "refused poses")
+        self.send_until(peer, lambda: [random_pose(rng) for _ in range(100)], lambda: self.refused(lines) > count,
+                        "refused random poses")
+        self.assertRaises(BlockingIOError, hand.recv, 1000)
+        self.send_until(peer, lambda: [GOOD], lambda: select.select([hand], [], [], 0)[0], "that the hand moves")
+        first = np.frombuffer(hand.recv(1000), [("head", "u1", 8), ("values", "<f8", 7)])[0]["values"]
         np.testing.assert_allclose(first, [0.01, -0.02, 0.03, 0.02, 0, 0, 0], rtol=0, atol=1e-8)
-        print(f"{self.refused(lines)} poses refused of {10000 + len(BAD)}, the good one alone moved the hand")
+        print(f"{self.refused(lines)} poses refused, the good one alone moved the hand")
 
     def test_a_real_device_is_never_moved(self):
-        source, _ = self.simulate("--ticks", 100)
-        receiver = self.hand()
-        log = Growing(source, self.folder / "run.tactlog", simulated=False, hand_socket=str(self.folder / "hand.sock"))
-        log.begin()
-        _, lines = self.bridge(log.path, "--servo")
-        until(lambda: any("ticks/s" in line for line in lines), "its first line")
-        peer = self.servo()
-        peer.stdin.write((GOOD + "\n") * 5)
-        peer.stdin.flush()
-        until(lambda: self.refused(lines) == 5, "five good poses")
+        lines, peer, hand = self.served(simulated=False)
+        self.send_until(peer, lambda: [GOOD], lambda: self.refused(lines) >= 5, "five good poses")
         self.assertIn("the device is real", lines[-1])
-        receiver.setblocking(False)
-        self.assertRaises(BlockingIOError, receiver.recv, 1000)
+        self.assertRaises(BlockingIOError, hand.recv, 1000)
 
     def test_forces_are_the_same_with_and_without(self):
         _, alone = self.simulate("--ticks", 20000)

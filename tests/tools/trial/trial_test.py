@@ -82,7 +82,12 @@ class Case(unittest.TestCase):
         return path
 
     def trial(self, *arguments, answers=""):
-        return subprocess.run([BUILD / "tact-trial", *map(str, arguments)], input=answers, capture_output=True, text=True)
+        return subprocess.run([BUILD / "tact-trial", *map(str, arguments)], input=answers, capture_output=True, text=True,
+                              env=self.environment())
+
+    def environment(self):
+        """Of a folder of its own, so that no other test's tactd is asked."""
+        return os.environ | {"XDG_RUNTIME_DIR": str(self.folder)}
 
     def table(self, out):
         with open(self.folder / out / "task-stiffness_events.tsv", encoding="utf-8") as file:
@@ -145,7 +150,7 @@ class Live(Case):
         log = self.folder / "run.tactlog"
         scene = self.folder / "scene.toml"
         scene.write_text(LIVER.read_text().replace('"meshes/', f'"{LIVER.parent}/meshes/'))
-        environment = os.environ | {"XDG_RUNTIME_DIR": str(self.folder)}
+        environment = self.environment()
         tactd = subprocess.Popen([BUILD / "tactd", scene, "--no-black-box", "--record", log, "--json", self.folder / "run.json"],
                                  stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, env=environment)
         try:

@@ -3,6 +3,8 @@
 //
 //     fastdds_peer DOMAIN read COUNT   writes records of three topics, until each has COUNT
 //     fastdds_peer DOMAIN servo        writes each line FRAME x y z qw qx qy qz as a pose
+//
+// Once tact-ros is found: "matched", on standard error or output.
 #include <unistd.h>
 
 #include <algorithm>
@@ -85,6 +87,14 @@ int read(DomainParticipant& participant, int count) {
       reader_of(participant, TypeSupport(new TwistStamped_PubSubType()), "rt/tact/measured_cv");
   DataReader* wrench =
       reader_of(participant, TypeSupport(new WrenchStamped_PubSubType()), "rt/tact/measured_cf");
+  const std::array readers{pose, twist, wrench};
+  const auto has_writer = [](DataReader* reader) {
+    SubscriptionMatchedStatus matched;
+    return reader->get_subscription_matched_status(matched) == ReturnCode_t::RETCODE_OK &&
+           matched.current_count > 0;
+  };
+  while (!std::all_of(readers.begin(), readers.end(), has_writer)) usleep(1000);
+  std::fprintf(stderr, "matched\n");
   std::array<int, 3> got{};
   while (*std::min_element(got.begin(), got.end()) < count) {
     usleep(1000);
