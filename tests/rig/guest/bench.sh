@@ -23,6 +23,12 @@ exec {silence}<> <(:)
 # First of all: another seed, another phase of emulators and other work against the kernel's clocks and
 # the loop, whose deadlines are a fixed grid of them.
 shift_phase() { sleep "$(printf '.000%03d' $((SEED * 137 % 1000)))"; }
+# And another part of the 100 ms between two heartbeats of a drive: with one seed of 50 the first tick reads them.
+shift_heartbeats() {
+  local delay
+  printf -v delay '0.%03d' $(((SEED - 1) * 17 % 100))
+  read -rt "$delay" -u $silence || return 0
+}
 
 add_sections() {
   local text
@@ -115,6 +121,7 @@ start_emulator() {
     kill -0 $emulator 2>/dev/null || return 1
     wait_10_ms
   done
+  shift_heartbeats
 }
 
 is_ready() {
