@@ -172,7 +172,7 @@ class BringUp {
       const double before_turns = start.motor_turns[i];
       if (auto error = position(i, start.motor_turns[i])) return error;
       if (std::abs(start.motor_turns[i] - before_turns) > kRest_turns)
-        return wrong(i, "moves: let the arms rest on the jig until tactd is ready");
+        return wrong(i, can::kMovesOnJig);
     }
     return std::nullopt;
   }
