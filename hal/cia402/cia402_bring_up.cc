@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "hal/can/can_delta.h"
 #include "hal/cia402/cia402_bring_up.h"
 
 #include <fmt/core.h>
