@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hal/can/can_delta.h"
 #include "hal/cia402/cia402_bring_up.h"
 
 #include <fmt/core.h>
 
 #include <cmath>
 
+#include "hal/can/can_delta.h"
 #include "hal/cia402/canopen_text.h"
 #include "hal/cia402/cia402_network.h"
 #include "hal/cia402/cia402_state.h"
