@@ -10,13 +10,13 @@ namespace {
 
 using model::Error;
 
-constexpr double kSamePoint_m = 2e-4;  // points are those of meshes that are fine to 0.85 mm
+constexpr double kMaxApart_m = 2e-4;  // points are those of meshes that are fine to 0.85 mm
 constexpr double kSameWay_ratio = 0.9999;
-constexpr double kSameDepth_m = 1e-6;
+constexpr double kMaxDepthApart_m = 1e-6;
 
 bool is_same_place(const ToolPoint& a, const ToolPoint& b) {
   return a.vertex == b.vertex && a.tilt_deg == b.tilt_deg &&
-         norm(a.point_m - b.point_m) <= kSamePoint_m &&
+         norm(a.point_m - b.point_m) <= kMaxApart_m &&
          dot(a.direction, b.direction) > kSameWay_ratio;
 }
 
@@ -26,7 +26,7 @@ DroppedPlace compare(const ToolPoint& linear, const ToolPoint& finite) {
   for (const ToolCase& a : linear.cases)
     for (const ToolCase& b : finite.cases) {
       const double error_ratio = a.force_N / b.force_N - 1.0;
-      if (std::abs(a.depth_m - b.depth_m) > kSameDepth_m ||
+      if (std::abs(a.depth_m - b.depth_m) > kMaxDepthApart_m ||
           std::abs(error_ratio) <= std::abs(worst.linear_error_ratio))
         continue;
       worst.depth_m = a.depth_m;
