@@ -9,10 +9,15 @@
 namespace tact::tools::ground_truth::linear_places_test {
 
 ToolPoint place(std::optional<std::uint32_t> vertex, const std::vector<double>& force_N) {
-  ToolPoint out{.vertex = vertex, .point_m = {1e-3 * vertex.value_or(0), 0.0, 0.0}};
+  ToolPoint out;
+  out.vertex = vertex;
+  out.point_m = {1e-3 * vertex.value_or(0), 0.0, 0.0};
   out.direction = {0.0, 0.0, -1.0};
-  for (std::size_t i = 0; i < force_N.size(); ++i)
-    out.cases.push_back({.depth_m = 0.001 * static_cast<double>(i + 1), .force_N = force_N[i]});
+  for (std::size_t i = 0; i < force_N.size(); ++i) {
+    ToolCase& at = out.cases.emplace_back();
+    at.depth_m = 0.001 * static_cast<double>(i + 1);
+    at.force_N = force_N[i];
+  }
   return out;
 }
 
