@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "hal/can/can_delta.h"
 #include "hal/cia402/canopen_text.h"
 #include "hal/cia402/cia402_network.h"
 #include "hal/cia402/cia402_state.h"
@@ -172,7 +173,7 @@ class BringUp {
       const double before_turns = start.motor_turns[i];
       if (auto error = position(i, start.motor_turns[i])) return error;
       if (std::abs(start.motor_turns[i] - before_turns) > kRest_turns)
-        return wrong(i, "moves: let the arms rest on the jig until tactd is ready");
+        return wrong(i, can::kMovesOnJig);
     }
     return std::nullopt;
   }

@@ -136,7 +136,7 @@ class BringUp {
     }
     if (can_.homing != can::Homing::kJig) return {};
     return wrong([](const Heard& a) { return a.most_turns - a.least_turns > kRest_turns; },
-                 "moves: let the arms rest on the jig until tactd is ready");
+                 can::kMovesOnJig);
   }
 
   /// Asks and listens until all three fit: true, or the time is over or the bus broke: false.

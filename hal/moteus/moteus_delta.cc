@@ -131,7 +131,8 @@ class Moteuses final : public can::CanFdDrives {
             1e3 * kWatchdog_s);
       case MoteusCause::kLeftPosition:
         return fmt::format(
-            "the drive left position mode by itself and is {}: is a second controller on the bus?",
+            "the drive left position mode by itself and is {}: is there a second controller or a "
+            "second drive with this node id on the bus?",
             moteus_mode_name(static_cast<int>(cause.code)));
       case MoteusCause::kNotStarted:
         return fmt::format(

@@ -222,7 +222,7 @@ class BringUp {
     }
     if (can_.homing != can::Homing::kJig) return {};
     return drives_.wrong([](const Axis& a) { return a.moved_turns() > kRest_turns; },
-                         "moves: let the arms rest on the jig until tactd is ready");
+                         can::kMovesOnJig);
   }
 
   can::CanBus& bus_;

@@ -33,8 +33,8 @@ def make_tool(job):
     text = tool.json_text(laws, job)
     write(job, "tool", tables.csv_text(tool.rows_of(laws), job), text)
     if job["accuracy"]:
-        run.write(pathlib.Path(job["accuracy"]), tool.accuracy_text(laws, job["places"]))
-    print(text if job["json"] else tool.text(laws, job["places"]), end="", flush=True)
+        run.write(pathlib.Path(job["accuracy"]), tool.accuracy_text(laws, job))
+    print(text if job["json"] else tool.text(laws, job["places"]) + tool.dropped_text(job), end="", flush=True)
     return 0
 
 
@@ -42,12 +42,13 @@ def make_chart(job):
     if all(row["failure"] for row in job["rows"]):  # one message instead of a table of failures
         raise run.Failure(job["rows"][0]["failure"])
     rows = [tables.chart_row(row, job) for row in job["rows"]] + tables.read_rows(job["peers"], "--peers")
-    text = tables.json_text("tact-chart", job["version"], rows, job)
+    text = tables.json_text("tact-chart", job["version"], rows, job, dropped=job.get("dropped", []))
     files = write(job, "chart", tables.csv_text(rows, job), text)
     if job["draw"]:
         import picture
         files += picture.draw(rows, job)
-    print(text if job["json"] else tables.chart_text(rows) + "".join(f"{file}\n" for file in files), end="", flush=True)
+    shown = tables.chart_text(rows) + tool.dropped_text(job) + "".join(f"{file}\n" for file in files)
+    print(text if job["json"] else shown, end="", flush=True)
     ahead = tables.peers_ahead(rows)  # tact's own promise: where a peer beats it, the check fails
     for row in ahead:
         print(f"{LABEL}: the peer {row['family']} {row['size']} is both faster and nearer than tact's front", file=sys.stderr)

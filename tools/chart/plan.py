@@ -24,6 +24,7 @@ sys.path[:0] = [str(FOLDER), str(FOLDER.parent / "reference")]
 import errors  # noqa: E402
 import run  # noqa: E402
 import tables  # noqa: E402
+import tool  # noqa: E402
 
 LABEL = "tact-lab plan"
 
@@ -169,7 +170,7 @@ def act(job):
         one_sphere = candidates and candidates[0]["local"] is None
         text = "\n".join([chosen["name"] if chosen else "no law was measured", why,
                           *(["Evaluated by one sphere, as no --tool-reference was given: a tool of several may be farther off."]
-                            if one_sphere else []), *([written] if written else [])])
+                            if one_sphere else []), *tool.dropped_text(job).splitlines(), *([written] if written else [])])
     print(text, flush=True)
     return 0 if chosen else 1
 

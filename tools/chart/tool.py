@@ -39,10 +39,23 @@ def summary_of(row, found):
 
 
 def json_text(laws, job):
-    return tables.json_text("tact-tool-chart", 2, rows_of(laws), job, laws=[summary_of(row, found) for row, _, found in laws])
+    return tables.json_text("tact-tool-chart", 2, rows_of(laws), job, dropped=job["dropped"],
+                            laws=[summary_of(row, found) for row, _, found in laws])
 
 
-def accuracy_text(laws, places):
+def dropped_text(job):
+    """For a terminal: the places that do not count, each with its reason."""
+    return "".join(f"{at['place']} does not count: at {1e3 * at['depth_m']:g} mm the linear force is "
+                   f"{100 * at['linear_error_ratio']:+.1f} % off that at finite strain\n" for at in job.get("dropped", []))
+
+
+def reference_text(job):
+    places, dropped = len(job["places"]), len(job["dropped"])
+    left = f", {dropped} left out by finite strain" if dropped else ""
+    return f"linear finite elements at {places} places{left}"
+
+
+def accuracy_text(laws, job):
     """What tactd --check may report of each law that was measured (model/scene/accuracy_file.h)."""
     out = '# How true the force of the whole tool is: tact-lab chart --tool-reference\nschema = "tact-accuracy/2"\n'
     for row, _, found in laws:
@@ -50,7 +63,7 @@ def accuracy_text(laws, places):
             continue
         own = found["own_worst_ratio"]
         out += (f'\n[{row["family"]}]\nlaw_hash = "{row["law_hash"]}"\n'
-                f'reference = "linear finite elements at {len(places)} places"\n'
+                f'reference = "{reference_text(job)}"\n'
                 f'date = "{datetime.datetime.now(datetime.timezone.utc):%Y-%m-%d}"\n'
                 f'{"large_strain_off = true  # the scene has it on" + chr(10) if row["large_strain_off"] else ""}'
                 f'force_rms_ratio = {found["force_rms_ratio"]:.4f}  # of the peak\n'

@@ -25,7 +25,7 @@ using nlohmann::json;
 
 struct Options {
   program::SceneArguments scene;
-  std::string out, reference, tool_reference, accuracy, peers, scenes;
+  std::string out, reference, tool_reference, finite_strain, accuracy, peers, scenes;
   ChartOptions chart;
   bool quick = false, no_plots = false, json = false;
 };
@@ -39,6 +39,7 @@ void add_options(CLI::App& app, Options& o) {
                  "what is true under the whole tool, all spheres; JSON of tact-lab reference SCENE "
                  "--tool --out FILE. Alone: the scene's laws as they are; with --reference: every "
                  "size too");
+  add_finite_strain(app, o.finite_strain);
   app.add_option("--accuracy", o.accuracy,
                  "with it alone: also this file, SCENE.accuracy, which tactd --check prints")
       ->needs("--tool-reference")
@@ -84,7 +85,7 @@ json job_of(const program::Program& program, const Options& o, const Scene& scen
           {"noticeable_ratio", report::kJustNoticeable_ratio},
           {"provenance",
            {{"scene", scene.hash},
-            {"reference", hash_of_files({o.reference, o.tool_reference})},
+            {"reference", hash_of_files({o.reference, o.tool_reference, o.finite_strain})},
             {"revision", firmware::pc::read_environment({}).git_revision},
             {"machine", model::scene::machine_name()}}}};
 }
@@ -109,12 +110,8 @@ Result<int> run(const program::Program& program, Options& o) {
   const auto scene = o.scene.load();
   if (!scene) return scene.error();
   json job = job_of(program, o, *scene);
-  if (!o.tool_reference.empty()) {
-    auto read = ground_truth::read_tool_reference(o.tool_reference);
-    if (!read) return read.error();
-    job["places"] = to_json(*read);
-    o.chart.tool_reference = std::move(*read);
-  }
+  if (auto error = add_tool_reference(job, o.chart, *scene, o.tool_reference, o.finite_strain))
+    return *error;
   Result<std::vector<Measured>> rows = std::vector<Measured>{};
   if (o.reference.empty()) {
     rows = measure_tool(*scene, o.chart);

@@ -19,7 +19,7 @@ using nlohmann::json;
 
 struct Options {
   program::SceneArguments scene;
-  std::string reference, tool_reference, chart;
+  std::string reference, tool_reference, finite_strain, chart;
   bool json = false, dry_run = false;
 };
 
@@ -33,6 +33,7 @@ void add_options(CLI::App& app, Options& o) {
                  "with it: the force of the whole tool counts, not that of one sphere; JSON of "
                  "tact-lab reference SCENE --tool --out FILE")
       ->needs("--reference");
+  add_finite_strain(app, o.finite_strain);
   app.add_flag("--dry-run", o.dry_run, "choose, but leave the plan of tactd as it is");
   app.add_flag("--json", o.json, "print one JSON object; times in us, errors as ratios");
 }
@@ -41,12 +42,8 @@ std::optional<Error> measure(json& job, const Options& o, const Scene& scene) {
   const auto reference = ground_truth::read_reference(o.reference);
   if (!reference) return reference.error();
   ChartOptions options{.label = "tact-lab plan", .request = {}, .timing = {}};
-  if (!o.tool_reference.empty()) {
-    auto read = ground_truth::read_tool_reference(o.tool_reference);
-    if (!read) return read.error();
-    job["places"] = to_json(*read);
-    options.tool_reference = std::move(*read);
-  }
+  if (auto error = add_tool_reference(job, options, scene, o.tool_reference, o.finite_strain))
+    return error;
   // Chosen: minutes, not hours; no instructions, as a plan is chosen by time.
   options.timing = {.ticks = 20000, .rounds = 2, .limit_s = 2.0, .instructions = false};
   const auto rows = measure_chart(scene, *reference, options);

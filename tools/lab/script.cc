@@ -45,6 +45,14 @@ json organ_of(const model::scene::Scene& scene) {
           {"fixed_max_m", list_of(scene.elastic->fixed_max_m)}};
 }
 
+void add_finite_strain(CLI::App& app, std::string& path) {
+  app.add_option("--finite-strain", path,
+                 "the same places at finite strain; JSON of tact-lab reference SCENE --tool "
+                 "--finite-strain FEniCSx --out FILE: where the linear force differs by more than "
+                 "3 %, the place does not count, and is named")
+      ->needs("--tool-reference");
+}
+
 Result<int> become(const char* script, const json& job, AfterCtrlC when) {
   // In memory, open in the program that takes our place: gone however that ends.
   const int fd = memfd_create("tact-job", 0);

@@ -17,6 +17,9 @@ model::Result<model::scene::Scene> elastic_scene(const program::SceneArguments& 
 /// The organ of a scene with [elastic], in its mesh's own frame.
 nlohmann::json organ_of(const model::scene::Scene& scene);
 
+/// --finite-strain of chart and plan.
+void add_finite_strain(CLI::App& app, std::string& path);
+
 enum class AfterCtrlC { kNot, kToo };
 
 /// The script, `job` as its argument, takes our place, and so Ctrl-C, our output and our exit

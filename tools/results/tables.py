@@ -13,7 +13,7 @@ sys.path.insert(0, str(TOOLS / "chart"))
 import scenes as of_scenes  # noqa: E402
 
 
-def judged(value, goal, text):
+def against_goal(value, goal, text):
     return text if value <= goal else f"{text}: **missed**"
 
 
@@ -23,16 +23,16 @@ def measured(load):
     tick = bench["tick"]
     rows = [
         ("tick of the liver on a stock kernel, median",
-         judged(tick["median_us"], 3, f"{tick['median_us']:.1f} us"), "3 us", "tools/bench"),
-        ("the same, p99.9", judged(tick["p999_us"], 20, f"{tick['p999_us']:.0f} us"), "20 us", "tools/bench"),
+         against_goal(tick["median_us"], 3, f"{tick['median_us']:.1f} us"), "3 us", "tools/bench"),
+        ("the same, p99.9", against_goal(tick["p999_us"], 20, f"{tick['p999_us']:.0f} us"), "20 us", "tools/bench"),
         ("heap calls and page faults in the loop",
-         judged(tick["heap_calls"] + tick["page_faults"], 0, f"{tick['heap_calls']} and {tick['page_faults']}"),
+         against_goal(tick["heap_calls"] + tick["page_faults"], 0, f"{tick['heap_calls']} and {tick['page_faults']}"),
          "0", "tools/bench"),
         ("cases of misuse and fault in which the force kept every limit",
-         judged(limits["cases"], limits["passed"], f"{limits['passed']} of {limits['cases']}"), "all",
+         against_goal(limits["cases"], limits["passed"], f"{limits['passed']} of {limits['cases']}"), "all",
          "build/tact-limits"),
         ("published cases of laws, kinematics, protocols, tracking",
-         judged(verify["cases"], verify["passed"], f"{verify['passed']} of {verify['cases']}"), "all",
+         against_goal(verify["cases"], verify["passed"], f"{verify['passed']} of {verify['cases']}"), "all",
          "build/tact-verify"),
     ]
     yield from ("| what | measured | goal | command |", "|---|---|---|---|")
@@ -52,7 +52,7 @@ def tick_size(load):
     size, goal = load("size"), 2500
     lines = {name: size[device]["lines"] for name, device in
              (("simulated delta", "sim"), ("ODrives", "odrive"), ("Falcon", "falcon"))}
-    counts = ", ".join(judged(count, goal, f"{count} ({name})") for name, count in lines.items())
+    counts = ", ".join(against_goal(count, goal, f"{count} ({name})") for name, count in lines.items())
     yield f"Lines of code between read and write: {counts}; goal {goal}."
 
 
@@ -105,8 +105,8 @@ def scenes(load):
         missed = rms > SCENE_GOAL_PERCENT["rms"] or abs(own) > SCENE_GOAL_PERCENT["own"]
         at = "the hand's site" if value["place"] == "hand's" else f"vertex {value['place']}"
         yield (f"| {', '.join(f'`{name}`' for name in names)} | `{value['law']}` | "
-               f"{judged(rms, SCENE_GOAL_PERCENT['rms'], off(rms)[1:])} | "
-               f"{judged(abs(own), SCENE_GOAL_PERCENT['own'], off(own))} at {at}, {value['depth_mm']:.2g} mm | "
+               f"{against_goal(rms, SCENE_GOAL_PERCENT['rms'], off(rms)[1:])} | "
+               f"{against_goal(abs(own), SCENE_GOAL_PERCENT['own'], off(own))} at {at}, {value['depth_mm']:.2g} mm | "
                f"{value['median_us']:.2g} us | {REASONS.get(names[0], 'not known') if missed else ''} |")
 
 
@@ -119,8 +119,8 @@ def finite_strain(load):
     for place, name in PLACES.items():
         value = load("finite_strain")["place"][place]
         whole, jaw, goal = value["worst_percent"], value["sphere_percent"], 3.0 if place == "hand's" else 7.0
-        yield (f"| {name} | {judged(abs(whole), goal, f'{whole:+.2g} %')} at {value['worst_mm']:.2g} mm | "
-               f"{judged(jaw, 10.0, f'{jaw:.2g} %')} |")
+        yield (f"| {name} | {against_goal(abs(whole), goal, f'{whole:+.2g} %')} at {value['worst_mm']:.2g} mm | "
+               f"{against_goal(jaw, 10.0, f'{jaw:.2g} %')} |")
 
 
 def unfitted(load):
@@ -129,8 +129,8 @@ def unfitted(load):
     for place, value in load("finite_strain")["unfitted"].items():
         name = f"the hand's site, {place} degrees" if place.startswith("tilted") else f"vertex {place}"
         whole, jaw = value["worst_percent"], value["sphere_percent"]
-        yield (f"| {name} | {judged(abs(whole), 7.0, f'{whole:+.2g} %')} at {value['worst_mm']:.2g} mm | "
-               f"{judged(jaw, 10.0, f'{jaw:.2g} %')} |")
+        yield (f"| {name} | {against_goal(abs(whole), 7.0, f'{whole:+.2g} %')} at {value['worst_mm']:.2g} mm | "
+               f"{against_goal(jaw, 10.0, f'{jaw:.2g} %')} |")
 
 
 STRAINS = {"shipped": "`rhombus` (shipped): tip and bending", "shipped_small": "`rhombus`, `large_strain = false`: neither",
@@ -188,8 +188,8 @@ def tool(load):
     for law, value in values.items():
         rms, own = goals_of(law)
         place, worst = max(value["place_rms_percent"].items(), key=lambda at: at[1])
-        cells = [f"`{law}`", judged(value["rms_percent"], rms, f"{value['rms_percent']:.3g} %"),
-                 *(judged(abs(off), own, f"{off:+.3g} %") for off in value["own_percent_at_mm"].values()),
+        cells = [f"`{law}`", against_goal(value["rms_percent"], rms, f"{value['rms_percent']:.3g} %"),
+                 *(against_goal(abs(off), own, f"{off:+.3g} %") for off in value["own_percent_at_mm"].values()),
                  f"{place}: {worst:.3g} %", f"{value['median_us']:.2g} us"]
         yield f"| {' | '.join(cells)} |"
 
@@ -204,7 +204,7 @@ def silicone(load):
             cells = [f"{sites[site]['rms_percent']:.2g} %" for site in ("EF10_100T", "EF10_50T", "EF30_50T")]
             worst = max(site["worst_percent"] for site in sites.values())
             yield (f"| `{law}` | to {strain.split('_')[1]} % | {' | '.join(cells)} | "
-                   f"{judged(worst, 7, f'{worst:.2g} %')} |")
+                   f"{against_goal(worst, 7, f'{worst:.2g} %')} |")
 
 
 TABLES = {f.__name__: f for f in (measured, tick_size, known_errors, scenes, scene_laws, finite_strain, unfitted, strains,

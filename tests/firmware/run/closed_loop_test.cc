@@ -18,7 +18,7 @@ namespace tact::firmware::run::closed_loop_test {
 
 struct Summary {
   std::uint64_t hash = model::kFnvStart;
-  int ticks = 0, touching = 0, held = 0, pulling = 0, sliding = 0, tears = 0, openings = 0;
+  int ticks = 0, in_contact = 0, held = 0, pulling = 0, sliding = 0, tears = 0, openings = 0;
   double max_force_N = 0.0, max_pull_N = 0.0, max_depth_m = 0.0, max_step_N = 0.0;
   double max_free_force_N = 0.0, max_torque_Nm = 0.0;
   std::map<model::Fault, int> limits;
@@ -38,16 +38,16 @@ void add(Summary& s, const loop::TickRecord& r, const loop::TickRecord& before) 
   s.max_step_N =
       std::max(s.max_step_N, norm(r.output.written.force_N - before.output.written.force_N));
   const bool held = any_in(r, model::ContactState::kHeld);
-  const bool touching = any_in(r, model::ContactState::kInContact);
+  const bool in_contact = any_in(r, model::ContactState::kInContact);
   s.held += held;
-  s.touching += touching;
-  if (!held && !touching)
+  s.in_contact += in_contact;
+  if (!held && !in_contact)
     s.max_free_force_N = std::max(s.max_free_force_N, norm(r.output.wanted.force_N));
   if (held && r.output.wanted.force_N.z < 0.0) {
     ++s.pulling;
     s.max_pull_N = std::max(s.max_pull_N, -r.output.written.force_N.z);
   }
-  if (touching && std::hypot(r.output.wanted.force_N.x, r.output.wanted.force_N.y) > 0.02)
+  if (in_contact && std::hypot(r.output.wanted.force_N.x, r.output.wanted.force_N.y) > 0.02)
     ++s.sliding;
   if (!held && any_in(before, model::ContactState::kHeld))
     ++(r.input.sample.tool.grip_ratio > 0.7 ? s.tears : s.openings);
@@ -84,7 +84,7 @@ TEST(ClosedLoop, SixtySecondsOfLiverStayWithinBoundsOnBothSides) {
   EXPECT_EQ(s.ticks, 60000);
   EXPECT_EQ(s.fault, model::Fault::kNone);
   // It is really there: touched, held, pulled, slid, torn, let go.
-  EXPECT_GT(s.touching, 10000);
+  EXPECT_GT(s.in_contact, 10000);
   EXPECT_GT(s.held, 3000);
   EXPECT_GT(s.pulling, 1000);
   EXPECT_GT(s.sliding, 500);
@@ -120,7 +120,7 @@ TEST_P(EveryScene, ContactStaysWithinTheLimitsAndLeavesTheHeapAlone) {
   const model::scene::Scene scene = tests::shipped_scene(GetParam());
   const Summary s = run(scene, 9.0);  // the gum is cut from 6 s on
   EXPECT_EQ(s.fault, model::Fault::kNone);
-  EXPECT_GT(s.touching, 200);
+  EXPECT_GT(s.in_contact, 200);
   EXPECT_GT(s.max_force_N, 0.05);
   for (const model::Fault limit : {model::Fault::kForceLimited, model::Fault::kTorqueLimited,
                                    model::Fault::kTooFast, model::Fault::kEnergyLimited,
@@ -138,7 +138,7 @@ TEST_P(EveryScene, ContactStaysWithinTheLimitsAndLeavesTheHeapAlone) {
 TEST_P(EveryScene, TheSameRunGivesTheSameBits) {
   const model::scene::Scene scene = tests::shipped_scene(GetParam());
   const Summary a = run(scene, 8.0), b = run(scene, 8.0);
-  EXPECT_GT(a.touching, 100);
+  EXPECT_GT(a.in_contact, 100);
   EXPECT_EQ(a.hash, b.hash);
 }
 

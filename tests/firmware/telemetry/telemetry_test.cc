@@ -159,13 +159,13 @@ TEST(Telemetry, GreetsAViewerWithTheMeshesAndFramesFollow) {
                                           header.tool_vertices + header.tool_triangles));
   Frame frame;
   int frames = 0;
-  bool touched = false;
+  bool in_contact = false;
   while (viewer.receive(frame)) {
     ++frames;
-    touched = touched || frame.contact[0].state == model::ContactState::kInContact;
+    in_contact = in_contact || frame.contact[0].state == model::ContactState::kInContact;
   }
   EXPECT_GT(frames, 20);
-  EXPECT_TRUE(touched);
+  EXPECT_TRUE(in_contact);
 }
 
 TEST(Telemetry, FramesCarryTheProfileOfTheTouchedSite) {

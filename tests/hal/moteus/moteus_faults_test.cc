@@ -10,6 +10,31 @@
 
 namespace tact::hal::moteus::moteus_faults_test {
 
+/// Two drives with one node id, each with its own motor. The second is powered later.
+struct SharedNode final : rig::Drive {
+  SharedNode(int axis, int node, const rig::MoteusSettings& settings, rig::CanBus& bus,
+             const rig::Motor& motor, const rig::FaultPlan& plan)
+      : first(axis, node, settings, bus, motor, plan),
+        second(axis, node, settings, bus, second_motor, plan) {}
+  bool receive(const canfd_frame& frame, std::int64_t now_ns) override {
+    const bool obeys = first.receive(frame, now_ns);
+    return (powered && second.receive(frame, now_ns)) || obeys;
+  }
+  void tick(std::int64_t now_ns) override {
+    first.tick(now_ns);
+    second.tick(now_ns);
+  }
+  void fail(std::int64_t now_ns) override { first.fail(now_ns); }
+  bool warn(std::int64_t) override { return false; }
+  bool is_enabled() const override { return first.is_enabled() || second.is_enabled(); }
+  double torque_Nm() const override { return first.torque_Nm() + second.torque_Nm(); }
+  bool tripped() override { return first.tripped() || second.tripped(); }
+
+  rig::Motor second_motor{.position_turns = 0.2};
+  rig::MoteusDrive first, second;
+  bool powered = false;
+};
+
 struct Bench : tests::MoteusBench {
   using MoteusBench::MoteusBench;
   /// The fault stays, for all further behaviour of bus and drives; the hand has no force.
@@ -201,6 +226,37 @@ TEST(MoteusFaults, AFaultIsReportedAlsoByADriveThatHasLostItsPosition) {
   bench.drives.drive[0]->fail(bench.drives.now_ns);
   EXPECT_GT(bench.ticks_until(Fault::kDriveFault, 3), 0);
   EXPECT_TRUE(bench.says("(fault 33)")) << bench.device->fault_detail();
+}
+
+TEST(MoteusFaults, TwoDrivesWithOneNodeIdLatch) {
+  Bench bench;
+  bench.drives.install<SharedNode>(1, rig::MoteusSettings{});
+  auto& both = static_cast<SharedNode&>(*bench.drives.drive[1]);
+  both.second_motor = bench.drives.motor[1];  // nothing but the number of replies differs
+  both.powered = true;
+  ASSERT_EQ(bench.open(), "");
+  EXPECT_GT(bench.ticks_until(Fault::kDriveFault, 5), 0);
+  EXPECT_TRUE(bench.says("two drives have this node id")) << bench.device->fault_detail();
+  bench.expect_latched(Fault::kDriveFault);
+}
+
+TEST(MoteusFaults, ASecondDriveOfOneNodeIdThatIsPoweredLaterLatches) {
+  Bench bench;
+  bench.drives.install<SharedNode>(1, rig::MoteusSettings{});
+  ASSERT_EQ(bench.open(), "");
+  ASSERT_GT(bench.ticks_until_ready(), 0) << bench.device->fault_detail();
+  bench.tick({0.0, 0.0, 5.0});
+  static_cast<SharedNode&>(*bench.drives.drive[1]).powered = true;
+  EXPECT_GT(bench.ticks_until(Fault::kDriveFault, 5), 0);
+  EXPECT_TRUE(bench.says("or a second drive with this node id")) << bench.device->fault_detail();
+  bench.expect_latched(Fault::kDriveFault);
+}
+
+TEST(MoteusFaults, TwoDrivesWithOneNodeIdAndOtherPositionsAreRefused) {
+  Bench bench;
+  bench.drives.install<SharedNode>(1, rig::MoteusSettings{});
+  static_cast<SharedNode&>(*bench.drives.drive[1]).powered = true;
+  bench.expect_refused("or two drives have this node id");
 }
 
 TEST(MoteusFaults, ABusThatGoesOffLatches) {

@@ -137,7 +137,8 @@ class Tables(unittest.TestCase):
 
 
 class Tool(unittest.TestCase):
-    JOB = {**JOB, "places": places(), "rows": [
+    DROPPED = [{"place": "1586", "depth_m": 0.01, "linear_error_ratio": 0.31}]
+    JOB = {**JOB, "places": places(), "dropped": DROPPED, "rows": [
         measured("disc_stack", tool_N=[1.1, 1.8, 0.6, 2.0], law_hash="0123456789abcdef", large_strain_off=True),
         measured("rhombus", failure="no meaning")]}
 
@@ -152,11 +153,19 @@ class Tool(unittest.TestCase):
             self.assertIn(word, tool.text(laws, self.JOB["places"]))
 
     def test_accuracy_has_a_table_for_each_law_that_was_measured(self):
-        text = tool.accuracy_text(list(tool.laws_of(self.JOB)), self.JOB["places"])
+        text = tool.accuracy_text(list(tool.laws_of(self.JOB)), self.JOB)
         self.assertIn("own_worst_ratio = [-0.4000, -0.1000]", text)
         self.assertIn("depth_m = [0.001, 0.002]", text)
         self.assertIn("large_strain_off = true", text)
         self.assertNotIn("[rhombus]", text)
+        self.assertIn("linear finite elements at 2 places, 1 left out by finite strain", text)
+
+    def test_a_dropped_place_is_named_with_its_error(self):
+        self.assertEqual(tool.dropped_text(self.JOB),
+                         "1586 does not count: at 10 mm the linear force is +31.0 % off that at finite strain\n")
+        laws = list(tool.laws_of(self.JOB))
+        self.assertEqual(json.loads(tool.json_text(laws, self.JOB))["dropped"], self.DROPPED)
+        self.assertEqual(tool.dropped_text(JOB), "", "of one sphere")
 
 
 class Plan(unittest.TestCase):

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "model/io/json.h"
+#include "tools/ground_truth/linear_places.h"
 #include "tools/ground_truth/reference_fits.h"
 #include "tools/program/interrupt.h"
 #include "tools/program/run_program.h"
@@ -92,6 +93,29 @@ json to_json(const ToolReference& reference) {
                    {"cases", std::move(cases)}});
   }
   return out;
+}
+
+std::optional<Error> add_tool_reference(json& job, ChartOptions& options, const Scene& scene,
+                                        const std::string& path, const std::string& finite_strain) {
+  if (path.empty()) return std::nullopt;
+  auto linear = ground_truth::read_tool_reference(path);
+  if (!linear) return linear.error();
+  if (auto differs = check_tool_reference_fits(*linear, scene)) return differs;
+  job["dropped"] = json::array();
+  if (!finite_strain.empty()) {
+    const auto finite = ground_truth::read_tool_reference(finite_strain);
+    if (!finite) return finite.error();
+    if (auto differs = check_tool_reference_fits(*finite, scene)) return differs;
+    const auto dropped = ground_truth::drop_contradicted(*linear, *finite);
+    if (!dropped) return dropped.error();
+    for (const ground_truth::DroppedPlace& place : *dropped)
+      job["dropped"].push_back({{"place", place.place},
+                                {"depth_m", place.depth_m},
+                                {"linear_error_ratio", place.linear_error_ratio}});
+  }
+  job["places"] = to_json(*linear);
+  options.tool_reference = std::move(*linear);
+  return std::nullopt;
 }
 
 Result<std::vector<Measured>> measure_chart(const Scene& scene,

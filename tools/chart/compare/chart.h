@@ -59,6 +59,14 @@ struct ChartOptions {
   std::optional<ground_truth::ToolReference> tool_reference{};  // laws are evaluated by it, too
 };
 
+/// What is true under the whole tool, by two files of tact-lab reference --tool: into `options` and
+/// job["places"]. Places that `finite_strain` contradicts are dropped: into job["dropped"]. Empty
+/// paths: none.
+std::optional<model::Error> add_tool_reference(nlohmann::json& job, ChartOptions& options,
+                                               const model::scene::Scene& scene,
+                                               const std::string& path,
+                                               const std::string& finite_strain);
+
 /// Every variant. An error names what does not fit together, or says that Ctrl-C ended it.
 model::Result<std::vector<Measured>> measure_chart(const model::scene::Scene& scene,
                                                    const ground_truth::ReferenceData& reference,
