@@ -88,9 +88,13 @@ def beside_breaches():
 
 
 def children(pid):
-    for file in pathlib.Path(f"/proc/{pid}/task").glob("*/children"):
-        for child in map(int, file.read_text().split()):
-            yield from (child, *children(child))
+    """None of a process that has ended."""
+    try:
+        texts = [file.read_text() for file in pathlib.Path(f"/proc/{pid}/task").glob("*/children")]
+    except OSError:
+        texts = []
+    for child in map(int, " ".join(texts).split()):
+        yield from (child, *children(child))
 
 
 def is_running(pid):
