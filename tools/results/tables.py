@@ -127,10 +127,22 @@ def unfitted(load):
     """The shipped liver where no fit and no choice has seen it, and with the tool tilted."""
     yield from ("| place | whole tool, goal 7 % | one jaw, of the tool's force, goal 10 % |", "|---|---|---|")
     for place, value in load("finite_strain")["unfitted"].items():
-        name = f"the hand's site, {place} degrees" if place.startswith("tilted") else f"vertex {place}"
+        name = place if place.startswith("slid") else f"vertex {place}"
+        name = f"the hand's site, {place} degrees" if place.startswith("tilted") else name
         whole, jaw = value["worst_percent"], value["sphere_percent"]
         yield (f"| {name} | {against_goal(abs(whole), 7.0, f'{whole:+.2g} %')} at {value['worst_mm']:.2g} mm | "
                f"{against_goal(jaw, 10.0, f'{jaw:.2g} %')} |")
+
+
+def linear(load):
+    """How far the linear force of the whole tool is off that at finite strain."""
+    places = load("finite_strain")["linear"]
+    depths = list(places["hand's"])
+    yield f"| place | {' | '.join(f'{mm} mm' for mm in depths)} |"
+    yield "|---|" + "---|" * len(depths)
+    for place, at in places.items():
+        name = {"hand's": "the hand's site"}.get(place, f"vertex {place}" if place.isdigit() else place)
+        yield f"| {name} | {' | '.join(f'{at[mm]:+.1f} %' for mm in depths)} |"
 
 
 STRAINS = {"shipped": "`rhombus` (shipped): tip and bending", "shipped_small": "`rhombus`, `large_strain = false`: neither",
@@ -207,5 +219,5 @@ def silicone(load):
                    f"{against_goal(worst, 7, f'{worst:.2g} %')} |")
 
 
-TABLES = {f.__name__: f for f in (measured, tick_size, known_errors, scenes, scene_laws, finite_strain, unfitted, strains,
+TABLES = {f.__name__: f for f in (measured, tick_size, known_errors, scenes, scene_laws, finite_strain, unfitted, linear, strains,
                                   tool, silicone)}

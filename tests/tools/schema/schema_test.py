@@ -55,6 +55,7 @@ COMMANDS = {
                  f"tact-lab fit {LIVER} --reference {REFERENCES}/liver.json --law disc_stack_linear --json"],
     "tact-chart": [f"tact-lab chart {LIVER} --reference {REFERENCES}/liver.json {FEW} compliance --out {{t}}/chart --json"],
     "tact-tool-chart": [f"tact-lab chart {LIVER} --tool-reference {REFERENCES}/liver_tool.json {FEW} rhombus "
+                        f"--finite-strain {REFERENCES}/liver_finite_strain_tool.json "
                         "--out {t}/tool --json"],
     "tact-plan": [f"tact-lab plan {LIVER} --chart {{t}}/chart/chart.json --dry-run --json"],
     "tact-view": [],  # these by viewer_documents()
