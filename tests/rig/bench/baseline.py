@@ -5,7 +5,8 @@ One instruction is one nanosecond here, so a path is exact, but for an interrupt
 timer of the kernel and none of tactd does: the loop's grid of deadlines keeps away from both
 (firmware/loop/release_schedule.h), and the kernel's lockup detector is off here as it is on an isolated core. What is
 left are emulators and other programs, whose phase differs from seed to seed, and from host to host, as the
-moment of the snapshot does. Heartbeats that wait in the first tick are such a phase (guest/bench.sh shifts them by the seed). What is ours is there with every seed. So a number has grown when the shortest
+moment of the snapshot does. Heartbeats that wait in the first tick are such a phase (guest/bench.sh shifts
+them by the seed). What is ours is there with every seed. So a number has grown when the shortest
 of the timed runs is above what any of the baseline's six seeds had (its median: above their middle), and
 `run` adds seeds before it says so. What a wake-up takes at most is the kernel's path
 more than ours: it may grow by a quarter (and is held against cyclictest besides); its median like all
