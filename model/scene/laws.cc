@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "model/indent/disc_series.h"
 #include "model/indent/disc_stack.h"
 #include "model/indent/hex_sheet.h"
 #include "model/indent/hunt_crossley.h"
@@ -61,6 +62,16 @@ Result<Curve> disc_stack(const Scene& scene) {
       stack->layer_count());
   return Curve{
       .law = owned(std::move(*stack)), .title = title, .untabled_bytes = sizeof(indent::DiscStack)};
+}
+
+// Closed form, too.
+Result<Curve> disc_series(const Scene& scene) {
+  auto series = make_disc_series(scene.laws.of<indent::DiscSeriesParameters>());
+  if (!series) return series.error();
+  const std::string title = fmt::format("{} discs in series", series->size());
+  return Curve{.law = owned(std::move(*series)),
+               .title = title,
+               .untabled_bytes = sizeof(indent::DiscSeries)};
 }
 
 Result<Curve> hex_sheet(const Scene& scene) {
@@ -131,6 +142,16 @@ std::span<const LawRow> all_laws() {
        .stiffness_keys = {"youngs_modulus_Pa"},
        .fit_keys = {"youngs_modulus_Pa"},
        .size_key = "layers"},
+      {.name = "disc_series",
+       .meaning = "disc springs in series that go flat in turn, as a ball stiffens",
+       .visit = keys_of<indent::DiscSeriesParameters>,
+       .curve = disc_series,
+       .stiffness_keys = {"force_N"},
+       .fit_keys = {"force_N", "exponent"},
+       .fit_starts = {{1, 1}, {1, 1.3}},
+       .size_key = "discs",
+       .sizes = {4, 6, 9, 12, 18},
+       .quick_sizes = {6, 9}},
       {.name = "hex_sheet",
        .meaning = "hexagonal skin on body springs, energy form",
        .visit = keys_of<indent::HexSheetParameters>,
