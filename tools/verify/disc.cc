@@ -2,6 +2,7 @@
 // The published cases of the disc stack: constants of a disc, the stack, and the printed example.
 #include <cmath>
 
+#include "model/indent/disc_series.h"
 #include "model/indent/disc_stack.h"
 #include "tools/verify/report.h"
 
@@ -88,6 +89,23 @@ json stack_results(const json& one_case) {
           {"i_max", stack->layer_count()}};
 }
 
+json series_results(const json& one_case) {
+  const json& p = one_case.at("params");
+  const auto series =
+      model::indent::make_disc_series({.force_N = number(p.at("force")),
+                                       .working_depth_m = number(p.at("depth")),
+                                       .exponent = number(p.at("exponent")),
+                                       .exponent_slope = number(p.at("exponent_slope")),
+                                       .first_depth_m = number(p.at("first_depth")),
+                                       .discs = p.at("discs").get<std::size_t>()});
+  if (!series) return {{"status", "INVALID_ARGUMENT"}};
+  const auto at = series->respond(number(one_case.at("inputs").at("depth")));
+  return {{"F", at.force_N},
+          {"K", at.stiffness_N_per_m},
+          {"U", at.energy_J},
+          {"status", word(kLawStatus, at.status)}};
+}
+
 double rounded(double value, double unit) { return std::round(value / unit) * unit; }
 
 /// The printed example with its rounding between the steps: C to 2 decimals, alpha to 3, k to 4
@@ -127,6 +145,7 @@ json printed_results(const json& one_case) {
 constexpr Verifier kVerifiers[] = {
     {"disc_constants", verify_cases<constants_results>},
     {"disc_stack", verify_cases<stack_results>},
+    {"disc_series", verify_cases<series_results>},
     {"disc_patent_rounded", verify_cases<printed_results>},
 };
 

@@ -10,6 +10,7 @@ using nlohmann::json;
 TEST(VerifyDisc, EveryPublishedCasePassesAndEveryFieldIsLookedAt) {
   tests::check_published_cases(disc_verifiers(), "001_disc_constants.json", 19);
   tests::check_published_cases(disc_verifiers(), "001_disc_stack.json", 66);
+  tests::check_published_cases(disc_verifiers(), "001_disc_series.json", 200);
   tests::check_published_cases(disc_verifiers(), "001_disc_patent_printed.json", 1);
 }
 

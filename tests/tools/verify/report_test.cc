@@ -37,6 +37,7 @@ TEST(Verify, EveryPublishedCasePassesAndNoneIsMissing) {
                                              {"000_rhombus_unit.json", 56},
                                              {"001_disc_constants.json", 19},
                                              {"001_disc_patent_printed.json", 1},
+                                             {"001_disc_series.json", 200},
                                              {"001_disc_stack.json", 66},
                                              {"002_hex_energy.json", 30},
                                              {"002_hex_paper.json", 52},
