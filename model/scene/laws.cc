@@ -9,6 +9,7 @@
 #include "model/indent/disc_stack.h"
 #include "model/indent/hex_sheet.h"
 #include "model/indent/hunt_crossley.h"
+#include "model/indent/membrane.h"
 #include "model/indent/rhombus_patch.h"
 #include "model/indent/table_law.h"
 #include "model/scene/scene.h"
@@ -91,6 +92,14 @@ Result<Curve> hex_sheet(const Scene& scene) {
                .draws_tissue = true};
 }
 
+Result<Curve> membrane(const Scene& scene) {
+  const auto tip_radius_m = scene_tip_radius_m(scene);
+  if (!tip_radius_m) return tip_radius_m.error();
+  auto law = make_membrane(scene.laws.of<indent::MembraneParameters>(), *tip_radius_m);
+  if (!law) return law.error();
+  return Curve{.law = owned(std::move(*law)), .title = "membrane on a softening foundation"};
+}
+
 Result<Curve> table(const Scene& scene) {
   const auto& p = scene.laws.of<indent::TableParameters>();
   if (p.data.empty()) return Error{"table.data names no file; write data = \"press.csv\""};
@@ -164,6 +173,15 @@ std::span<const LawRow> all_laws() {
        .size_key = "rings",
        .sizes = {3, 5, 10, 15, 25},
        .quick_sizes = {5, 15}},
+      {.name = "membrane",
+       .meaning = "tensioned skin on a softening foundation, under a round tip",
+       .visit = keys_of<indent::MembraneParameters>,
+       .curve = membrane,
+       .stiffness_keys = {"tension_N_per_m", "foundation_Pa_per_m"},
+       .fit_keys = {"tension_N_per_m", "foundation_Pa_per_m", "softening_depth_m",
+                    "softening_exponent"},
+       .sizes = {17, 33, 65, 129},
+       .quick_sizes = {17, 65}},
       {.name = "hunt_crossley",
        .meaning = "power law that resists speed as well",
        .visit = keys_of<indent::HuntCrossleyParameters>,

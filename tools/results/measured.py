@@ -99,8 +99,8 @@ def size():
 
 
 # As liver.toml has them.
-LAW_SIZES = {"compliance": "17 curves", "hex_sheet": "15 rings", "disc_stack": "linear 20 layers", "disc_series": "9 discs",
-             "rhombus": "65 knots", "spring_patch": "500 nodes"}
+LAW_SIZES = {"compliance": "17 curves", "hex_sheet": "15 rings", "disc_stack": "linear 20 layers",
+             "disc_series": "9 discs", "membrane": "65 knots", "rhombus": "65 knots", "spring_patch": "500 nodes"}
 
 
 def chart():

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The published cases of the hexagonal surface: in its energy form, and as printed.
+// The published cases of the hexagonal surface: in its energy form, as printed, and as a membrane.
 
 #include "model/indent/hex_sheet.h"
+#include "model/indent/membrane.h"
 #include "tools/printed/hex_paper.h"
 #include "tools/verify/report.h"
 
@@ -90,9 +91,24 @@ json paper_results(const json& one_case) {
           {"F_node", printed::paper_force_N(at, stiffness_N_per_m, HexWeight::kNode)}};
 }
 
+json membrane_results(const json& one_case) {
+  const json& p = one_case.at("params");
+  const auto membrane =
+      model::indent::make_membrane({.tension_N_per_m = number(p.at("tension")),
+                                    .foundation_Pa_per_m = number(p.at("foundation")),
+                                    .softening_depth_m = number(p.at("softening_depth")),
+                                    .softening_exponent = number(p.at("softening_exponent")),
+                                    .working_depth_m = number(p.at("working_depth"))},
+                                   number(p.at("tip_radius")));
+  if (!membrane) return {{"status", "INVALID_ARGUMENT"}};
+  const auto at = membrane->respond(number(one_case.at("inputs").at("depth")));
+  return {{"F", at.force_N}, {"status", word(kLawStatus, at.status)}};
+}
+
 constexpr Verifier kVerifiers[] = {
     {"hex_surface_energy", verify_cases<energy_results>},
     {"hex_surface_paper", verify_cases<paper_results>},
+    {"membrane", verify_cases<membrane_results>},
 };
 
 }  // namespace hex_cases

@@ -10,6 +10,7 @@ using nlohmann::json;
 TEST(VerifyHex, EveryPublishedCasePassesAndEveryFieldIsLookedAt) {
   tests::check_published_cases(hex_verifiers(), "002_hex_energy.json", 30);
   tests::check_published_cases(hex_verifiers(), "002_hex_paper.json", 52);
+  tests::check_published_cases(hex_verifiers(), "002_membrane.json", 16);
 }
 
 }  // namespace tact::tools::verify::hex_test
