@@ -7,17 +7,15 @@
 namespace tact::model::indent {
 
 law::LawResponse DiscSeries::respond(double depth_m) const RT_SAFE {
-  if (!std::isfinite(depth_m)) return {.status = law::LawStatus::kInvalid};
-  if (depth_m < 0.0) return {.status = law::LawStatus::kNoContact};
-  const double inside_m = std::min(depth_m, end_m());
-  std::size_t i = 0;
-  while (i + 1 < size_ && disc_[i + 1].begin_m <= inside_m) ++i;
-  const Disc& at = disc_[i];
-  const double s_m = inside_m - at.begin_m, K = at.series_N_per_m;
-  const law::LawResponse out{.force_N = at.begin_N + K * s_m,
-                             .stiffness_N_per_m = K,
-                             .energy_J = at.begin_J + (at.begin_N + 0.5 * K * s_m) * s_m};
-  return law::beyond_limit(out, inside_m, depth_m);
+  return law::press_response(depth_m, end_m(), [this](double inside_m) RT_SAFE {
+    std::size_t i = 0;
+    while (i + 1 < size_ && disc_[i + 1].begin_m <= inside_m) ++i;
+    const Disc& at = disc_[i];
+    const double s_m = inside_m - at.begin_m, K = at.series_N_per_m;
+    return law::LawResponse{.force_N = at.begin_N + K * s_m,
+                            .stiffness_N_per_m = K,
+                            .energy_J = at.begin_J + (at.begin_N + 0.5 * K * s_m) * s_m};
+  });
 }
 
 std::size_t DiscSeries::profile(double depth_m, std::span<double> ring_m) const RT_SAFE {

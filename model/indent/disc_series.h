@@ -13,8 +13,8 @@
 //
 // What the words of the source describe, where its formulas make one spring of the stack (X8):
 // each disc that is flat leaves a stiffer rest. The stiffnesses are chosen so that the points where
-// discs go flat lie on a power law; between them F is the chord, above it by at most 3 % for e = 1.5
-// and discs whose loads differ by 2.2. Below D_1, F = K_1 d; beyond d_w the force is constant. K
+// discs go flat lie on a power law; between them F is the chord, at most 3 % above it for e = 1.5
+// and loads that differ by 2.2. Below D_1, F = K_1 d; beyond d_w the force is constant. K
 // jumps where a disc goes flat. It cannot pull.
 #pragma once
 

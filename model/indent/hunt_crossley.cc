@@ -9,16 +9,14 @@
 namespace tact::model::indent {
 
 law::LawResponse HuntCrossley::respond(double depth_m) const RT_SAFE {
-  if (!std::isfinite(depth_m)) return {.status = law::LawStatus::kInvalid};
-  if (depth_m < 0.0) return {.status = law::LawStatus::kNoContact};
-  // n >= 1, so x^(n-1) is finite at rest.
-  const double n = p_.exponent, inside_m = std::min(depth_m, p_.working_depth_m);
-  const double x = inside_m / p_.working_depth_m, power = std::pow(x, n - 1.0);
-  // HC-1, HC-2
-  const law::LawResponse out{.force_N = p_.force_N * power * x,
-                             .stiffness_N_per_m = n * p_.force_N * power / p_.working_depth_m,
-                             .energy_J = p_.force_N * power * x * inside_m / (n + 1.0)};
-  return law::beyond_limit(out, inside_m, depth_m);
+  return law::press_response(depth_m, p_.working_depth_m, [this](double inside_m) RT_SAFE {
+    // n >= 1, so x^(n-1) is finite at rest.
+    const double n = p_.exponent, x = inside_m / p_.working_depth_m, power = std::pow(x, n - 1.0);
+    // HC-1, HC-2
+    return law::LawResponse{.force_N = p_.force_N * power * x,
+                            .stiffness_N_per_m = n * p_.force_N * power / p_.working_depth_m,
+                            .energy_J = p_.force_N * power * x * inside_m / (n + 1.0)};
+  });
 }
 
 double HuntCrossley::damping_Ns_per_m(double depth_m) const RT_SAFE {

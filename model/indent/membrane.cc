@@ -39,7 +39,7 @@ class Solver {
       (crosses(a, middle_m, slope) ? low_m : high_m) = middle_m;
     }
     const double edge_m = 0.5 * (low_m + high_m), depth_m = edge_m + 0.5 * a * a / R_;
-    // HX-33
+    // HX-33  the pressure inside, and the membrane that pulls at its edge
     const double force_N =
         2.0 * std::numbers::pi *
         (R_ * pressure_integral(edge_m, depth_m) + p_.tension_N_per_m * a * a / R_);
@@ -99,13 +99,11 @@ law::CurvePoint between(const std::vector<Press>& presses, double depth_m) {
 }  // namespace
 
 law::LawResponse Membrane::respond(double depth_m) const RT_SAFE {
-  if (!std::isfinite(depth_m)) return {.status = law::LawStatus::kInvalid};
-  if (depth_m < 0.0) return {.status = law::LawStatus::kNoContact};
-  const double inside_m = std::min(depth_m, press_.end());
-  const law::CurvePoint at = press_.at(inside_m);
-  return law::beyond_limit(
-      {.force_N = at.value, .stiffness_N_per_m = at.slope, .energy_J = at.integral}, inside_m,
-      depth_m);
+  return law::press_response(depth_m, press_.end(), [this](double inside_m) RT_SAFE {
+    const law::CurvePoint at = press_.at(inside_m);
+    return law::LawResponse{
+        .force_N = at.value, .stiffness_N_per_m = at.slope, .energy_J = at.integral};
+  });
 }
 
 std::size_t Membrane::profile(double depth_m, std::span<double> ring_m) const RT_SAFE {

@@ -35,14 +35,13 @@ law::CurvePoint RhombusPatch::under_tip(double depth_m) const RT_SAFE {
 }
 
 law::LawResponse RhombusPatch::respond(double depth_m) const RT_SAFE {
-  if (!std::isfinite(depth_m)) return {.status = law::LawStatus::kInvalid};
-  if (depth_m < 0.0) return {.status = law::LawStatus::kNoContact};
-  const double inside_m = std::min(depth_m, press_.end());
-  // F and K are closed forms of the chain; U is the integral that only the table has.
-  const law::CurvePoint at = under_tip(inside_m);
-  const law::LawResponse out{
-      .force_N = at.value, .stiffness_N_per_m = at.slope, .energy_J = press_.at(inside_m).integral};
-  return law::beyond_limit(out, inside_m, depth_m);
+  return law::press_response(depth_m, press_.end(), [this](double inside_m) RT_SAFE {
+    // F and K are closed forms of the chain; U is the integral that only the table has.
+    const law::CurvePoint at = under_tip(inside_m);
+    return law::LawResponse{.force_N = at.value,
+                            .stiffness_N_per_m = at.slope,
+                            .energy_J = press_.at(inside_m).integral};
+  });
 }
 
 std::size_t RhombusPatch::profile(double depth_m, std::span<double> ring_m) const RT_SAFE {

@@ -197,12 +197,11 @@ law::LawResponse TableLaw::between(const Knot& low, const Knot& high, double dep
 }
 
 law::LawResponse TableLaw::respond(double depth_m) const RT_SAFE {
-  if (!std::isfinite(depth_m)) return {.status = law::LawStatus::kInvalid};
-  if (depth_m < 0.0) return {.status = law::LawStatus::kNoContact};
-  const double inside_m = std::min(depth_m, end_m());
-  std::size_t j = 0;
-  while (j + 2 < count_ && knot_[j + 1].depth_m < inside_m) ++j;
-  return law::beyond_limit(between(knot_[j], knot_[j + 1], inside_m), inside_m, depth_m);
+  return law::press_response(depth_m, end_m(), [this](double inside_m) RT_SAFE {
+    std::size_t j = 0;
+    while (j + 2 < count_ && knot_[j + 1].depth_m < inside_m) ++j;
+    return between(knot_[j], knot_[j + 1], inside_m);
+  });
 }
 
 std::size_t TableLaw::profile(double depth_m, std::span<double> ring_m) const RT_SAFE {

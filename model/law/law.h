@@ -78,6 +78,15 @@ inline LawResponse beyond_limit(const LawResponse& at, double inside_m, double d
           .status = LawStatus::kSaturated};
 }
 
+/// Of a law that only presses: `inside` answers depths in [0, end_m].
+template <typename Inside>
+LawResponse press_response(double depth_m, double end_m, const Inside& inside) RT_SAFE {
+  if (!std::isfinite(depth_m)) return {.status = LawStatus::kInvalid};
+  if (depth_m < 0.0) return {.status = LawStatus::kNoContact};
+  const double inside_m = depth_m < end_m ? depth_m : end_m;
+  return beyond_limit(inside(inside_m), inside_m, depth_m);
+}
+
 /// LawResponse of a law's state; a saturated state is that at limit_m.
 template <typename State>
 LawResponse response_of(const State& at, double limit_m, double depth_m) RT_SAFE {

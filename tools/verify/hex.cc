@@ -93,13 +93,13 @@ json paper_results(const json& one_case) {
 
 json membrane_results(const json& one_case) {
   const json& p = one_case.at("params");
-  const auto membrane =
-      model::indent::make_membrane({.tension_N_per_m = number(p.at("tension")),
-                                    .foundation_Pa_per_m = number(p.at("foundation")),
-                                    .softening_depth_m = number(p.at("softening_depth")),
-                                    .softening_exponent = number(p.at("softening_exponent")),
-                                    .working_depth_m = number(p.at("working_depth"))},
-                                   number(p.at("tip_radius")));
+  model::indent::MembraneParameters parameters;
+  parameters.tension_N_per_m = number(p.at("tension"));
+  parameters.foundation_Pa_per_m = number(p.at("foundation"));
+  parameters.softening_depth_m = number(p.at("softening_depth"));
+  parameters.softening_exponent = number(p.at("softening_exponent"));
+  parameters.working_depth_m = number(p.at("working_depth"));
+  const auto membrane = model::indent::make_membrane(parameters, number(p.at("tip_radius")));
   if (!membrane) return {{"status", "INVALID_ARGUMENT"}};
   const auto at = membrane->respond(number(one_case.at("inputs").at("depth")));
   return {{"F", at.force_N}, {"status", word(kLawStatus, at.status)}};
