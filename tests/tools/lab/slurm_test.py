@@ -17,13 +17,16 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(ROOT / "tests/tools"))
+sys.dont_write_bytecode = True
+from processes import until  # noqa: E402
+
 SHARD, SNAKEFILE = ROOT / "tools/lab/tact-shard", ROOT / "tools/lab/Snakefile"
 BUILD = pathlib.Path(sys.argv.pop(1)).resolve()
-MAX_WAIT_S, TASKS = 300.0, 4
+TASKS = 4
 UNITS = "3000,3500,4000,4500,5000,5500"
 CONFIG = """
 ClusterName=test
@@ -60,17 +63,6 @@ hostname >{folder}/began.$SLURM_ARRAY_TASK_ID.$SLURM_RESTART_COUNT
 until [ -e {folder}/go ]; do sleep 0.1; done
 exec {command} --shard $SLURM_ARRAY_TASK_ID/{tasks} --out {folder}/part$SLURM_ARRAY_TASK_ID -- {unit}
 """
-
-
-def until(ask, what):
-    """Its first answer that is true. An event is waited for; the bound is for a test that hangs."""
-    end = time.monotonic() + MAX_WAIT_S
-    while time.monotonic() < end:
-        answer = ask()
-        if answer:
-            return answer
-        time.sleep(0.2)
-    raise AssertionError(f"not seen within {MAX_WAIT_S:g} s: {what}")
 
 
 def run(*words, **options):
