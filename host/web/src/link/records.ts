@@ -15,16 +15,6 @@ export interface Scene {
   force_limit_N: number;
   force_share: number;
   frame_rate_Hz: number;
-  joints: {
-    azimuth_rad: Vec;
-    base_radius_m: number;
-    forearm_m: number;
-    linkage: string;
-    origin_m: Vec;
-    platform_radius_m: number;
-    row: Vec[];
-    upper_arm_m: number;
-  };
   law_name: string;
   limits: {
     continuous_force_N: number;
