@@ -164,10 +164,10 @@ class Cluster(unittest.TestCase):
                          {"mesh": "1", "shard": "10", "merge": "5", "condense": "1", "chart": "1", "plan": "1"})
 
     def test_the_snakefile_makes_each_file_once(self):
-        chosen = ("--config", f"build={BUILD}", "targets=soak.txt,stability.json", "seeds=1..2", "ticks=2000", "quick=1")
+        chosen = ("--config", f"build={BUILD}", "targets=soak.json,stability.json", "seeds=1..2", "ticks=50000", "quick=1")
         first = self.snakemake(*chosen)
         self.assertEqual(first.returncode, 0, first.stderr)
-        made = {name: (self.folder / "lab/liver" / name).read_bytes() for name in ("soak.txt", "stability.json")}
+        made = {name: (self.folder / "lab/liver" / name).read_bytes() for name in ("soak.json", "stability.json")}
         again = self.snakemake(*chosen)
         self.assertIn("Nothing to be done", again.stdout + again.stderr)
         shutil.rmtree(self.folder / "lab")
