@@ -127,6 +127,10 @@ class Cluster(unittest.TestCase):
         done = subprocess.run(words, capture_output=True, text=True, env=self.environment())
         return done.stdout.strip() if done.returncode == 0 else ""
 
+    def began(self):
+        """By the node, which a task writes first, the number of the task."""
+        return {path.read_text().strip(): path.name.split(".")[1] for path in self.folder.glob("began.*")}
+
     def test_a_node_that_dies_changes_no_byte(self):
         whole, nodes = self.one_run(), self.slurm()
         task = self.folder / "task.sh"
@@ -134,9 +138,7 @@ class Cluster(unittest.TestCase):
         job = self.ask("sbatch", "--parsable", "--requeue", f"--array=1-{TASKS}", f"--output={self.folder}/%a.log",
                        f"--chdir={self.folder}", str(task))
         self.assertTrue(job, "sbatch")
-        began = until(lambda: (list(self.folder.glob("began.*")), [])[len(list(self.folder.glob("began.*"))) < 2], "two tasks")
-        where = {path.read_text().strip(): path.name.split(".")[1] for path in began}
-        self.assertEqual(set(where), {"n1", "n2"})
+        where = until(lambda: (found := self.began()).keys() == {"n1", "n2"} and found, "a task on each node")
         nodes[1].send_signal(signal.SIGKILL)
         until(lambda: "down" in self.ask("sinfo", "-h", "-n", "n2", "-o", "%T"), "the node is seen to be dead")
         (self.folder / "go").touch()
