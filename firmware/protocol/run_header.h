@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "model/device_joints.h"
 #include "model/limits.h"
 #include "model/result.h"
 
@@ -41,6 +42,7 @@ struct RunHeader {
   bool simulated = false;       // the device is simulated, the hand may be moved
   bool cannot_grip = false;     // the scene grips, but the device cannot close the jaws
   std::string hand_socket;      // where a simulated device takes hand targets; empty for hardware
+  model::DeviceJoints joints;   // of the device, with its mounting
   std::uint32_t organ_vertices = 0, organ_triangles = 0;
   std::uint32_t tool_vertices = 0, tool_triangles = 0;
   std::vector<Sphere> spheres;       // probe spheres of the tool

@@ -50,6 +50,7 @@ protocol::RunHeader header_of(const RunSetup& run, const protocol::UtcOffset& ut
   header.limits_checksum = run.parts.limits_checksum;
   header.non_rt = run.non_rt;
   header.simulated = hal::registry::is_simulated(*run.parts.device);
+  header.joints = hal::registry::joints_of(run.scene.device);
   header.cannot_grip = admission::cannot_grip(run.scene, device);
   return header;
 }

@@ -11,6 +11,7 @@
 
 #include "hal/can/can_open.h"
 #include "hal/cia402/cia402_delta.h"
+#include "hal/delta/delta_frame.h"
 #include "hal/falcon_usb/falcon_open.h"
 #include "hal/force_dimension/force_dimension_device.h"
 #include "hal/moteus/moteus_delta.h"
@@ -19,14 +20,17 @@
 #include "hal/odrive/odrive_delta.h"
 #include "hal/phantom/phantom_device.h"
 #include "hal/sim/sim_delta.h"
+#include "hal/sim/sim_delta_model.h"
 #include "model/reader/scene_reader.h"
 
 namespace tact::hal::registry {
 namespace {
 
+using model::DeviceJoints;
 using model::DeviceSettings;
 using model::Error;
 using model::Result;
+using model::Vec3;
 using model::reader::Keys;
 
 using Opened = Result<std::unique_ptr<Device>>;
@@ -67,6 +71,41 @@ void visit_can(Keys& k, DeviceSettings& out, bool chosen) {
   visit_section<can::CanSettings, odrive::OdriveSettings, cia402::Cia402Settings>(k, out, chosen);
 }
 
+/// `point_D`: from the frame W of a base that lies on its side to the device's own frame.
+template <typename PointD>
+DeviceJoints mounted_joints(DeviceJoints joints, const DeviceSettings& settings, PointD point_D) {
+  const auto of_W = [&, mounting = mounting_of(settings)](const Vec3& p_W) {
+    return point_D(mounting.point_in_base(p_W));
+  };
+  const Vec3 origin = of_W({});
+  const Vec3 x = of_W({1, 0, 0}) - origin, y = of_W({0, 1, 0}) - origin,
+             z = of_W({0, 0, 1}) - origin;
+  joints.row = {{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}};
+  joints.origin_m = {origin.x, origin.y, origin.z};
+  return joints;
+}
+
+DeviceJoints delta_joints(const delta::DeltaGeometry& g, double middle_m,
+                          const DeviceSettings& settings) {
+  return mounted_joints({.linkage = "delta",
+                         .base_radius_m = g.base_radius_m,
+                         .platform_radius_m = g.platform_radius_m,
+                         .upper_arm_m = g.upper_arm_m,
+                         .forearm_m = g.forearm_m,
+                         .azimuth_rad = g.azimuth_rad},
+                        settings, [&](const Vec3& p) { return delta::point_D(p, middle_m); });
+}
+DeviceJoints sim_joints(const DeviceSettings& settings) {
+  return delta_joints(sim::kGeometry, sim::kMiddle_D_m, settings);
+}
+DeviceJoints can_joints(const DeviceSettings& settings) {
+  const auto& delta = settings.of<can::DeltaSettings>();
+  return delta_joints(delta, delta.middle_m, settings);
+}
+DeviceJoints falcon_joints(const DeviceSettings& settings) {
+  return mounted_joints({.linkage = "falcon"}, settings, falcon::falcon_point_D);
+}
+
 /// A device.
 struct Row {
   std::string_view kind;  // device.kind
@@ -74,17 +113,18 @@ struct Row {
   /// Its sections below [device]; `chosen`: the scene names this kind. Rows next to each other may
   /// share theirs. Null: it has no settings.
   void (*keys)(Keys&, DeviceSettings&, bool chosen) = nullptr;
-  std::span<const UsbPart> usb{};  // what it is when it is plugged in
-  bool simulated = false;          // no hardware: it may be run on simulated time
+  std::span<const UsbPart> usb{};                           // what it is when it is plugged in
+  DeviceJoints (*joints)(const DeviceSettings&) = nullptr;  // null: none are known
+  bool simulated = false;  // no hardware: it may be run on simulated time
 };
 constexpr Row kRows[] = {
-    {"sim-delta", open_sim_delta, visit_section<sim::SimDeviceSettings>, {}, true},
-    {"sim-ideal", open_sim_ideal, nullptr, {}, true},
-    {"can-odrive", opened<odrive::open_can_odrive>, visit_can},
-    {"can-cia402", opened<cia402::open_can_cia402>, visit_can},
-    {"can-moteus", opened<moteus::open_can_moteus>, visit_can},
+    {"sim-delta", open_sim_delta, visit_section<sim::SimDeviceSettings>, {}, sim_joints, true},
+    {"sim-ideal", open_sim_ideal, nullptr, {}, sim_joints, true},
+    {"can-odrive", opened<odrive::open_can_odrive>, visit_can, {}, can_joints},
+    {"can-cia402", opened<cia402::open_can_cia402>, visit_can, {}, can_joints},
+    {"can-moteus", opened<moteus::open_can_moteus>, visit_can, {}, can_joints},
     {"falcon", opened<falcon_usb::open_falcon>, visit_section<falcon::FalconSettings>,
-     falcon::kFalconParts},
+     falcon::kFalconParts, falcon_joints},
     {"force-dimension", opened<force_dimension::open_force_dimension>,
      visit_section<force_dimension::ForceDimensionSettings>, force_dimension::kForceDimensionParts},
     {"phantom", opened<phantom::open_phantom>, visit_section<phantom::PhantomSettings>,
@@ -151,6 +191,11 @@ Result<OpenDevice> open_device(const model::scene::Scene& scene) {
   if (const Mounting mounting = mounting_of(scene.device); mounting != Mounting{})
     return OpenDevice(new MountedDevice(std::move(*device), mounting));
   return OpenDevice(device->release());
+}
+
+DeviceJoints joints_of(const DeviceSettings& settings) {
+  const auto* row = std::ranges::find(kRows, settings.kind, &Row::kind);
+  return row == std::end(kRows) || row->joints == nullptr ? DeviceJoints{} : row->joints(settings);
 }
 
 std::string missing_interface(const DeviceSettings& settings) {

@@ -13,6 +13,7 @@
 #include "hal/device_facts.h"
 #include "hal/lines_settings.h"
 #include "hal/sim/hand_socket.h"
+#include "model/device_joints.h"
 #include "model/result.h"
 #include "model/scene/scene.h"
 
@@ -37,6 +38,9 @@ std::vector<UsbPart> usb_parts();
 
 /// Opens what scene.device names. Set-up only; may take as long as the hardware needs.
 model::Result<OpenDevice> open_device(const model::scene::Scene& scene);
+
+/// How its joint angles follow from where its handle is, with its mounting.
+model::DeviceJoints joints_of(const model::DeviceSettings& settings);
 
 /// The network interface that this device needs, while it is not there or not up; else empty.
 std::string missing_interface(const model::DeviceSettings& settings);

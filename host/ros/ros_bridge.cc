@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "hal/sim/hand_target.h"
+#include "host/ros/joint_angles.h"
 #include "model/io/socket_file.h"
 
 namespace tact::host::ros {
@@ -58,6 +59,7 @@ void RosBridge::add(const LoggedTick& tick) {
   newest_ = tick;
   came_ = Clock::now();
   topics_.write(tick);
+  if (const auto joints = joints_in(run_, tick)) topics_.write(tick, *joints);
 }
 
 std::string RosBridge::move(const ServoPose& pose) const {

@@ -41,6 +41,11 @@ Qos qos_of(bool reliable) {
   return qos;
 }
 
+dds_entity_t topic_of(dds_entity_t participant, const std::string& name,
+                      const dds_topic_descriptor_t& type) {
+  return dds_create_topic(participant, &type, ("rt/" + name).c_str(), nullptr, nullptr);
+}
+
 char* plain(const std::string& text) { return const_cast<char*>(text.c_str()); }  // only read
 
 Header header_of(std::int64_t utc_ns, const std::string& frame) {
@@ -48,6 +53,17 @@ Header header_of(std::int64_t utc_ns, const std::string& frame) {
   return {.stamp = {.sec = static_cast<std::int32_t>(sec),
                     .nanosec = static_cast<std::uint32_t>(utc_ns - sec * model::kSecond_ns)},
           .frame_id = plain(frame)};
+}
+
+Header header_of(const firmware::protocol::LoggedTick& tick, const std::string& frame) {
+  return header_of(tick.due_ns + tick.utc.offset_ns, frame);
+}
+
+dds_sequence_double sequence_of(const std::array<double, 3>& values) {  // only read
+  return {._maximum = 3,
+          ._length = 3,
+          ._buffer = const_cast<double*>(values.data()),
+          ._release = false};
 }
 
 template <typename Out>
@@ -72,39 +88,37 @@ std::optional<Error> RosTopics::open(const RosOptions& options) {
       options.interface);
   const auto domain = static_cast<dds_domainid_t>(options.domain);
   domain_ = dds_create_domain(domain, alone ? kLoopback : bound.c_str());
-  const dds_entity_t participant = dds_create_participant(domain, nullptr, nullptr);
-  if (participant < 0)
+  participant_ = dds_create_participant(domain, nullptr, nullptr);
+  if (participant_ < 0)
     return Error{fmt::format("no DDS on {} ({}); `ip link` says whether it is up",
-                             alone ? "lo" : options.interface, dds_strretcode(-participant))};
+                             alone ? "lo" : options.interface, dds_strretcode(-participant_))};
   name_ = options.name_space;
   frame_ = options.name_space + "_base";
   std::replace(frame_.begin(), frame_.end(), '/', '_');
-  if (make(participant, options.servo)) return std::nullopt;
+  if (make(options.servo)) return std::nullopt;
   return Error{"CycloneDDS makes no topics of " + name_ + "; choose another --namespace"};
 }
 
-bool RosTopics::make(dds_entity_t participant, bool servo) {
+bool RosTopics::make(bool servo) {
   const Qos fast = qos_of(false), sure = qos_of(true);
-  const auto topic = [&](const std::string& name, const dds_topic_descriptor_t& type) {
-    return dds_create_topic(participant, &type, ("rt/" + name).c_str(), nullptr, nullptr);
-  };
   const auto writer = [&](const std::string& name, const dds_topic_descriptor_t& type,
                           const Qos& qos) {
-    return dds_create_writer(participant, topic(name, type), qos.get(), nullptr);
+    return dds_create_writer(participant_, topic_of(participant_, name, type), qos.get(), nullptr);
   };
   pose_ = writer(name_ + "/measured_cp", geometry_msgs_msg_dds__PoseStamped__desc, fast);
   twist_ = writer(name_ + "/measured_cv", geometry_msgs_msg_dds__TwistStamped__desc, fast);
   wrench_ = writer(name_ + "/measured_cf", geometry_msgs_msg_dds__WrenchStamped__desc, fast);
   diagnostics_ = writer("diagnostics", diagnostic_msgs_msg_dds__DiagnosticArray__desc, sure);
   if (servo)
-    servo_ = dds_create_reader(participant,
-                               topic(name_ + "/servo_cp", geometry_msgs_msg_dds__PoseStamped__desc),
-                               fast.get(), nullptr);
+    servo_ = dds_create_reader(
+        participant_,
+        topic_of(participant_, name_ + "/servo_cp", geometry_msgs_msg_dds__PoseStamped__desc),
+        fast.get(), nullptr);
   return std::min({pose_, twist_, wrench_, diagnostics_, servo_ + 1}) > 0;
 }
 
 void RosTopics::write(const firmware::protocol::LoggedTick& tick) {
-  const Header header = header_of(tick.due_ns + tick.utc.offset_ns, frame_);
+  const Header header = header_of(tick, frame_);
   const model::Tool& tool = tick.input.sample.tool;
   const model::Quat& q = tool.orientation;
   const Pose pose{.header = header,
@@ -123,6 +137,23 @@ void RosTopics::write(const firmware::protocol::LoggedTick& tick) {
   static_cast<void>(dds_write(pose_, &pose));
   static_cast<void>(dds_write(twist_, &twist));
   static_cast<void>(dds_write(wrench_, &wrench));
+}
+
+void RosTopics::write(const firmware::protocol::LoggedTick& tick, const JointState& joints) {
+  if (joints_ == 0)
+    joints_ = dds_create_writer(
+        participant_,
+        topic_of(participant_, name_ + "/joint_states", sensor_msgs_msg_dds__JointState__desc),
+        qos_of(false).get(), nullptr);
+  static const std::array<std::string, 3> kNames{"arm_1", "arm_2", "arm_3"};
+  std::array<char*, 3> names{plain(kNames[0]), plain(kNames[1]), plain(kNames[2])};
+  const sensor_msgs_msg_dds__JointState_ out{
+      .header = header_of(tick, frame_),
+      .name = {._maximum = 3, ._length = 3, ._buffer = names.data(), ._release = false},
+      .position = sequence_of(joints.angle_rad),
+      .velocity = sequence_of(joints.rate_radps),
+      .effort = {}};
+  static_cast<void>(dds_write(joints_, &out));
 }
 
 void RosTopics::write(const Diagnostic& diagnostic) {

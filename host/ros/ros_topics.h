@@ -3,6 +3,7 @@
 // a simulated device shall be.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -28,6 +29,11 @@ struct ServoPose {
   double orientation_wxyz[4];
 };
 
+/// sensor_msgs/JointState of three driven joints.
+struct JointState {
+  std::array<double, 3> angle_rad{}, rate_radps{};
+};
+
 /// Where ROS reads that all is well, or not: diagnostic_msgs/DiagnosticStatus.
 struct Diagnostic {
   enum Level : std::uint8_t { kOk = 0, kWarn = 1, kError = 2, kStale = 3 };
@@ -47,6 +53,8 @@ class RosTopics {
 
   /// measured_cp, measured_cv, measured_cf of this tick.
   void write(const firmware::protocol::LoggedTick& tick);
+  /// joint_states of this tick; the topic begins with the first.
+  void write(const firmware::protocol::LoggedTick& tick, const JointState& joints);
   void write(const Diagnostic& diagnostic);
   /// All poses that have come on servo_cp, the newest last.
   void read_servo(const std::function<void(const ServoPose&)>& take);
@@ -54,10 +62,11 @@ class RosTopics {
   const std::string& frame() const { return frame_; }
 
  private:
-  bool make(std::int32_t participant, bool servo);
+  bool make(bool servo);
 
   std::string frame_, name_;
-  std::int32_t domain_ = 0, pose_ = 0, twist_ = 0, wrench_ = 0, diagnostics_ = 0, servo_ = 0;
+  std::int32_t domain_ = 0, participant_ = 0, pose_ = 0, twist_ = 0, wrench_ = 0, diagnostics_ = 0,
+               servo_ = 0, joints_ = 0;
 };
 
 }  // namespace tact::host::ros

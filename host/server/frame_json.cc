@@ -81,8 +81,8 @@ std::string frame_json(const record::Frame& frame, const record::RunHeader& head
 
 std::string scene_json(const record::RunHeader& header) {
   nlohmann::json scene = json_of(header);
-  // Of the PC of tactd, and of no use to a page.
-  for (const char* key : {"hand_socket", "host_name", "overrides"}) scene.erase(key);
+  // Of the PC of tactd and its device, and of no use to a page.
+  for (const char* key : {"hand_socket", "host_name", "joints", "overrides"}) scene.erase(key);
   // Repairs a name with broken UTF-8 instead of throwing.
   return model::io::text_of(scene);
 }

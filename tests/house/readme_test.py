@@ -169,7 +169,7 @@ def tree():
 def blind_rules():
     """Each rule against a breach of it, and against its remedy: the names of those that err."""
     room = "# A room\n## Two  words, `a_b`: [c-d](b.png)\n## Twin\n## Twin\n```\n# Code\n```\n"
-    wide, named = "x" * MAX_COLUMNS, "three headers, model/io, model/reader, firmware/protocol"
+    wide, named = "x" * MAX_COLUMNS, "five headers, model/io, model/reader, firmware/protocol"
     good = ("[a](a/README.md) ![b](a/b.png \"t\") [c](#top) [d](a/README.md#twin-1) `[e](none)` [f](https://g/h)\n"
             "[i](a/README.md#two--words-a_b-c-d) [![j](a/b.png)](a/README.md)\n# Top\n```\n[k](none)\n```\n"
             f"```\n{wide}x\n```\n* [{wide}](a/b.png)\n[{wide}]: https://g/h\n{wide}\n{named}\n")
@@ -197,8 +197,8 @@ def blind_rules():
                 "file that is none": {"hal/a/README.md": "Tests: `hal_a_test`, `c_test.cc`\n"},
                 "file elsewhere": {"hal/a/README.md": "Tests: `hal_a_test`, `tests/hal/b/b_test.cc`\n"},
                 "part that is not named": {f"{whole}/README.md": "".join(f"`{part}/` " for part in [*rooms.PARTS[whole]][1:])},
-                "another number of headers": {"host/README.md": f"Tests: none. {named.replace('three', 'five')}\n"},
-                "room of host is not named": {"host/README.md": "Tests: none. three headers, model/io, firmware/protocol\n"}}
+                "another number of headers": {"host/README.md": f"Tests: none. {named.replace('five', 'three')}\n"},
+                "room of host is not named": {"host/README.md": "Tests: none. five headers, model/io, firmware/protocol\n"}}
     for name, other in rooms_of.items():
         if len(list(breaches({**files, "README.md": good, **other}))) != 1:
             blind.append(name)

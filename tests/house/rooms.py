@@ -45,7 +45,7 @@ ROOMS = {
     "hal/phantom": ["model", "hal", "hal/vendor_sdk"],
     "hal/sim": [*DELTA, "model/io", "hal/threads", "hal/gpio"],
     "hal/list": ["model/io", "hal", "hal/can", "hal/gpio"],
-    "hal/registry": ["model", "hal", "hal/can", "hal/falcon", *DEVICES, "model/reader", "model/scene"],
+    "hal/registry": [*DELTA, "hal/can", "hal/falcon", *DEVICES, "model/reader", "model/scene"],
     "firmware/pc": ["model/io", "hal", "hal/threads", "hal/list"],
     "firmware/gate": ["model", "hal"],
     "firmware/loop": LOOP,
@@ -69,7 +69,7 @@ ROOMS = {
     "host/net": [],
     "host/server": ["model", "model/io", *OPERATOR, "host/record", "host/net", "firmware/protocol"],
     "host/igtl": ["model", "host/pose", "host/tracking", "host/record", "host/net"],
-    "host/ros": ["model", "model/io", "hal/sim", "firmware/protocol"],
+    "host/ros": ["model", "model/io", "hal/delta", "hal/falcon", "hal/sim", "firmware/protocol"],
     "host/run": ["model", "model/io", *OPERATOR, "host/net", "host/record", "host/igtl", "host/server", "hal/sim",
                  "firmware/protocol"],
 }
@@ -134,6 +134,8 @@ PAGE_FOLDERS = {
 SINGLE_HEADERS = {
     **{(f"host/{room}", "model"): {"result.h"} for room in ("tracking", "record", "igtl", "server", "run")},
     ("host/ros", "model"): {"result.h", "time_ns.h"},
+    ("host/ros", "hal/delta"): {"delta_kinematics.h"},
+    ("host/ros", "hal/falcon"): {"falcon_kinematics.h"},
     **{(f"host/{room}", "hal/sim"): {"hand_target.h"} for room in ("ros", "run")},
 }
 # Read and write files, allocate, take their time: no header that LOOP_ROOMS include reaches them.

@@ -7,38 +7,26 @@ import re
 import signal
 import subprocess
 import sys
-import tempfile
 import threading
 import time
-import unittest
 import zlib
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
-sys.path.insert(0, str(ROOT / "tools/client"))
+sys.path[:0] = [str(ROOT / "tools/client"), str(ROOT / "tests/tools")]
 sys.dont_write_bytecode = True
 import numpy as np  # noqa: E402
 import tact  # noqa: E402
+from processes import ProcessCase, until  # noqa: E402
 
 LIVER = ROOT / "model/scenes/liver.toml"
 BUILD = pathlib.Path(sys.argv.pop(1)).resolve()
 DOMAIN = str(os.getpid() % 200)
-MAX_WAIT_S = 120.0  # against a test that hangs
-TOPICS = ("measured_cp", "measured_cv", "measured_cf")
+TOPICS = ("measured_cp", "measured_cv", "measured_cf", "joint_states")
+JOINTS = TOPICS.index("joint_states")
 RECORD = np.dtype([("topic", "u1"), ("sec", "<i4"), ("nanosec", "<u4"), ("values", "<f8", 7)])
 LOOPBACK = ('<CycloneDDS><Domain><General><Interfaces><NetworkInterface name="lo"/></Interfaces><AllowMulticast>false'
             '</AllowMulticast></General><Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>100'
             '</MaxAutoParticipantIndex><Peers><Peer address="127.0.0.1"/></Peers></Discovery></Domain></CycloneDDS>')
-
-
-def until(ask, what):
-    """Its first answer that is true. An event is waited for; the bound is for a test that hangs."""
-    end = time.monotonic() + MAX_WAIT_S
-    while time.monotonic() < end:
-        answer = ask()
-        if answer:
-            return answer
-        time.sleep(0.01)
-    raise AssertionError(f"not seen within {MAX_WAIT_S:g} s: {what}")
 
 
 def expected(ticks):
@@ -54,10 +42,20 @@ def expected(ticks):
 def wrong_values(records, ticks):
     """How many of the seven are not those of the log, bit by bit; a stamp that the log has not counts as seven."""
     known, wrong = expected(ticks), 0
-    for record in records:
+    for record in records[records["topic"] != JOINTS]:
         tick = known[record["topic"]].get(int(record["sec"]) * 10**9 + int(record["nanosec"]))
         wrong += 7 if tick is None else int(np.sum(tick.view("u8") != record["values"].view("u8")))
     return wrong
+
+
+def wrong_joints(records, ticks, states):
+    """How many of joint_states are not the angles (within 1e-9 rad) and rates of `states`, (n, 6); and how many there were."""
+    own = records[records["topic"] == JOINTS]
+    known = dict(zip(tact.utc_ns(ticks).tolist(), states))
+    stamps = own["sec"].astype("i8") * 10**9 + own["nanosec"]
+    right = np.array([known[stamp] for stamp in stamps.tolist()]).reshape(-1, 6)
+    good = np.abs(own["values"][:, :6] - right) <= 1e-9 * np.maximum(1.0, np.abs(right) * [0, 0, 0, 1, 1, 1])
+    return int(np.sum(~good.all(axis=1) | (own["values"][:, 6] != 0))), len(own)
 
 
 def chunk(kind, content):
@@ -66,9 +64,9 @@ def chunk(kind, content):
 
 
 class Growing:
-    """The ticks of a log, written again into another that grows."""
+    """The ticks of a log, or others in their place, written again into another that grows; with changes of its head."""
 
-    def __init__(self, source, path, **changes):
+    def __init__(self, source, path, others=None, **changes):
         self.path, data, at, self.ticks = path, source.read_bytes(), len(tact.MAGIC), []
         while at + tact.CHUNK.size <= len(data) and data[at:at + 8] != tact.SEAL:
             kind, size, _, _ = tact.CHUNK.unpack_from(data, at)
@@ -80,6 +78,8 @@ class Growing:
                 self.head = tact.MAGIC + chunk(kind, json.dumps(head).encode())
             elif kind == tact.TICK:
                 self.ticks.append(chunk(kind, content))
+        if others is not None:
+            self.ticks = [chunk(tact.TICK, tick.tobytes()) for tick in others]
         self.at = 0
 
     def begin(self):
@@ -100,27 +100,11 @@ class Growing:
                 time.sleep(0.002)
 
 
-class Case(unittest.TestCase):
+class Case(ProcessCase):
     peer = (BUILD / "tests/cyclone_peer",)
 
-    def setUp(self):
-        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
-
     def start(self, *arguments, **options):
-        environment = {**os.environ, "CYCLONEDDS_URI": LOOPBACK}
-        process = subprocess.Popen(list(map(str, arguments)), env=environment, **options)
-
-        def end():
-            process.terminate()
-            try:
-                process.wait(timeout=60)
-            except subprocess.TimeoutExpired:
-                process.kill()
-                process.wait()
-            for pipe in filter(None, (process.stdin, process.stdout)):
-                pipe.close()
-        self.addCleanup(end)
-        return process
+        return super().start(*arguments, env={**os.environ, "CYCLONEDDS_URI": LOOPBACK}, **options)
 
     def bridge(self, log, *arguments):
         """tact-ros, and what it has said so far."""
@@ -132,14 +116,26 @@ class Case(unittest.TestCase):
         ends += [reader.join, process.stderr.close]
         return process, lines
 
-    def read(self, count):
-        """A peer that ends when each topic has so many samples, and the file of its records. It has found tact-ros."""
+    def read(self, count, topics=len(TOPICS)):
+        """A peer that ends when each of the first topics has so many samples, and the file of its records, of all topics. It has
+        found tact-ros."""
         out = self.folder / "records"
         with out.open("wb") as file:
-            peer = self.start(*self.peer, DOMAIN, "read", count, stdout=file, stderr=subprocess.PIPE, text=True)
+            peer = self.start(*self.peer, DOMAIN, "read", count, topics, stdout=file, stderr=subprocess.PIPE, text=True)
         self.addCleanup(peer.stderr.close)
         self.assertEqual(peer.stderr.readline(), "matched\n")
         return peer, out
+
+    def follow(self, log, count, topics=len(TOPICS)):
+        """The records of a log that grows, tact-ros, and what it has said."""
+        process, lines = self.bridge(log.path)
+        log.begin()
+        until(lambda: any("ticks/s" in line for line in lines), "the head of the log")
+        log.add(20)  # joint_states begins with its first state
+        peer, out = self.read(count, topics)
+        log.grow_while(peer, out)
+        self.assertEqual(peer.wait(timeout=60), 0, f"{log.at} ticks were written\n" + "".join(lines))
+        return np.frombuffer(out.read_bytes(), RECORD), process, lines
 
     def servo(self):
         peer = self.start(*self.peer, DOMAIN, "servo", stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)

@@ -20,7 +20,8 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
 sys.dont_write_bytecode = True
 SECONDS = int(sys.argv.pop(2)) if len(sys.argv) > 2 else 10
-from bridge import BUILD, LIVER, RECORD, TOPICS, Case, np, tact, until, wrong_values  # noqa: E402
+from bridge import BUILD, LIVER, RECORD, TOPICS, Case, np, tact, until, wrong_joints, wrong_values  # noqa: E402
+from joints import delta_rad, joint_states  # noqa: E402
 from ros_test import BAD, random_pose  # noqa: E402
 
 RATE_HZ, GARBAGE = 1000, 10000
@@ -49,6 +50,7 @@ class FastDds(Case):
     def check_values(self, records, log):
         self.assertEqual(log.damage, "")
         self.assertEqual(wrong_values(records, log.ticks), 0)
+        self.assertEqual(wrong_joints(records, log.ticks, joint_states(log.ticks, delta_rad))[0], 0)
         stamps = tact.utc_ns(log.ticks)
         for number, topic in enumerate(TOPICS):
             own = records[records["topic"] == number]

@@ -16,7 +16,9 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 sys.dont_write_bytecode = True
-from bridge import BUILD, DOMAIN, LIVER, Case, Growing, np, tact, until, wrong_values, RECORD  # noqa: E402
+from bridge import (BUILD, DOMAIN, JOINTS, LIVER, RECORD, Case, Growing, np, tact, until, wrong_joints,  # noqa: E402
+                    wrong_values)
+from joints import delta_rad, falcon_rad, joint_states  # noqa: E402
 
 GOOD = "tact_base 0.01 -0.02 0.03 0.9999500004 0.0099998333 0 0"
 BAD = ["other 0 0 0 1 0 0 0", "- 0 0 0 1 0 0 0", "tact_base nan 0 0 1 0 0 0", "tact_base 0 inf 0 1 0 0 0",
@@ -34,15 +36,10 @@ class Ros(Case):
     def test_topics_are_the_log_also_where_it_begins_again(self):
         source, _ = self.simulate("--ticks", 6000)
         log = Growing(source, self.folder / "run.tactlog")
-        process, lines = self.bridge(log.path)
-        peer, out = self.read(1000)
-        log.begin()
-        log.grow_while(peer, out)
-        self.assertEqual(peer.wait(timeout=60), 0, f"{log.at} ticks were written\n" + "".join(lines))
-        records = np.frombuffer(out.read_bytes(), RECORD)
+        records, process, lines = self.follow(log, 1000)
         self.assertEqual(wrong_values(records, tact.read_ticks(source).ticks), 0)
-        self.assertGreaterEqual(len(records), 3000)
-        print(f"{7 * len(records)} values, 0 wrong")
+        self.assertGreaterEqual(len(records), 4000)
+        print(f"{7 * len(records[records['topic'] != JOINTS])} values, 0 wrong")
         self.check_begins_again(log, lines)
         self.check_ctrl_c(process)
 
@@ -57,6 +54,40 @@ class Ros(Case):
         self.assertEqual(peer.wait(timeout=60), 0)
         ticks = tact.read_ticks(self.folder / "source.tactlog").ticks
         self.assertEqual(wrong_values(np.frombuffer(out.read_bytes(), RECORD), ticks), 0)
+
+    def check_joints(self, name, source, states, others=None, **changes):
+        """`states`: what Python computes of the ticks."""
+        ticks = tact.read_ticks(source).ticks if others is None else others
+        records, process, _ = self.follow(Growing(source, self.folder / f"{name}.tactlog", others, **changes), 500)
+        self.assertGreater(np.ptp(states[:, :3], axis=0).min(), 0.01, "each joint moves")
+        wrong, count = wrong_joints(records, ticks, states)
+        self.assertEqual(wrong, 0, f"{name}, of {count}")
+        self.check_ctrl_c(process)
+        print(f"joint_states, {name}: {count} samples, 0 wrong")
+
+    def test_joint_states_are_inverse_kinematics_of_the_pose(self):
+        source, _ = self.simulate("--ticks", 4000)
+        ticks = tact.read_ticks(source).ticks
+        self.check_joints("simulated", source, joint_states(ticks, delta_rad))
+        moved = ticks.copy()  # as a clutch would: tool and handle apart, more and more
+        moved["clutch_shift_m"] = np.outer(np.arange(len(ticks)) / len(ticks), [0.01, -0.02, 0.03])
+        moved["tool_position_m"] += moved["clutch_shift_m"]
+        self.check_joints("clutched", source, joint_states(moved, delta_rad), moved)
+        falcon = {"linkage": "falcon", "row": [[0, 0.2, 0], [0, 0, 0.2], [0.2, 0, 0]], "origin_m": [0, 0, 0.120]}
+        self.check_joints("falcon", source, joint_states(ticks, falcon_rad, scale=5.0), joints=falcon)
+
+    def test_joint_states_of_a_turned_base_with_scaled_motion(self):
+        source, _ = self.simulate("--ticks", 4000, "--set", "device.base_orientation_deg=[10, -20, 30]", "--set",
+                                  "device.base_position_m=[0.02, -0.01, 0.015]", "--set", "device.motion_scale=1.25")
+        mounting = {"rotation_deg": (10, -20, 30), "position_m": (0.02, -0.01, 0.015), "scale": 1.25}
+        self.check_joints("mounted", source, joint_states(tact.read_ticks(source).ticks, delta_rad, **mounting))
+
+    def test_no_joint_states_where_no_joints_are_known(self):
+        source, _ = self.simulate("--ticks", 4000)
+        log = Growing(source, self.folder / "run.tactlog", joints={})
+        records, _, _ = self.follow(log, 1000, topics=JOINTS)
+        self.assertEqual(set(records["topic"].tolist()), {0, 1, 2})
+        self.assertEqual(wrong_values(records, tact.read_ticks(source).ticks), 0)
 
     def served(self, simulated):
         """tact-ros --servo, what it has said, a peer that sends poses, and the socket of the hand that this test plays."""

@@ -83,6 +83,17 @@ class Shards(unittest.TestCase):
             self.shard("--shard", f"{i}/2", "--out", f"part{i}", command=command)
         self.assertIn("solver.version is 1 in one unit and 2 in another", self.refusal("part1", "part2", command=command))
 
+    def test_by_unit_joins_nothing(self):
+        command = ["bash", "-c", 'echo "{\\"seed\\": {}}"']
+        for i in (1, 2):
+            self.shard("--shard", f"{i}/2", "--out", f"part{i}", command=command)
+        self.assertEqual(self.shard("--merge", "part1", "part2", "--by-unit", "--out", "all.json", command=command)[0], 0)
+        self.assertEqual(json.loads((self.folder / "all.json").read_text()), {str(i): {"seed": i} for i in range(1, 6)})
+        self.shard("--out", "text", command=["echo", "{}x"])
+        status, said = self.shard("--merge", "text", "--by-unit", "--out", "all.txt", command=["echo", "{}x"])
+        self.assertEqual(status, 1)
+        self.assertIn("--by-unit is for results of JSON", said)
+
     def test_what_is_made_is_not_made_again(self):
         counted = ["bash", "-c", "echo {} >>count; echo {} >{out}"]
         for _ in range(2):

@@ -17,13 +17,16 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(ROOT / "tests/tools"))
+sys.dont_write_bytecode = True
+from processes import until  # noqa: E402
+
 SHARD, SNAKEFILE = ROOT / "tools/lab/tact-shard", ROOT / "tools/lab/Snakefile"
 BUILD = pathlib.Path(sys.argv.pop(1)).resolve()
-MAX_WAIT_S, TASKS = 300.0, 4
+TASKS = 4
 UNITS = "3000,3500,4000,4500,5000,5500"
 CONFIG = """
 ClusterName=test
@@ -60,17 +63,6 @@ hostname >{folder}/began.$SLURM_ARRAY_TASK_ID.$SLURM_RESTART_COUNT
 until [ -e {folder}/go ]; do sleep 0.1; done
 exec {command} --shard $SLURM_ARRAY_TASK_ID/{tasks} --out {folder}/part$SLURM_ARRAY_TASK_ID -- {unit}
 """
-
-
-def until(ask, what):
-    """Its first answer that is true. An event is waited for; the bound is for a test that hangs."""
-    end = time.monotonic() + MAX_WAIT_S
-    while time.monotonic() < end:
-        answer = ask()
-        if answer:
-            return answer
-        time.sleep(0.2)
-    raise AssertionError(f"not seen within {MAX_WAIT_S:g} s: {what}")
 
 
 def run(*words, **options):
@@ -135,6 +127,10 @@ class Cluster(unittest.TestCase):
         done = subprocess.run(words, capture_output=True, text=True, env=self.environment())
         return done.stdout.strip() if done.returncode == 0 else ""
 
+    def began(self):
+        """By the node, which a task writes first, the number of the task."""
+        return {path.read_text().strip(): path.name.split(".")[1] for path in self.folder.glob("began.*")}
+
     def test_a_node_that_dies_changes_no_byte(self):
         whole, nodes = self.one_run(), self.slurm()
         task = self.folder / "task.sh"
@@ -142,9 +138,7 @@ class Cluster(unittest.TestCase):
         job = self.ask("sbatch", "--parsable", "--requeue", f"--array=1-{TASKS}", f"--output={self.folder}/%a.log",
                        f"--chdir={self.folder}", str(task))
         self.assertTrue(job, "sbatch")
-        began = until(lambda: (list(self.folder.glob("began.*")), [])[len(list(self.folder.glob("began.*"))) < 2], "two tasks")
-        where = {path.read_text().strip(): path.name.split(".")[1] for path in began}
-        self.assertEqual(set(where), {"n1", "n2"})
+        where = until(lambda: (found := self.began()).keys() == {"n1", "n2"} and found, "a task on each node")
         nodes[1].send_signal(signal.SIGKILL)
         until(lambda: "down" in self.ask("sinfo", "-h", "-n", "n2", "-o", "%T"), "the node is seen to be dead")
         (self.folder / "go").touch()
@@ -172,10 +166,10 @@ class Cluster(unittest.TestCase):
                          {"mesh": "1", "shard": "10", "merge": "5", "condense": "1", "chart": "1", "plan": "1"})
 
     def test_the_snakefile_makes_each_file_once(self):
-        chosen = ("--config", f"build={BUILD}", "targets=soak.txt,stability.json", "seeds=1..2", "ticks=2000", "quick=1")
+        chosen = ("--config", f"build={BUILD}", "targets=soak.json,stability.json", "seeds=1..2", "ticks=50000", "quick=1")
         first = self.snakemake(*chosen)
         self.assertEqual(first.returncode, 0, first.stderr)
-        made = {name: (self.folder / "lab/liver" / name).read_bytes() for name in ("soak.txt", "stability.json")}
+        made = {name: (self.folder / "lab/liver" / name).read_bytes() for name in ("soak.json", "stability.json")}
         again = self.snakemake(*chosen)
         self.assertIn("Nothing to be done", again.stdout + again.stderr)
         shutil.rmtree(self.folder / "lab")

@@ -18,7 +18,8 @@ import urllib.parse
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 sys.dont_write_bytecode = True
-from stations import BUILD, MAX_WAIT_S, UP, Case, get, until  # noqa: E402
+from stations import BUILD, UP, Case, get  # noqa: E402
+from processes import MAX_WAIT_S, until  # noqa: E402
 
 FREE_RUN_TICKS = 200000
 

@@ -19,7 +19,8 @@ import urllib.parse
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 sys.dont_write_bytecode = True
-from stations import METRICS, ROOT, UP, Case, get, until  # noqa: E402
+from stations import METRICS, ROOT, UP, Case, get  # noqa: E402
+from processes import until  # noqa: E402
 
 sys.path.insert(0, str(ROOT / "tools/client"))
 import tact  # noqa: E402

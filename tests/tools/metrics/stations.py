@@ -1,19 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the tests of tact-metrics share: stations, and how an event is waited for."""
+"""What the tests of tact-metrics share: stations, and what an exporter answers."""
 import pathlib
-import signal
 import subprocess
 import sys
-import tempfile
-import time
-import unittest
 import urllib.request
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(ROOT / "tests/tools"))
+sys.dont_write_bytecode = True
+from processes import ProcessCase  # noqa: E402
+
 METRICS = ROOT / "tools/metrics"
 LIVER = ROOT / "model/scenes/liver.toml"
 BUILD = pathlib.Path(sys.argv.pop(1)).resolve()
-MAX_WAIT_S = 240.0
 UP = r"tact_up\{.*\} 1\.0"
 
 
@@ -22,38 +21,12 @@ def get(url, accept="text/plain"):
         return answer.read().decode(), answer.headers["Content-Type"]
 
 
-def until(ask, what):
-    """Its first answer that is true. An event is waited for; the bound is for a test that hangs."""
-    end = time.monotonic() + MAX_WAIT_S
-    while time.monotonic() < end:
-        answer = ask()
-        if answer:
-            return answer
-        time.sleep(0.1)
-    raise AssertionError(f"not seen within {MAX_WAIT_S:g} s: {what}")
-
-
-class Case(unittest.TestCase):
-    def setUp(self):
-        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
-
+class Case(ProcessCase):
     def start(self, *arguments, **options):
-        options.setdefault("stderr", subprocess.DEVNULL)
-        process = subprocess.Popen(list(map(str, arguments)), stdout=subprocess.PIPE, text=True, **options)
-
-        def end():
-            for name in (signal.SIGCONT, signal.SIGTERM):
-                process.send_signal(name)
-            try:
-                process.communicate(timeout=60)
-            except subprocess.TimeoutExpired:
-                process.kill()
-                process.communicate()
-        self.addCleanup(end)
-        return process
+        return super().start(*arguments, **{"stdout": subprocess.PIPE, "stderr": subprocess.DEVNULL, "text": True, **options})
 
     def tactd(self, number, *arguments):
-        return self.start(BUILD / "tactd", LIVER, "--socket", self.folder / f"{number}.sock", "--no-black-box", *arguments)
+        return self.start_tactd(BUILD, LIVER, self.folder / f"{number}.sock", *arguments, stdout=subprocess.PIPE)
 
     def exporter(self, *arguments):
         """The process, and the address that it answers."""
