@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page in Chromium on a phone, 390 x 844: is the tool in the first view of each scene, wherever its script goes?
+// The page in Chromium on a phone, 390 x 844: is the tool in the first view of each scene, and in what the eyes of a
+// tracked operator see, wherever its script goes?
 //
 //     node tests/browser/phone_test.mjs BUILD_DIR   (tactd, tact-view, page/)
 //
 // CHROMIUM names another browser. Pictures: BUILD_DIR/page_phone_SCENE.png. Prints "N passed, M failed"; exit status 0 or 1.
 import { join } from "node:path";
 
+import { description } from "./recorded_looks.mjs";
 import { build, check, folder, play, start_browser, start_tactd, start_view, stop, waits } from "./stage.mjs";
 
 const phone = { width: 390, height: 844 };
@@ -28,17 +30,17 @@ const least_inside_px = (page, seconds) =>
     return least_px;
   }, seconds);
 
-async function check_scene(browser, scene) {
-  const socket = join(folder, `${scene}.sock`);
-  const { viewer, url } = await start_view(["--socket", socket]);
+async function check_scene(browser, scene, name = scene, options = [], watched_s = kWatched_s) {
+  const socket = join(folder, `${name.replaceAll(" ", "_")}.sock`);
+  const { viewer, url } = await start_view(["--socket", socket, ...options]);
   const page = await browser.newPage({ viewport: phone });
   await page.goto(url);
   await waits(page, () => document.getElementById("notice").textContent.includes("waiting for tactd"));
   const tactd = start_tactd(scene, socket);
-  const inside_px = await least_inside_px(page, kWatched_s);
-  check(`the tool of ${scene} is in the picture of a phone`, inside_px > 20, `${inside_px.toFixed(0)} px inside`);
+  const inside_px = await least_inside_px(page, watched_s);
+  check(`the tool of ${name} is in the picture of a phone`, inside_px > 20, `${inside_px.toFixed(0)} px inside`);
   check("... and the picture is on the screen", (await page.locator("#view").boundingBox()).y + 240 < phone.height);
-  await page.screenshot({ path: join(build, `page_phone_${scene}.png`) });
+  await page.screenshot({ path: join(build, `page_phone_${name.replaceAll(" ", "_")}.png`) });
   await page.close();
   await stop(tactd);
   await stop(viewer);
@@ -47,5 +49,6 @@ async function check_scene(browser, scene) {
 await play(async () => {
   const browser = await start_browser();
   for (const scene of ["gum", "liver", "skin", "maintenance"]) await check_scene(browser, scene);
+  await check_scene(browser, "maintenance", "maintenance with its tracker", ["--tracking", description], 12); // he looks away
   await browser.close();
 });

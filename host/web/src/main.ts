@@ -177,7 +177,7 @@ function draw(now_ms: number): void {
 }
 
 function show(frame: Frame): void {
-  organ?.show(frame.contacts, frame.patch);
+  organ?.show(frame);
   tool?.show(frame);
   stage.keep_in_view(frame.tool_position_m);
 }
@@ -257,6 +257,7 @@ const numbers = {
   get frames() { return connection.frames; },
   get bytes() { return connection.bytes; },
   get largest_frame_bytes() { return connection.largest_frame_bytes; },
+  get drawn_ratios() { return organ && shown ? organ.drawn_ratios(shown) : []; },
   get moved_vertices() { return organ?.deformed.moved ?? 0; },
   get cut_triangles() { return organ?.cut_triangles ?? 0; },
   get cut_gap_m() { return organ?.cut_gap_m ?? 0; },

@@ -1,51 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Deep presses: no triangle of the drawn surface turns over.
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { Deformer } from "../src/organ/deform";
 import { FoldGuard } from "../src/organ/fold_guard";
-import type { Contact, Vec } from "../src/link/protocol";
+import type { Contact } from "../src/link/protocol";
+import { organ, kPitch_m, rings_m, vector, with_normals, type Surface } from "./surfaces";
 
-const kPitch_m = 0.001;
 const kTip_m = 0.004;
 const kDeep_m = 0.02; // five radii, beyond every shipped law
-
-interface Surface {
-  vertex_m: Float32Array;
-  triangle: Uint32Array;
-  normal: Float32Array;
-}
-
-function with_normals(vertex_m: Float32Array, triangle: Uint32Array): Surface {
-  const normal = new Float32Array(vertex_m.length);
-  for (let t = 0; t < triangle.length; t += 3) {
-    const [a, b, c] = [0, 1, 2].map((k) => 3 * triangle[t + k]);
-    for (let i = 0; i < 3; ++i) {
-      const [j, k] = [(i + 1) % 3, (i + 2) % 3];
-      const n =
-        (vertex_m[b + j] - vertex_m[a + j]) * (vertex_m[c + k] - vertex_m[a + k]) -
-        (vertex_m[b + k] - vertex_m[a + k]) * (vertex_m[c + j] - vertex_m[a + j]);
-      for (const v of [a, b, c]) normal[v + i] += n;
-    }
-  }
-  for (let v = 0; v < normal.length; v += 3) {
-    const length = Math.hypot(normal[v], normal[v + 1], normal[v + 2]);
-    for (let i = v; i < v + 3; ++i) normal[i] /= length;
-  }
-  return { vertex_m, triangle, normal };
-}
-
-function liver(): Surface {
-  const vertex_m: number[] = [];
-  const triangle: number[] = [];
-  for (const line of readFileSync("../../model/scenes/meshes/liver_3116.obj", "utf8").split("\n")) {
-    const [kind, ...words] = line.trim().split(/\s+/);
-    if (kind === "v") vertex_m.push(...words.map((word) => Number(word) * 1e-3));
-    if (kind === "f") triangle.push(...words.map((word) => parseInt(word) - 1));
-  }
-  return with_normals(new Float32Array(vertex_m), new Uint32Array(triangle));
-}
 
 /** A hill of 15 mm radius, a vertex each millimetre. */
 function hill(): Surface {
@@ -63,20 +26,6 @@ function hill(): Surface {
   return with_normals(new Float32Array(vertex_m), new Uint32Array(triangle));
 }
 
-/** A ball's indentation: round in the contact area, then as a half-space under a disc. */
-function rings(depth_m: number): number[] {
-  const touch_m = 0.97 * kTip_m;
-  return Array.from({ length: 32 }, (_, j) => {
-    const r_m = j * kPitch_m;
-    if (r_m <= touch_m) return depth_m - kTip_m + Math.sqrt(kTip_m ** 2 - r_m ** 2);
-    return ((2 * depth_m) / Math.PI) * Math.asin(touch_m / r_m) * (1 - (j / 31) ** 4);
-  });
-}
-
-function vector(from: Float32Array, v: number): Vec {
-  return [from[3 * v], from[3 * v + 1], from[3 * v + 2]];
-}
-
 function contact(surface: Surface, vertex: number, depth_m: number): Contact {
   return {
     contact: 0,
@@ -85,7 +34,7 @@ function contact(surface: Surface, vertex: number, depth_m: number): Contact {
     normal: vector(surface.normal, vertex),
     shift_m: [0, 0, 0],
     depth_m,
-    profile_m: rings(depth_m),
+    profile_m: rings_m(depth_m, kTip_m),
     tilt: [0, 0, 0],
   };
 }
@@ -118,7 +67,7 @@ function pressed(surface: Surface, deformer: Deformer, contacts: Contact[]): { f
 }
 
 for (const [name, surface, step] of [
-  ["the liver", liver(), 13],
+  ["the liver", organ("liver_3116"), 13],
   ["a hill of fine surface", hill(), 7],
 ] as const) {
   test(`Pressed deeply, ${name} has no triangle that turned over`, () => {
@@ -134,7 +83,7 @@ for (const [name, surface, step] of [
 }
 
 test("An indentation that folds nothing stays as the law says, to the last bit", () => {
-  const surface = liver();
+  const surface = organ("liver_3116");
   const out_m = surface.vertex_m.slice();
   for (let i = 2; i < out_m.length; i += 3) out_m[i] *= 0.98;
   const before_m = out_m.slice();

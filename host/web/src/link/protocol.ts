@@ -29,6 +29,23 @@ export interface Frame extends FrameFields {
   patch?: Patch;
 }
 
+/** A sphere of the tool where it is now. */
+export interface Ball {
+  centre_m: Vec;
+  radius_m: number;
+}
+
+/** c = p + R offset, each. */
+export function balls_of({ tool_position_m: p, tool_orientation }: Frame, spheres: readonly Sphere[]): Ball[] {
+  const [w, x, y, z] = tool_orientation;
+  return spheres.map(({ radius_m, offset_m: o }) => {
+    // R o = o + 2 w (q x o) + 2 q x (q x o)
+    const u = cross([x, y, z], o);
+    const v = cross([x, y, z], u);
+    return { radius_m, centre_m: [0, 1, 2].map((i) => p[i] + o[i] + 2 * (w * u[i] + v[i])) as Vec };
+  });
+}
+
 /** Since the loop started. */
 export function time_s_of(frame: Frame): number {
   return frame.time_ns * 1e-9;
@@ -166,6 +183,10 @@ export function split_meshes(scene: Scene, bytes: ArrayBuffer): { organ: Mesh; t
 
 export function length_of(v: Vec): number {
   return Math.hypot(v[0], v[1], v[2]);
+}
+
+export function cross(a: Vec, b: Vec): Vec {
+  return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 }
 
 export function dot(a: Vec, b: Vec): number {

@@ -14,13 +14,21 @@
 // A mass-spring tissue names its displaced vertices itself (patch.ts).
 // Indentations of several contacts add up, as tactd sends each sphere's own: beside the others it is smaller
 // than its depth. Of their sideways shifts, which are not each its own, the larger is shown. Where
-// the sum would fold the surface over, its steepest parts are spread (fold_guard.ts).
+// the sum would fold the surface over, its steepest parts are spread (fold_guard.ts). Where triangles are too wide for
+// the tip, or the sum is less than what presses, the surface goes below the spheres (tip_fit.ts).
 
 import { FoldGuard } from "./fold_guard";
 import type { Moved } from "./patch";
 import { Profile } from "./profile";
+import { TipFit } from "./tip_fit";
 import { smoothstep } from "../scene/smoothstep";
-import type { Contact } from "../link/protocol";
+import { kContactInside, type Ball, type Contact } from "../link/protocol";
+
+/** What presses, and the triangles that it has cut: they cover nothing. */
+export interface Tool {
+  balls: readonly Ball[]; // by number of the contact
+  cut: ReadonlySet<number>;
+}
 
 export interface Deformed {
   moved: number; // vertices that moved by more than a micrometre
@@ -28,6 +36,8 @@ export interface Deformed {
 }
 
 const kTaperStart = 0.7; // of the reach, as the rings themselves have it
+const kMaxFits = 10; // of surface to spheres, each followed by the fold guard
+const kFitted_m = 1e-5;
 
 /** u + tilt, but a tilted surface does not rise out of an indentation. */
 function no_further_than_0(u_m: number, lean_m: number): number {
@@ -37,6 +47,7 @@ function no_further_than_0(u_m: number, lean_m: number): number {
 export class Deformer {
   private readonly profile: Profile;
   private readonly guard: FoldGuard;
+  private readonly tips: TipFit;
   private was_moved = false;
   /** Length of each vertex's displacement, m. */
   readonly travel_m: Float32Array;
@@ -50,27 +61,43 @@ export class Deformer {
     triangle: Uint32Array,
   ) {
     this.guard = new FoldGuard(rest_m, triangle);
+    this.tips = new TipFit(rest_m, triangle);
     this.profile = new Profile(profile_points, profile_pitch_m);
     this.travel_m = new Float32Array(rest_m.length / 3);
     this.sideways_m = new Float32Array(rest_m.length);
   }
 
   /** Writes moved vertices to out_m. False when it left everything as it was. */
-  apply(contacts: readonly Contact[], moved: Moved | null, out_m: Float32Array, result: Deformed): boolean {
+  apply(
+    contacts: readonly Contact[],
+    moved: Moved | null,
+    out_m: Float32Array,
+    result: Deformed,
+    tool: Tool = { balls: [], cut: new Set() },
+  ): boolean {
     result.moved = 0;
     result.most_m = 0;
     const anything = contacts.length > 0 || (moved !== null && moved.vertex.length > 0);
     if (!anything && !this.was_moved) return false;
     out_m.set(this.rest_m);
-    this.travel_m.fill(0);
     if (moved) this.place(moved, out_m);
     else this.press(contacts, out_m);
-    for (const travel_m of this.travel_m) {
+    for (let i = 0; i < kMaxFits && this.fit(contacts, tool, out_m) > kFitted_m; ++i) this.guard.hold(out_m);
+    this.measure(out_m, result);
+    this.was_moved = anything;
+    return true;
+  }
+
+  private measure(out_m: Float32Array, result: Deformed): void {
+    for (let i = 0; i < out_m.length; i += 3) {
+      const dx = out_m[i] - this.rest_m[i];
+      const dy = out_m[i + 1] - this.rest_m[i + 1];
+      const dz = out_m[i + 2] - this.rest_m[i + 2];
+      const travel_m = Math.sqrt(dx * dx + dy * dy + dz * dz);
+      this.travel_m[i / 3] = travel_m;
       if (travel_m > 1e-6) ++result.moved;
       if (travel_m > result.most_m) result.most_m = travel_m;
     }
-    this.was_moved = anything;
-    return true;
   }
 
   private place(moved: Moved, out_m: Float32Array): void {
@@ -81,7 +108,6 @@ export class Deformer {
       out_m[3 * v] += dx;
       out_m[3 * v + 1] += dy;
       out_m[3 * v + 2] += dz;
-      this.travel_m[v] = Math.sqrt(dx * dx + dy * dy + dz * dz);
     }
   }
 
@@ -90,12 +116,20 @@ export class Deformer {
     for (const contact of contacts) this.indent(contact, out_m);
     for (let i = 0; i < out_m.length; ++i) out_m[i] += this.sideways_m[i];
     this.guard.hold(out_m);
-    for (let i = 0; i < out_m.length; i += 3) {
-      const dx = out_m[i] - this.rest_m[i];
-      const dy = out_m[i + 1] - this.rest_m[i + 1];
-      const dz = out_m[i + 2] - this.rest_m[i + 2];
-      this.travel_m[i / 3] = Math.sqrt(dx * dx + dy * dy + dz * dz);
+  }
+
+  /** Below each sphere that presses. Returns by how much the surface went down at most, m. */
+  private fit(contacts: readonly Contact[], { balls, cut }: Tool, out_m: Float32Array): number {
+    if (balls.length === 0) return 0;
+    const moved = this.guard.find_moved(out_m);
+    const triangles = cut.size > 0 ? moved.filter((t) => !cut.has(t)) : moved;
+    let most_m = 0;
+    for (const { contact, state, depth_m, normal } of contacts) {
+      const ball = balls[contact];
+      if (!ball || state === kContactInside || !(depth_m > 0)) continue;
+      most_m = Math.max(most_m, this.tips.sink(ball, normal, depth_m, triangles, out_m));
     }
+    return most_m;
   }
 
   /** d = -n u, added; s w, where it is the largest. */

@@ -8,7 +8,7 @@ import { look_material, paint } from "../scene/look";
 import { organ_material, piece_tints, vertex_tints, type Material } from "../scene/material";
 import type { Target } from "../scene/outside";
 import { Cuts, decode_moved } from "./patch";
-import type { Mesh, Patch, Scene, Contact, Vec } from "../link/protocol";
+import { balls_of, kContactInside, type Frame, type Mesh, type Scene, type Sphere, type Vec } from "../link/protocol";
 import { Wound } from "./wound";
 
 // Factors on the baked colour of the tissue (look.ts).
@@ -16,6 +16,9 @@ const kFlesh = new THREE.Color(1.06, 1.06, 1.06);
 const kDark = new THREE.Color(0.8, 0.76, 0.78);
 const kPale = new THREE.Color(1.16, 1.45, 1.4);
 const kPale_m = 0.012; // displacement at which the tissue looks fully pale
+
+const kAbove_m = 0.03; // whence a sphere's depth is looked at
+const kLeastPress_m = 0.001;
 
 /** Smooth, repeatable unevenness of colour, -1 .. 1; a few waves are enough for an organ. */
 function mottle(x_m: number, y_m: number, z_m: number): number {
@@ -38,11 +41,13 @@ export class OrganView {
   private readonly picture: THREE.Texture;
   private readonly cuts = new Cuts();
   private readonly wound: Wound;
+  private readonly spheres: readonly Sphere[];
 
   constructor(
     private readonly mesh: Mesh,
     scene: Scene,
   ) {
+    this.spheres = scene.spheres;
     this.made_of = organ_material(scene, mesh);
     this.picture = paint(this.made_of.look);
     const position = new THREE.BufferAttribute(mesh.vertex_m.slice(), 3);
@@ -91,6 +96,19 @@ export class OrganView {
     return [box.min.toArray(), box.max.toArray()];
   }
 
+  /** Of each sphere that presses in this frame: depth of the drawn surface along the normal through it, by its own. */
+  drawn_ratios(frame: Frame): number[] {
+    const balls = balls_of(frame, this.spheres);
+    return frame.contacts.flatMap(({ contact, state, depth_m, normal }) => {
+      if (state === kContactInside || depth_m < kLeastPress_m) return [];
+      const outward = new THREE.Vector3(...normal).normalize();
+      const lowest_m = new THREE.Vector3(...balls[contact].centre_m).addScaledVector(outward, -balls[contact].radius_m);
+      const from_m = lowest_m.addScaledVector(outward, kAbove_m);
+      const [hit] = new THREE.Raycaster(from_m, outward.negate()).intersectObject(this.object, false);
+      return hit ? [1 - (kAbove_m - hit.distance) / depth_m] : [];
+    });
+  }
+
   set wireframe(on: boolean) {
     this.lines.visible = on;
   }
@@ -104,12 +122,14 @@ export class OrganView {
     return this.wound.gap_m;
   }
 
-  show(contacts: readonly Contact[], patch?: Patch): void {
+  show(frame: Frame): void {
+    const { contacts, patch } = frame;
     if (patch && this.cuts.learn(patch)) this.open();
     const position = this.geometry.getAttribute("position") as THREE.BufferAttribute;
     const vertex_m = position.array as Float32Array;
     const moved = patch ? decode_moved(patch) : null;
-    if (!this.deformer.apply(contacts, moved, vertex_m, this.deformed)) return;
+    const tool = { balls: balls_of(frame, this.spheres), cut: this.cuts.triangles };
+    if (!this.deformer.apply(contacts, moved, vertex_m, this.deformed, tool)) return;
     position.needsUpdate = true;
     this.geometry.computeVertexNormals();
     const tint = this.geometry.getAttribute("tint") as THREE.BufferAttribute;

@@ -18,6 +18,7 @@ const kNarrow_aspect = 1.2; // of a phone
 const kInside_ratio = 0.8; // of the way from the middle of the picture to its edge
 const kStepBack_ratio = 1.04;
 const kMaxStepsBack = 60; // to ten times the distance
+const kTurnSteps = 12; // halvings of the way from the gaze to the tool
 const kPole_rad = 0.02; // as near as the view comes to straight down
 const kEyes_deg = 48; // a person sees more at once
 const kEyes_s = 0.15; // in which the eyes' camera goes two thirds of the way to the head
@@ -163,6 +164,7 @@ export class Stage {
     const r = this.home.radius;
     const farther = Math.max(1, kHome_aspect / this.camera.aspect);
     this.at_home = true;
+    if (this.eyes) return; // they have the camera
     if (this.with_operator) {
       this.controls.target.copy(this.home.center).add(new THREE.Vector3(0.17, 0.0, 0.235));
       this.camera.position.copy(this.controls.target).add(new THREE.Vector3(-1.42, 0.95, 0.42));
@@ -180,12 +182,15 @@ export class Stage {
     this.kept_m = place_m;
     if (!place_m || !this.at_home || this.eyes || this.wearer || this.camera.aspect > kNarrow_aspect) return;
     const { position } = this.camera;
-    for (let i = 0; i < kMaxStepsBack; ++i) {
-      this.camera.updateMatrixWorld();
-      const { x, y, z } = new THREE.Vector3(...place_m).project(this.camera);
-      if (z < 1 && Math.max(Math.abs(x), Math.abs(y)) < kInside_ratio) return;
+    for (let i = 0; i < kMaxStepsBack && !this.is_inside(place_m); ++i) {
       position.sub(this.controls.target).multiplyScalar(kStepBack_ratio).add(this.controls.target);
     }
+  }
+
+  private is_inside(place_m: Vec): boolean {
+    this.camera.updateMatrixWorld();
+    const { x, y, z } = new THREE.Vector3(...place_m).project(this.camera);
+    return z < 1 && Math.max(Math.abs(x), Math.abs(y)) < kInside_ratio;
   }
 
   /** As a drag to the right and up, and so many times the distance. False while the view is not the desk's own. */
@@ -224,7 +229,26 @@ export class Stage {
   private see_with(eyes: Eyes, share: number): void {
     this.camera.position.lerp(new THREE.Vector3(...eyes.at_m), share);
     this.looks_at.lerp(new THREE.Vector3(...eyes.towards), share);
-    this.camera.lookAt(this.camera.position.clone().add(this.looks_at));
+    this.look_along(this.looks_at);
+    if (this.kept_m && this.camera.aspect <= kNarrow_aspect && !this.is_inside(this.kept_m)) this.turn_to(this.kept_m);
+  }
+
+  private look_along(direction: THREE.Vector3): void {
+    this.camera.lookAt(this.camera.position.clone().add(direction));
+  }
+
+  /** From where the eyes look, by the least turn after which this place is in the picture. */
+  private turn_to(place_m: Vec): void {
+    const to_place = new THREE.Vector3(...place_m).sub(this.camera.position).normalize();
+    const gaze = this.looks_at.clone().normalize();
+    let [outside, inside] = [0, 1];
+    for (let i = 0; i < kTurnSteps; ++i) {
+      const half = 0.5 * (outside + inside);
+      this.look_along(gaze.clone().lerp(to_place, half));
+      if (this.is_inside(place_m)) inside = half;
+      else outside = half;
+    }
+    this.look_along(gaze.lerp(to_place, inside));
   }
 
   /** For the force arrow; tissue and steel bring their light along. */
