@@ -23,7 +23,8 @@ UNIT = re.compile(r"_(?:s|ms|us|m|mm|um|N|Nm|J|W|kg|Hz|rad|deg|radps|mps|mps2|m2
 # Shares, coordinates of a formula, and what has the unit of something else: the word says so.
 PLAIN = {
     "x", "y", "z", "w", "level", "share", "weight", "factor", "fraction", "value", "slope", "integral", "step",
-    "low", "high", "alpha", "lambda", "exponent", "exponent_slope", "softening_exponent", "growth", "along", "across", "steepness", "faded_from", "cell",
+    "exponent_slope", "softening_exponent",
+    "low", "high", "alpha", "lambda", "exponent", "growth", "along", "across", "steepness", "faded_from", "cell",
     "peak", "continuous", "continuous_squared", "mean_square", "periods",  # of a force or a torque; of a period
     "least_transmission", "least_rod_sigma", "limit_tan", "critical_zeta", "f0", "m0", "c2", "c3", "u0",
     "normal", "tilt", "tool_orientation",  # a direction; m/m; w, x, y, z
