@@ -20,13 +20,15 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(DeviceJoints, linkage, base_radi
 }  // namespace model
 namespace firmware::protocol {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Sphere, radius_m, offset_m)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Task, text, place_m, radius_m, by_grip, force_min_N,
+                                                force_max_N, grip_min_ratio, grip_max_ratio, hold_s)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(
     RunHeader, scene_name, scene_hash, overrides, law_name, device_name, revision, host_name,
     began_utc, began_monotonic_ns, utc_max_error_us, utc_error_us, rate_Hz, frame_rate_Hz, limits,
     force_share, force_limit_N, torque_limit_Nm, continuous_force_N, energy_budget_J,
     limits_checksum, non_rt, simulated, cannot_grip, hand_socket, joints, organ_vertices,
     organ_triangles, tool_vertices, tool_triangles, spheres, profile_points, profile_pitch_m,
-    organ_material, tool_material, piece_color_ratio)
+    organ_material, tool_material, piece_color_ratio, tasks)
 
 nlohmann::json json_of(const RunHeader& header) { return header; }
 

@@ -20,6 +20,19 @@ struct Sphere {
   std::array<double, 3> offset_m{};  // tool frame
 };
 
+/// One of an exercise (model/scene/scene_tasks.h).
+struct Task {
+  std::string text;
+  std::array<double, 3> place_m{};
+  double radius_m = 0.0;
+  bool by_grip = false;  // the range of the grip ends it, else that of the force
+  double force_min_N = 0.0, force_max_N = 0.0;
+  double grip_min_ratio = 0.0, grip_max_ratio = 0.0;
+  double hold_s = 0.0;
+};
+
+inline constexpr std::size_t kMaxTasks = 16;
+
 /// Vectors are in frame W. run_header.cc lists the names again, for JSON.
 struct RunHeader {
   std::string scene_name, scene_hash;
@@ -50,8 +63,9 @@ struct RunHeader {
   double profile_pitch_m = 0.0;  // profile point j is at radius j * pitch around the contact point
   std::string organ_material, tool_material;  // appearance: [look] of the scene
   std::vector<std::array<float, 3>>
-      piece_color_ratio;  // connected pieces of the organ with a colour:
-                          // red, green, blue, times the material's
+      piece_color_ratio;    // connected pieces of the organ with a colour:
+                            // red, green, blue, times the material's
+  std::vector<Task> tasks;  // what the viewer asks a person to do, in order
 };
 
 nlohmann::json json_of(const RunHeader& header);

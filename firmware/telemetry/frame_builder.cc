@@ -85,6 +85,17 @@ RunHeader header_of(const model::scene::Scene& scene, const model::scene::Tissue
     put(color, ratio);
     header.piece_color_ratio.push_back(color);
   }
+  static_assert(model::scene::kMaxTasks <= protocol::kMaxTasks);
+  for (const model::scene::Task& task : scene.tasks)
+    header.tasks.push_back({task.text,
+                            {task.place_m.x, task.place_m.y, task.place_m.z},
+                            task.radius_m,
+                            task.by_grip,
+                            task.force_min_N,
+                            task.force_max_N,
+                            task.grip_min_ratio,
+                            task.grip_max_ratio,
+                            task.hold_s});
   return header;
 }
 

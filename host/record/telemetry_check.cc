@@ -80,6 +80,13 @@ std::optional<Error> check_header(const RunHeader& header) {
   for (const auto& color : header.piece_color_ratio)
     for (const float ratio : color)
       if (!std::isfinite(ratio) || ratio < 0.0f) return Error{"a colour is not sensible"};
+  if (header.tasks.size() > firmware::protocol::kMaxTasks)
+    return Error{"there are more tasks than fit"};
+  for (const firmware::protocol::Task& task : header.tasks)
+    for (const double value :
+         {task.place_m[0], task.place_m[1], task.place_m[2], task.radius_m, task.force_min_N,
+          task.force_max_N, task.grip_min_ratio, task.grip_max_ratio, task.hold_s})
+      if (!std::isfinite(value)) return Error{"a task is not sensible"};
   for (const double value :
        {header.profile_pitch_m, header.rate_Hz, header.frame_rate_Hz, header.force_limit_N,
         header.continuous_force_N, header.energy_budget_J}) {

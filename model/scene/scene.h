@@ -23,6 +23,7 @@
 #include "model/reader/keys_fwd.h"
 #include "model/result.h"
 #include "model/scene/law_settings.h"
+#include "model/scene/scene_tasks.h"
 
 namespace tact::model::scene {
 
@@ -76,6 +77,7 @@ struct Scene {
   Vec3 hand_site_m;  // the point at which the simulated hand presses, W
   Vec3 hand_inward;  // its way in, unit, W
   Limits limits;
+  std::vector<Task> tasks;        // of an exercise, in order; no force depends on them
   std::vector<std::string> live;  // keys that may change on hardware while it runs (variant.h)
   double frame_rate_Hz = 0.0;
   std::string hash;              // of text, overrides, meshes and a map that is felt, 16 hex digits

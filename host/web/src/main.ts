@@ -17,13 +17,13 @@ import { Pairs } from "./operator/pairs";
 import { OrganView } from "./organ/organ_view";
 import { Outside } from "./scene/outside";
 import { Plots } from "./panels/plots";
-import { time_s_of } from "./link/protocol";
-import type { FigureFrame, Frame, Mesh, Scene, Status, Vec } from "./link/protocol";
+import { time_s_of, type FigureFrame, type Frame, type Mesh, type Scene, type Status, type Vec } from "./link/protocol";
 import { close_panel, toggle_panel } from "./controls/open_panel";
 import { Recorder } from "./controls/recorder";
 import { save_picture } from "./controls/save_picture";
 import { ScenePicker } from "./controls/scene_picker";
 import { Stage } from "./scene/stage";
+import { TaskList } from "./panels/tasks";
 import { Timeline } from "./controls/timeline";
 import { ToolView } from "./scene/tool_view";
 import { Troubles } from "./panels/troubles";
@@ -40,6 +40,7 @@ const plots = new Plots(by_id, (path) => connection.fetch(path));
 const recorder = new Recorder((path) => connection.fetch(path));
 const news = new News();
 const pairs = new Pairs();
+const tasks = new TaskList();
 
 let scene: Scene | null = null;
 let organ: OrganView | null = null;
@@ -126,10 +127,9 @@ function take_scene(next: Scene, organ_mesh: Mesh, tool_mesh: Mesh): void {
   organ.wireframe = wireframe;
   tool = new ToolView(tool_mesh, next, stage.steel);
   stage.scene.add(organ.object, tool.object);
-  let floor_m = Infinity;
-  for (let i = 2; i < organ_mesh.vertex_m.length; i += 3) floor_m = Math.min(floor_m, organ_mesh.vertex_m[i]);
-  stage.set_home(organ.bounds, floor_m - 0.004);
+  stage.set_home(organ.bounds, organ.floor_m - 0.004);
   hud.scene(next, count_boundary_edges(organ_mesh.triangle));
+  tasks.scene(next);
   plots.spheres = next.spheres.length;
   if (status?.replay) plots.replay_Hz = next.rate_Hz;
   recorder.scene = next.scene_name;
@@ -140,6 +140,7 @@ function take_frame(frame: Frame): void {
   recorder.frame(frame);
   news.frame(performance.now());
   timeline.frame(time_s_of(frame));
+  tasks.frame(frame);
   if (paused) return;
   pairs.frame(frame, operator.there);
   plots.add(frame);
@@ -163,6 +164,7 @@ function draw(now_ms: number): void {
     most_ever_m = Math.max(most_ever_m, organ.deformed.most_m);
   }
   hud.draw(now_ms, stage.fps);
+  if (!paused) tasks.draw();
   const silent_s = news.silence_s(performance.now(), scene?.frame_rate_Hz ?? 60);
   silence_s = status?.link === "replay" ? 0 : silent_s; // a recording may have gaps
   hud.silence(silence_s);

@@ -126,6 +126,7 @@ TEST(Generated, ThePageHasTheTypesOfFrameAndHead) {
   header.overrides = {"law=\"rhombus\""};
   header.spheres.resize(1);
   header.piece_color_ratio.resize(1);
+  header.tasks.resize(1);
   const json scene = json::parse(host::server::scene_json(header));
   std::string text =
       "// SPDX-License-Identifier: Apache-2.0\n"

@@ -49,6 +49,17 @@ export interface Scene {
     offset_m: Vec;
     radius_m: number;
   }[];
+  tasks: {
+    by_grip: boolean;
+    force_max_N: number;
+    force_min_N: number;
+    grip_max_ratio: number;
+    grip_min_ratio: number;
+    hold_s: number;
+    place_m: Vec;
+    radius_m: number;
+    text: string;
+  }[];
   tool_material: string;
   tool_triangles: number;
   tool_vertices: number;

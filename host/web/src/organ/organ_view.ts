@@ -85,6 +85,14 @@ export class OrganView {
     return this.geometry.boundingSphere ?? new THREE.Sphere(new THREE.Vector3(), 0.1);
   }
 
+  /** Lowest z of the undeformed organ. */
+  get floor_m(): number {
+    const { vertex_m } = this.mesh;
+    let floor_m = Infinity;
+    for (let i = 2; i < vertex_m.length; i += 3) floor_m = Math.min(floor_m, vertex_m[i]);
+    return floor_m;
+  }
+
   get target(): Target {
     return { at_m: this.bounds.center, radius_m: 0.5 * this.bounds.radius };
   }
