@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // scene_tasks.h - what an exercise asks of a person, one task after the other. The viewer shows
-// and judges them by the frames of the telemetry; no force depends on one. Set-up code only.
+// and evaluates them by the frames of the telemetry; no force depends on one. Set-up code only.
 #pragma once
 
 #include <optional>

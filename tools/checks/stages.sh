@@ -66,7 +66,7 @@ report_stage() {
   # One a line, without the value of a parameter behind it.
   if [ -n "$flaky" ]; then
     sed 's/ *#.*//; s/^/flaky: /' <<<"$flaky" | tee -a "$counts.flaky" | sed 's/^/           /'
-    grep -A4 -E 'Failure$|^(FAIL|ERROR): |Error: ' "$log" | head -n 12 | sed 's/^/           first try: /'
+    grep -vE '^ok ' "$log" | grep -A4 -E 'Failure$|^FAILED |^(FAIL|ERROR): |Error: ' | head -n 12 | sed 's/^/           first try: /'
   fi
   [ "$status" -eq 0 ] && return
   echo "---- the end of build/logs/$name.log"
