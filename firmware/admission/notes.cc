@@ -11,8 +11,10 @@
 namespace tact::firmware::admission {
 
 bool cannot_grip(const model::scene::Scene& scene, const hal::DeviceInfo& device) {
-  const bool grips = std::ranges::any_of(
-      scene.hand.path, [](const auto& way_point) { return way_point.grip_ratio > 0.0; });
+  const bool grips =
+      std::ranges::any_of(scene.hand.path,
+                          [](const auto& way_point) { return way_point.grip_ratio > 0.0; }) ||
+      std::ranges::any_of(scene.tasks, &model::scene::Task::by_grip);
   const auto& lines = scene.device.of<hal::LinesSettings>();
   const bool has_switch = lines.wired() && lines.grip >= 0;
   return grips && device.grip.kind == hal::GripKind::kNone && !has_switch;

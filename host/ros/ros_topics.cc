@@ -140,11 +140,16 @@ void RosTopics::write(const firmware::protocol::LoggedTick& tick) {
 }
 
 void RosTopics::write(const firmware::protocol::LoggedTick& tick, const JointState& joints) {
-  if (joints_ == 0)
+  if (joints_ == 0) {
     joints_ = dds_create_writer(
         participant_,
         topic_of(participant_, name_ + "/joint_states", sensor_msgs_msg_dds__JointState__desc),
         qos_of(false).get(), nullptr);
+    if (joints_ < 0)
+      fmt::print(stderr, "tact-ros: CycloneDDS makes no {}/joint_states: {}\n", name_,
+                 dds_strretcode(-joints_));
+  }
+  if (joints_ < 0) return;
   static const std::array<std::string, 3> kNames{"arm_1", "arm_2", "arm_3"};
   std::array<char*, 3> names{plain(kNames[0]), plain(kNames[1]), plain(kNames[2])};
   const sensor_msgs_msg_dds__JointState_ out{

@@ -42,7 +42,6 @@ void visit(ParameterVisitor& v, DiscSeriesParameters& p) {
 
 Result<DiscSeries> make_disc_series(const DiscSeriesParameters& p) {
   if (auto wrong = check_meaning("disc_series", p)) return *wrong;
-  if (p.discs < 2 || p.discs > kMaxDiscs) return Error{"disc_series: discs must be 2 .. 31"};
   if (!(p.first_depth_m < p.working_depth_m))
     return Error{
         "disc_series: first_depth_m must be below working_depth_m, at which the last disc is flat"};
@@ -59,8 +58,8 @@ Result<DiscSeries> make_disc_series(const DiscSeriesParameters& p) {
     disc.series_N_per_m = (disc.flat_N - before.flat_N) / (disc.flat_m - before.flat_m);
     if (!(disc.series_N_per_m > before.series_N_per_m))
       return Error{
-          "disc_series: with these exponents a flat disc would leave a softer rest; raise exponent "
-          "or bring exponent_slope nearer to 0"};
+          "disc_series: the stiffness falls where a disc goes flat; raise exponent or bring "
+          "exponent_slope nearer to 0"};
     disc.begin_N = before.flat_N;
     disc.begin_m = before.flat_m;
     disc.begin_J =

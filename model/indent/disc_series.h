@@ -11,8 +11,8 @@
 //     P_i  force at which disc i is flat, N    D_i  depth then, m    k_i   its stiffness, N/m
 //     F_w  force at the depth d_w, N           e, s the exponent is e + s ln(d / d_w)
 //
-// What the words of the source describe, where its formulas make one spring of the stack (X8):
-// each disc that is flat leaves a stiffer rest. The stiffnesses are chosen so that the points where
+// The source describes discs that go flat one after the other, but its formulas give one spring
+// (X8). Here each flat disc leaves a stiffer stack. The stiffnesses are chosen so that the points where
 // discs go flat lie on a power law; between them F is the chord, at most 3 % above it for e = 1.5
 // and loads that differ by 2.2. Below D_1, F = K_1 d; beyond d_w the force is constant. K
 // jumps where a disc goes flat. It cannot pull.

@@ -14,10 +14,10 @@ namespace tact::model::indent {
 namespace {
 
 // Chosen: the force is within 1e-4 of that with half the steps and twice the radii.
-constexpr int kStepsPerLength = 25, kLengths = 14;  // of sqrt(T / k)
+constexpr double kStepsPerLength = 25.0, kLengths = 14.0;  // of sqrt(T / k)
+constexpr double kStep_ratio = 0.1;                        // of the radius, at most
 constexpr int kBisections = 44;
 constexpr int kIntervals = 64;  // of HX-33
-constexpr int kMaxRadii = 400;
 constexpr double kNextRadius_ratio = 1.05;
 constexpr double kFirstRadius_ratio = 0.01;  // of sqrt(2 R d_w), the radius at the working depth
 
@@ -63,11 +63,12 @@ class Solver {
 
   /// Whether a membrane that leaves the tip so comes below the resting surface: w(a) is too small.
   bool crosses(double r_m, double w_m, double slope) const {
-    const double h = length_m_ / kStepsPerLength;
     const auto bend = [this](double r, double w, double s) {
       return pressure_Pa(w) / p_.tension_N_per_m - s / r;
     };
-    for (int i = 0; i < kStepsPerLength * kLengths; ++i) {
+    const double end_m = r_m + kLengths * length_m_;
+    while (r_m < end_m) {  // bounded: each step is a part of the radius, which grows
+      const double h = std::min(length_m_ / kStepsPerLength, kStep_ratio * r_m);
       const double w1 = slope, s1 = bend(r_m, w_m, slope);
       const double w2 = slope + 0.5 * h * s1, s2 = bend(r_m + 0.5 * h, w_m + 0.5 * h * w1, w2);
       const double w3 = slope + 0.5 * h * s2, s3 = bend(r_m + 0.5 * h, w_m + 0.5 * h * w2, w3);
@@ -126,12 +127,15 @@ Result<Membrane> make_membrane(const MembraneParameters& p, double tip_radius_m)
   const Solver solver(p, tip_radius_m);
   std::vector<Press> presses;
   double a_m = kFirstRadius_ratio * std::sqrt(2.0 * tip_radius_m * p.working_depth_m);
+  // The depth is at least a^2 / (2 R), so it gets there.
   while (presses.size() < 2 || presses.back().depth_m < p.working_depth_m) {
-    if (presses.size() == kMaxRadii)
+    const Press next = solver.at(a_m);
+    if (!presses.empty() &&
+        !(next.depth_m > presses.back().depth_m && next.force_N > presses.back().force_N))
       return Error{
-          "membrane: no contact radius reaches working_depth_m; lower working_depth_m, or raise "
-          "foundation_Pa_per_m"};
-    presses.push_back(solver.at(a_m));
+          "membrane: the force does not rise with the depth; lower softening_exponent or raise "
+          "softening_depth_m"};
+    presses.push_back(next);
     a_m *= kNextRadius_ratio;
   }
   return Membrane(law::HermiteTable(p.working_depth_m / (law::kMaxKnots - 1), law::kMaxKnots,

@@ -15,7 +15,7 @@
 // The slope is continuous at a, so the tip has no line load. Solved at set-up for a row of contact
 // radii: w(a) by bisection, HX-31 by Runge-Kutta; between them ln F is linear in ln d. The loop
 // reads a table. Valid to the working depth; beyond, the force is constant. It cannot pull. The
-// surface next to the tip is not drawn: u_1 = 0.
+// law has no profile next to the tip (u_1 = 0); the page draws that of a half-space.
 #pragma once
 
 #include "model/law/hermite_table.h"

@@ -172,7 +172,7 @@ void visit_scene(Keys& k, DeviceKeys device_keys, SceneText& out) {
   k.section("limits", "what the gate lets through",
             [&](Keys& limits) { visit_limits(limits, scene.rate_Hz, scene.limits); });
   k.entries("task", {0, kMaxTasks},
-            "what a person is asked to do, in this order; no force knows it",
+            "what a person is asked to do, in this order; no force depends on it",
             [&](Keys& task) { visit_task(task, scene.tasks.emplace_back()); });
   k.section("telemetry", "what the viewer gets", [&](Keys& telemetry) {
     telemetry.number("frame_rate_Hz", {1.0, 240.0}, "frames for the viewer", scene.frame_rate_Hz);

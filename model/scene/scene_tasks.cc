@@ -21,8 +21,8 @@ constexpr std::array kEnds{
 /// Both keys, with the range that each may have.
 void visit_range(reader::Keys& keys, const char* min_key, const char* max_key, Range range,
                  double& min_value, double& max_value) {
-  keys.number(min_key, range, "of that range", min_value);
-  keys.number(max_key, range, "of the same", max_value);
+  keys.number(min_key, range, "least of the range that ends the task", min_value);
+  keys.number(max_key, range, "most of the range that ends the task", max_value);
   if (!(min_value < max_value))
     keys.refuse({min_key, max_key},
                 fmt::format("{} = {} must be below {} = {}; lower it or raise {}", min_key,
@@ -39,8 +39,8 @@ void visit_task(reader::Keys& keys, Task& task) {
                                       task.text.size(), kMaxTaskText));
   keys.vector("place_m", kPlaces_m, "where on the organ, in W", task.place_m);
   keys.number("radius_m", kRadii_m, "a contact point so near to place_m counts", task.radius_m);
-  keys.number("hold_s", kHolds_s, "without a break within the range that ends it", task.hold_s,
-              Need::kOptional);
+  keys.number("hold_s", kHolds_s, "so long within the range that ends it, in every frame",
+              task.hold_s, Need::kOptional);
   keys.one_of("ends_by", kEnds, [&](std::size_t index) {
     task.by_grip = index == 1;
     if (task.by_grip)
@@ -64,8 +64,8 @@ std::optional<Error> check_tasks(const std::vector<Task>& tasks, const mesh::Sur
         [&task](const Vec3& vertex_m) { return norm(vertex_m - task.place_m); });
     if (const double away_m = norm(nearest_m - task.place_m); away_m > task.radius_m)
       return Error{fmt::format(
-          "{}: place_m of task \"{}\" is {:.4f} m from the organ, more than radius_m = {}; write "
-          "place_m = [{:.4f}, {:.4f}, {:.4f}], its nearest vertex",
+          "{}: place_m of task \"{}\" is {:.4f} m from the organ's nearest vertex, more than "
+          "radius_m = {}; write place_m = [{:.4f}, {:.4f}, {:.4f}], that vertex",
           task.position.where, task.text, away_m, task.radius_m, nearest_m.x, nearest_m.y,
           nearest_m.z)};
   }

@@ -13,13 +13,15 @@ const drawn_ratios = (page) =>
   page.evaluate(async () => {
     const seen = [];
     let last = 0;
-    while (last > 0 || seen.length === 0) {
+    let frames = 0;
+    for (let n = 0; n < 20000 && (last > 0 || seen.length === 0); ++n) {
       await new Promise((done) => requestAnimationFrame(done));
       const ratios = window.tact.drawn_ratios;
       seen.push(...ratios);
       last = ratios.length;
+      frames += last > 0 ? 1 : 0;
     }
-    return { pictures: seen.length, least: Math.min(...seen), most: Math.max(...seen) };
+    return { frames, lifted: last === 0, least: Math.min(...seen), most: Math.max(...seen) };
   });
 
 await play(async () => {
@@ -30,8 +32,9 @@ await play(async () => {
   await page.goto(url);
   await waits(page, () => document.getElementById("notice").textContent.includes("waiting for tactd"));
   const tactd = start_tactd("skin", socket);
-  const { pictures, least, most } = await drawn_ratios(page);
-  check("sees the tip press", pictures > 5, `${pictures} pictures`);
+  const { frames, lifted, least, most } = await drawn_ratios(page);
+  check("sees the tip press", frames > 5, `${frames} frames`);
+  check("sees it lift off", lifted);
   check("draws the surface as deep as it", least >= 0.9 && most < 1.3, `${least.toFixed(3)} .. ${most.toFixed(3)}`);
   await page.close();
   await stop(tactd);

@@ -8,7 +8,7 @@ import { join } from "node:path";
 
 import { check, folder, play, size, start_browser, start_tactd, start_view, stop, waits } from "./stage.mjs";
 
-const words = (page) => page.textContent("#task_words");
+const words = (page) => page.textContent("#task_text");
 
 await play(async () => {
   const browser = await start_browser();
@@ -31,10 +31,10 @@ await play(async () => {
   check("one ends when the hand presses", await waits(page, () => document.querySelectorAll("#task_list .done").length === 1));
   check(
     "... and the next is due",
-    await waits(page, () => document.getElementById("task_words").textContent.startsWith("task 2")),
+    await waits(page, () => document.getElementById("task_text").textContent.startsWith("task 2")),
   );
   check("says which is done", (await page.locator("#task_list li.done").count()) === 1);
-  check("all end", await waits(page, () => document.getElementById("task_words").textContent === "all tasks are done"));
+  check("all end", await waits(page, () => document.getElementById("task_text").textContent === "all tasks are done"));
   await stop(tactd);
   const liver = start_tactd("liver", socket);
   check("a scene without tasks shows none", await waits(page, () => document.getElementById("tasks").hidden));

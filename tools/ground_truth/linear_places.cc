@@ -20,17 +20,15 @@ bool is_same_place(const ToolPoint& a, const ToolPoint& b) {
          dot(a.direction, b.direction) > kSameWay_ratio;
 }
 
-/// The largest error of the linear force at a depth that both have.
-DroppedPlace compare(const ToolPoint& linear, const ToolPoint& finite) {
-  DroppedPlace worst{.place = name_of(linear)};
+/// The largest error of the linear force at a depth that both have; none: they share no depth.
+std::optional<DroppedPlace> compare(const ToolPoint& linear, const ToolPoint& finite) {
+  std::optional<DroppedPlace> worst;
   for (const ToolCase& a : linear.cases)
     for (const ToolCase& b : finite.cases) {
+      if (std::abs(a.depth_m - b.depth_m) > kMaxDepthApart_m) continue;
       const double error_ratio = a.force_N / b.force_N - 1.0;
-      if (std::abs(a.depth_m - b.depth_m) > kMaxDepthApart_m ||
-          std::abs(error_ratio) <= std::abs(worst.linear_error_ratio))
-        continue;
-      worst.depth_m = a.depth_m;
-      worst.linear_error_ratio = error_ratio;
+      if (!worst || std::abs(error_ratio) > std::abs(worst->linear_error_ratio))
+        worst = {name_of(linear), a.depth_m, error_ratio};
     }
   return worst;
 }
@@ -40,15 +38,22 @@ DroppedPlace compare(const ToolPoint& linear, const ToolPoint& finite) {
 model::Result<std::vector<DroppedPlace>> drop_contradicted(ToolReference& linear,
                                                            const ToolReference& finite) {
   std::vector<DroppedPlace> dropped;
+  std::size_t compared = 0;
   std::erase_if(linear.places, [&](const ToolPoint& place) {
     const auto other = std::ranges::find_if(
         finite.places, [&](const ToolPoint& one) { return is_same_place(place, one); });
     if (other == finite.places.end()) return false;
-    const DroppedPlace worst = compare(place, *other);
-    const bool is_contradicted = std::abs(worst.linear_error_ratio) > kMaxLinearError_ratio;
-    if (is_contradicted) dropped.push_back(worst);
+    const auto worst = compare(place, *other);
+    if (!worst) return false;
+    ++compared;
+    const bool is_contradicted = std::abs(worst->linear_error_ratio) > kMaxLinearError_ratio;
+    if (is_contradicted) dropped.push_back(*worst);
     return is_contradicted;
   });
+  if (compared == 0)
+    return Error{
+        "--finite-strain has no place and depth of --tool-reference: solve it with the same "
+        "--sites and --depths"};
   if (linear.places.empty())
     return Error{
         "finite strain contradicts every place of the linear reference by more than 3 %: evaluate "

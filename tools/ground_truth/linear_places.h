@@ -22,7 +22,7 @@ struct DroppedPlace {
 };
 
 /// Keeps the other places, and those that `finite` does not have. Both fit one scene
-/// (reference_fits.h). Error: no place is left.
+/// (reference_fits.h). Error: nothing could be compared, or no place is left.
 model::Result<std::vector<DroppedPlace>> drop_contradicted(ToolReference& linear,
                                                            const ToolReference& finite);
 

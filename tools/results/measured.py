@@ -4,6 +4,7 @@
 Each gives the command, as a person would type it, and the values that READMEs quote.
 """
 import json
+import math
 import pathlib
 import re
 import subprocess
@@ -230,8 +231,12 @@ STRAINS = {"shipped": [], "shipped_small": ["compliance.large_strain=false"], "e
 
 def name_of_place(place):
     """As tools/ground_truth/tool_reference.h has it."""
-    slid_m = max(place.get("slid_m", [0]))
-    return str(place["vertex"]) if place["vertex"] is not None else f"slid {1e3 * slid_m:g} mm" if slid_m else "hand's"
+    if place["vertex"] is not None:
+        return str(place["vertex"])
+    if place.get("tilt_deg", 0.0):
+        return f"tilted {place['tilt_deg']:g}"
+    slid_m = math.hypot(*place.get("slid_m", [0.0]))
+    return f"slid {1e3 * slid_m:.3g} mm" if slid_m else "hand's"
 
 
 def finite_strain():
@@ -255,11 +260,12 @@ def finite_strain():
     place = {name: worst_of(press) for name, press in found["shipped"].items()}
     unfitted = {name: worst_of(press) for solved in ("_places", "_tool") for name, press in pressed(solved).items()
                 if name not in place}
-    linear, finite = (json.loads((ROOT / file).read_text())["places"] for file in (LIVER_TOOL, FINITE_STRAIN[1]))
+    linear, finite = ({name_of_place(one): {case["depth_m"]: case["force_N"] for case in one["cases"]}
+                       for one in json.loads((ROOT / file).read_text())["places"]} for file in (LIVER_TOOL, FINITE_STRAIN[1]))
     return " ".join(command) + " FILE", {
-        "linear": {name_of_place(one): {f"{1e3 * a['depth_m']:g}": 100.0 * (a["force_N"] / b["force_N"] - 1.0)
-                                        for a, b in zip(one["cases"], other["cases"])} for one, other in zip(linear, finite)},
-        "worst_percent": max(abs(one["worst_percent"]) for one in place.values()), "place": place, "unfitted": unfitted,
+        "linear": {at: {f"{1e3 * depth_m:g}": 100.0 * (force_N / finite[at][depth_m] - 1.0) for depth_m, force_N in one.items()}
+                   for at, one in linear.items()},
+        "worst_percent": max(abs(one["worst_percent"]) for one in [*place.values(), *unfitted.values()]), "place": place, "unfitted": unfitted,
         "strain": {name: {at: {f"{1e3 * depth_m:g}": 100.0 * off for depth_m, off in press["off_ratio"]}
                           for at, press in places.items()} for name, places in found.items()}}
 
@@ -277,7 +283,7 @@ def second_solver():
         calculix, fenicsx = (json.loads(output_of(*command, *where, "--json", "--finite-strain", solver))["places"]
                              for solver in ("CalculiX", "FEniCSx"))
         for known, place in zip(calculix, fenicsx):
-            values["place"].setdefault(str(place["vertex"] or "hand's"), {}).update(
+            values["place"].setdefault("hand's" if place["vertex"] is None else str(place["vertex"]), {}).update(
                 {f"{1e3 * a['depth_m']:g}": {
                     "calculix_N": a["force_N"], "fenicsx_N": b["force_N"], "percent": 100.0 * (b["force_N"] / a["force_N"] - 1.0),
                     "sphere_percent": max(100.0 * abs(x - y) / a["force_N"] for x, y in zip(a["sphere_N"], b["sphere_N"]))}

@@ -4,7 +4,6 @@
 Each function takes load(name), the values of tools/results/NAME.json, and gives the lines. A goal
 that was not met says so.
 """
-import math
 import pathlib
 import sys
 import textwrap
@@ -204,7 +203,7 @@ def known_errors(load):
         yield line.replace("\N{NO-BREAK SPACE}", " ")
 
 
-ONE_SPRING = {"disc_stack": ", linear: cannot, it is one spring"}
+ONE_SPRING = {"disc_stack": " (linear: cannot, as it is one spring)"}
 
 
 def tool(load):
@@ -215,7 +214,7 @@ def tool(load):
     yield f"| {' | '.join(head)} |"
     yield "|" + "---|" * len(head)
     for law, value in values.items():
-        rms, own = (math.inf, math.inf) if law in ONE_SPRING else goals_of(law)
+        rms, own = goals_of(law)
         place, worst = max(value["place_rms_percent"].items(), key=lambda at: at[1])
         cells = [f"`{law}`{ONE_SPRING.get(law, '')}", against_goal(value["rms_percent"], rms, f"{value['rms_percent']:.3g} %"),
                  *(against_goal(abs(off), own, f"{off:+.3g} %") for off in value["own_percent_at_mm"].values()),

@@ -69,9 +69,10 @@ test("One task at a time, in their order", () => {
   assert.equal(done([press], [frame(1, 1), frame(1.1, 1), frame(1.2, 1)]), 1);
 });
 
-test("Another run, or a sought recording, begins again", () => {
+test("Another run, or a recording sought back, begins again", () => {
   assert.equal(done([press], [frame(1, 1), frame(0.5, 0)]), 0);
-  assert.equal(done([press], [frame(1, 1), frame(9, 0)]), 0);
+  assert.equal(done([press], [frame(2, 1), frame(1, 0)]), 0);
+  assert.equal(done([press], [frame(1, 1), frame(9, 0)]), 1, "a pause of the frames is no other run");
   assert.equal(done([press], [frame(1, 1), frame(1.5, 0)]), 1);
 });
 

@@ -4,7 +4,7 @@
 
     python3 tests/host/ros/ros_test.py BUILD_DIR
 
-The tick log grows by hand, so no clock matters. Needs python3-numpy. Exit status 0 or 1.
+The tick log grows by hand, so no value depends on a clock. Needs python3-numpy. Exit status 0 or 1.
 """
 import pathlib
 import random

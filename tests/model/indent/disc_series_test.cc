@@ -130,7 +130,7 @@ TEST(DiscSeries, RefusesWhatCannotGoFlatInTurn) {
   };
   EXPECT_NE(message([](auto& p) { p.first_depth_m = 12_mm; }).find("first_depth_m must be below"),
             std::string::npos);
-  EXPECT_NE(message([](auto& p) { p.exponent_slope = 0.5; }).find("a softer rest"),
+  EXPECT_NE(message([](auto& p) { p.exponent_slope = 0.5; }).find("the stiffness falls"),
             std::string::npos);
   EXPECT_NE(message([](auto& p) { p.exponent = 1.0; }), "");
   EXPECT_NE(message([](auto& p) { p.discs = 1; }), "");

@@ -50,11 +50,11 @@ TEST(Membrane, IsTheBesselSolutionOnALinearFoundation) {
   for (int n = 0; n < 20; ++n) {
     MembraneParameters p = kSoft;
     p.softening_exponent = 0.0;
-    p.tension_N_per_m = std::pow(10.0, 2.0 * unit(rng) - 1.0);
-    p.foundation_Pa_per_m = std::pow(10.0, 5.0 + 2.0 * unit(rng));
+    p.tension_N_per_m = n == 0 ? 1e4 : std::pow(10.0, 2.0 * unit(rng) - 1.0);  // a soft, wide one
+    p.foundation_Pa_per_m = n == 0 ? 1e6 : std::pow(10.0, 5.0 + 2.0 * unit(rng));
     const Membrane law = make(p);
     const double length_m = std::sqrt(p.tension_N_per_m / p.foundation_Pa_per_m);
-    for (double a = 0.4_mm; a < 6_mm; a += 0.7_mm) {
+    for (double a = 0.2_mm; a < 6_mm; a += 0.7_mm) {
       const double edge_m = a / kTip_m * length_m * std::cyl_bessel_k(0.0, a / length_m) /
                             std::cyl_bessel_k(1.0, a / length_m);
       const double depth_m = edge_m + 0.5 * a * a / kTip_m;
@@ -69,7 +69,7 @@ TEST(Membrane, IsTheBesselSolutionOnALinearFoundation) {
 }
 
 /// F of a rigid ball on a half-space by its contact radius (C. Segedin, Mathematika 4 (1957) 156).
-TEST(Membrane, ABallIsFollowedWithinTwoPercent) {
+TEST(Membrane, ABallIsFollowedWithinOneAndAHalfPercent) {
   const Membrane law = make();
   const double plane_Pa = 5000.0 / (1.0 - 0.45 * 0.45), R = kTip_m;
   int checked = 0;
@@ -78,7 +78,7 @@ TEST(Membrane, ABallIsFollowedWithinTwoPercent) {
     if (depth_m < 0.3_mm || depth_m > 12_mm) continue;
     ++checked;
     const double force_N = plane_Pa * (0.5 * (a * a + R * R) * log - a * R);
-    EXPECT_NEAR(law.respond(depth_m).force_N / force_N, 1.0, 0.02) << depth_m;
+    EXPECT_NEAR(law.respond(depth_m).force_N / force_N, 1.0, 0.015) << depth_m;
   }
   EXPECT_GT(checked, 100);
 }

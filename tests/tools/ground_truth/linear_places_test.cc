@@ -46,11 +46,21 @@ TEST(LinearPlaces, AnotherTiltWayOrPointIsAnotherPlace) {
     if (what == 0) other.tilt_deg = 20.0;
     if (what == 1) other.direction = {0.1, 0.0, -std::sqrt(0.99)};
     if (what == 2) other.point_m.x = 0.001;
-    auto linear = reference({place({}, {1.0, 2.0})});
-    const auto dropped = drop_contradicted(linear, reference({other}));
+    auto linear = reference({place({}, {1.0, 2.0}), place(7, {1.0, 2.0})});
+    const auto dropped = drop_contradicted(linear, reference({other, place(7, {1.0, 2.0})}));
     ASSERT_TRUE(dropped) << what;
     EXPECT_TRUE(dropped->empty()) << what;
   }
+}
+
+TEST(LinearPlaces, WithoutACommonPlaceAndDepthNothingCountsAsChecked) {
+  auto linear = reference({place(7, {1.0, 2.0})});
+  EXPECT_FALSE(drop_contradicted(linear, reference({place(8, {1.0, 2.0})})));
+  ToolPoint deeper = place(7, {1.0});
+  deeper.cases[0].depth_m = 0.0015;
+  const auto dropped = drop_contradicted(linear, reference({deeper}));
+  ASSERT_FALSE(dropped);
+  EXPECT_NE(dropped.error().message.find("the same --sites and --depths"), std::string::npos);
 }
 
 TEST(LinearPlaces, WithoutAPlaceLeftAnErrorNamesTheOtherCommand) {

@@ -92,7 +92,7 @@ class Shards(unittest.TestCase):
         self.shard("--out", "text", command=["echo", "{}x"])
         status, said = self.shard("--merge", "text", "--by-unit", "--out", "all.txt", command=["echo", "{}x"])
         self.assertEqual(status, 1)
-        self.assertIn("--by-unit is for results of JSON", said)
+        self.assertIn("--by-unit needs JSON", said)
 
     def test_what_is_made_is_not_made_again(self):
         counted = ["bash", "-c", "echo {} >>count; echo {} >{out}"]

@@ -6,7 +6,7 @@
 //
 // Alike displacements leave a triangle as it was at rest, so what is too steep spreads to its
 // neighbours, a pass after the other, and the rest of the indentation stays as the law says. Without a
-// fold it costs one look at each triangle that moved.
+// fold it costs one check of each triangle that moved.
 
 const kMin = 0.1;
 const kMaxPasses = 60; // 20 mm deep: the liver needs 14, a surface of 1 mm edges 40

@@ -61,7 +61,7 @@ export class TipFit {
     if (!normal.every(Number.isFinite) || !(length_of(normal) > 0.5)) return most_m;
     const axes = [...across(normal), normal];
     for (const t of triangles) {
-      if (this.is_far(t, ball, depth_m, out_m) || !this.look(t, ball, axes, out_m)) continue;
+      if (this.is_far(t, ball, depth_m, out_m) || !this.project(t, ball, axes, out_m)) continue;
       for (const [x, y] of kLines) {
         const below_m = ball.radius_m * Math.sqrt(1 - x * x - y * y);
         const w = this.weights(x * ball.radius_m, y * ball.radius_m);
@@ -78,8 +78,8 @@ export class TipFit {
     return false;
   }
 
-  /** Corners of a triangle in the axes of the contact; false: it is beside the sphere, or looks the other way. */
-  private look(t: number, ball: Ball, axes: readonly Vec[], out_m: Float32Array): boolean {
+  /** Corners of a triangle in the axes of the contact; false: it is next to the sphere, or faces away. */
+  private project(t: number, ball: Ball, axes: readonly Vec[], out_m: Float32Array): boolean {
     const c = ball.centre_m;
     for (let k = 0; k < 3; ++k) {
       const v = 3 * this.triangle[3 * t + k];

@@ -2,7 +2,8 @@
 // tasks.ts - the exercise of a scene: which task is due, and which are done, by the frames alone.
 //
 // A task ends when a contact point lies within radius_m of its place while force or grip is in its range, for hold_s
-// without a break. One at a time, in their order. Another run, or a recording that was sought, begins again.
+// in every frame. One at a time, in their order. Another run, or a recording sought back, begins again; a pause of the
+// frames begins the hold again.
 
 import { by_id } from "../document/dom";
 import { is_jump, kContactInside, length_of, time_s_of, type Frame, type Scene } from "../link/protocol";
@@ -19,10 +20,8 @@ export class Exercise {
 
   frame(frame: Frame): void {
     const now_s = time_s_of(frame);
-    if (Number.isFinite(this.time_s) && is_jump(this.time_s, now_s)) {
-      this.done = 0;
-      this.since_s = null;
-    }
+    if (now_s < this.time_s) this.done = 0; // another run, or sought back
+    if (Number.isFinite(this.time_s) && is_jump(this.time_s, now_s)) this.since_s = null;
     this.time_s = now_s;
     const task = this.tasks[this.done];
     if (!task || !is_in_range(frame, task)) {
@@ -82,7 +81,7 @@ export class TaskList {
       if (i === done) children[i].setAttribute("aria-current", "step");
       else children[i].removeAttribute("aria-current");
     }
-    const text = this.tasks[done]?.text;
-    by_id("task_words").textContent = text ? `task ${done + 1} of ${this.tasks.length}: ${text}` : "all tasks are done";
+    const task = this.tasks[done];
+    by_id("task_text").textContent = task ? `task ${done + 1} of ${this.tasks.length}: ${task.text}` : "all tasks are done";
   }
 }
