@@ -12,10 +12,10 @@
 //     F_w  force at the depth d_w, N           e, s the exponent is e + s ln(d / d_w)
 //
 // The source describes discs that go flat one after the other, but its formulas give one spring
-// (X8). Here each flat disc leaves a stiffer stack. The stiffnesses are chosen so that the points where
-// discs go flat lie on a power law; between them F is the chord, at most 3 % above it for e = 1.5
-// and loads that differ by 2.2. Below D_1, F = K_1 d; beyond d_w the force is constant. K
-// jumps where a disc goes flat. It cannot pull.
+// (X8). Here each flat disc leaves a stiffer stack. The stiffnesses are chosen so that the points
+// where discs go flat lie on a power law; between them F is the chord, at most 3 % above it for e =
+// 1.5 and loads that differ by 2.2. Below D_1, F = K_1 d; beyond d_w the force is constant. K jumps
+// where a disc goes flat. It cannot pull.
 #pragma once
 
 #include <array>

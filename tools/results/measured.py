@@ -265,7 +265,8 @@ def finite_strain():
     return " ".join(command) + " FILE", {
         "linear": {at: {f"{1e3 * depth_m:g}": 100.0 * (force_N / finite[at][depth_m] - 1.0) for depth_m, force_N in one.items()}
                    for at, one in linear.items()},
-        "worst_percent": max(abs(one["worst_percent"]) for one in [*place.values(), *unfitted.values()]), "place": place, "unfitted": unfitted,
+        "worst_percent": max(abs(one["worst_percent"]) for one in [*place.values(), *unfitted.values()]),
+        "place": place, "unfitted": unfitted,
         "strain": {name: {at: {f"{1e3 * depth_m:g}": 100.0 * off for depth_m, off in press["off_ratio"]}
                           for at, press in places.items()} for name, places in found.items()}}
 
