@@ -63,7 +63,8 @@ class CanDelta {
 std::string can_arm_name(std::size_t axis, const CanSettings& can);
 /// Of an arm whose positions on the jig differ.
 inline constexpr const char* kMovesOnJig =
-    "moves, or two drives have this node id: let the arms rest on the jig until tactd is ready, and "
+    "moves, or two drives have this node id: let the arms rest on the jig until tactd is ready, "
+    "and "
     "give each drive a node id of its own";
 
 /// What a cause of a lost homing means, with the remedy; empty for other causes.

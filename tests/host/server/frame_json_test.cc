@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -118,7 +119,7 @@ TEST(CheckHeader, RefusesCountsAndNumbersWithoutSense) {
   EXPECT_TRUE(refuses([](record::RunHeader& h) { h.piece_color_ratio = {{0, 0, -1.0f}}; }));
   EXPECT_TRUE(refuses([](record::RunHeader& h) { h.spheres.resize(17); }));
   EXPECT_TRUE(refuses([](record::RunHeader& h) { h.tasks.resize(17); }));
-  EXPECT_TRUE(refuses([](record::RunHeader& h) { h.tasks.emplace_back().hold_s = NAN; }));
+  EXPECT_TRUE(refuses([](record::RunHeader& h) { h.tasks.emplace_back().hold_s = std::nan(""); }));
   EXPECT_TRUE(refuses([](record::RunHeader& h) { h.profile_points = 33; }));
   EXPECT_TRUE(refuses([](record::RunHeader& h) { h.tool_vertices = 4'000'001; }));
   EXPECT_TRUE(refuses([](record::RunHeader& h) { h.rate_Hz = -1.0; }));
