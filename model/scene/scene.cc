@@ -137,7 +137,8 @@ Result<Scene> load_scene(const std::string& path, const std::vector<std::string>
   scene.hand.path = way_points(text.script, scene.tool.spheres, scene.limits, visit);
   if (auto problem = visit.problem()) return *problem;
   if (auto failed = load_meshes(text, scene)) return *failed;
-  if (auto failed = check_tasks(scene.tasks, scene.organ_mesh, scene.limits.force_N))
+  if (auto failed =
+          place_tasks(scene.tasks, scene.organ_mesh, scene.organ.position_m, scene.limits.force_N))
     return *failed;
   put_origin_at(text.script.handle_m, scene);
   vary_on_the_own_organ_only(scene);

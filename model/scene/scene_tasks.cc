@@ -37,7 +37,7 @@ void visit_task(reader::Keys& keys, Task& task) {
   if (task.text.size() > kMaxTaskText)
     keys.refuse({"text"}, fmt::format("the text of a task has {} bytes; write at most {}",
                                       task.text.size(), kMaxTaskText));
-  keys.vector("place_m", kPlaces_m, "where on the organ, in W", task.place_m);
+  keys.vector("place_m", kPlaces_m, "where on the organ, in the frame of its mesh", task.place_m);
   keys.number("radius_m", kRadii_m, "a contact point so near to place_m counts", task.radius_m);
   keys.number("hold_s", kHolds_s, "so long within the range that ends it, in every frame",
               task.hold_s, Need::kOptional);
@@ -52,9 +52,10 @@ void visit_task(reader::Keys& keys, Task& task) {
   });
 }
 
-std::optional<Error> check_tasks(const std::vector<Task>& tasks, const mesh::SurfaceMesh& organ,
-                                 double force_limit_N) {
-  for (const Task& task : tasks) {
+std::optional<Error> place_tasks(std::vector<Task>& tasks, const mesh::SurfaceMesh& organ,
+                                 const Vec3& organ_m, double force_limit_N) {
+  for (Task& task : tasks) {
+    task.place_m += organ_m;
     if (!task.by_grip && task.force_min_N >= force_limit_N)
       return Error{fmt::format(
           "{}: force_min_N = {} of task \"{}\" is not below limits.force_N = {}; write a lower one",
@@ -66,8 +67,8 @@ std::optional<Error> check_tasks(const std::vector<Task>& tasks, const mesh::Sur
       return Error{fmt::format(
           "{}: place_m of task \"{}\" is {:.4f} m from the organ's nearest vertex, more than "
           "radius_m = {}; write place_m = [{:.4f}, {:.4f}, {:.4f}], that vertex",
-          task.position.where, task.text, away_m, task.radius_m, nearest_m.x, nearest_m.y,
-          nearest_m.z)};
+          task.position.where, task.text, away_m, task.radius_m, nearest_m.x - organ_m.x,
+          nearest_m.y - organ_m.y, nearest_m.z - organ_m.z)};
   }
   return std::nullopt;
 }

@@ -19,7 +19,7 @@ inline constexpr std::size_t kMaxTaskText = 120;  // bytes
 
 struct Task {
   std::string text;
-  Vec3 place_m{};         // of the organ, W
+  Vec3 place_m{};         // of the organ; once placed, W
   double radius_m = 0.0;  // a contact point within it counts
   bool by_grip = false;   // the range of the grip ends it, else that of the force
   double force_min_N = 0.0, force_max_N = 0.0;
@@ -31,8 +31,9 @@ struct Task {
 /// The keys of one [[task]].
 void visit_task(reader::Keys& keys, Task& task);
 
-/// Error: a place that no contact can reach, or a force that the gate never lets through.
-std::optional<Error> check_tasks(const std::vector<Task>& tasks, const mesh::SurfaceMesh& organ,
-                                 double force_limit_N);
+/// Places go with the organ. Error: one that no contact can reach, or a force that the gate never
+/// lets through.
+std::optional<Error> place_tasks(std::vector<Task>& tasks, const mesh::SurfaceMesh& organ,
+                                 const Vec3& organ_m, double force_limit_N);
 
 }  // namespace tact::model::scene

@@ -105,9 +105,11 @@ TEST(SceneReference, SaysOfEveryKeyWhatIsAllowedAndWhatItMeans) {
     EXPECT_FALSE(row.allowed.empty() || row.meaning.empty()) << row.section << "." << row.key;
     if (row.allowed.find(" .. ") == std::string::npos || row.key.empty()) continue;
     // A number without a unit is a ratio, a count, or one of these.
-    const std::set<std::string> bare{
-        "growth",   "inward",    "axis",         "sphere",         "node",      "id",
-        "exponent", "direction", "motion_scale", "reference_site", "relaxation"};
+    const std::set<std::string> bare{"growth",    "inward",         "axis",
+                                     "sphere",    "node",           "id",
+                                     "exponent",  "exponent_slope", "softening_exponent",
+                                     "direction", "motion_scale",   "reference_site",
+                                     "relaxation"};
     const bool named = row.key.ends_with("_ratio") || row.allowed.ends_with("whole") ||
                        row.key.starts_with("counts_per_") || row.section == "device.lines" ||
                        bare.contains(row.key);

@@ -23,7 +23,7 @@ std::string complaint(const std::string& keys) {
   return scene ? "" : scene.error().message;
 }
 
-const std::string kPlace = "place_m=[0.0, 0.0, 0.0], radius_m=0.004, ";
+const std::string kPlace = "place_m=[0.026, 0.0, 0.0061], radius_m=0.004, ";
 const std::string kForce = "ends_by=\"force\", force_min_N=0.3, force_max_N=2.0";
 
 TEST(SceneTasks, AShippedSceneHasThree) {
@@ -63,9 +63,9 @@ TEST(SceneTasks, RefusesWhatCannotEnd) {
       {kPlace + "ends_by=\"force\", force_min_N=8.0, force_max_N=9.0", {"limits.force_N = 8"}},
       {kPlace + "ends_by=\"grip\", grip_min_ratio=0.5, grip_max_ratio=1.5",
        {"grip_max_ratio", "0 .. 1"}},
-      {"place_m=[0.0, 0.0, 0.0], radius_m=0.0, " + kForce, {"radius_m", "0.001 .. 0.1 m"}},
+      {"place_m=[0.026, 0.0, 0.0061], radius_m=0.0, " + kForce, {"radius_m", "0.001 .. 0.1 m"}},
       {"place_m=[0.0, 0.0, 0.3], radius_m=0.004, " + kForce,
-       {"from the organ", "write place_m = [", "its nearest vertex"}},
+       {"from the organ's nearest vertex", "write place_m = [", "that vertex"}},
       {kPlace + kForce + ", seconds=3", {"seconds"}},
       {kPlace + kForce + ", hold_s=-1.0", {"hold_s", "0 .. 60 s"}},
   };
