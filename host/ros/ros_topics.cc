@@ -163,6 +163,7 @@ void RosTopics::write(const firmware::protocol::LoggedTick& tick, const JointSta
 
 void RosTopics::write(const Diagnostic& diagnostic) {
   std::vector<diagnostic_msgs_msg_dds__KeyValue_> values;
+  values.reserve(diagnostic.values.size());
   for (const auto& [key, value] : diagnostic.values)
     values.push_back({.key = plain(key), .value = plain(value)});
   const auto count = static_cast<std::uint32_t>(values.size());
@@ -181,6 +182,7 @@ void RosTopics::write(const Diagnostic& diagnostic) {
 
 void RosTopics::read_servo(const std::function<void(const ServoPose&)>& take) {
   std::array<void*, kMaxServo> samples{};
+  // NOLINTNEXTLINE(bugprone-invalid-enum-default-initialization): dds_take() writes what is read
   std::array<dds_sample_info_t, kMaxServo> infos{};
   for (int read = 0; servo_ > 0 && read < kMaxWaiting;) {
     const int count = dds_take(servo_, samples.data(), infos.data(), kMaxServo, kMaxServo);

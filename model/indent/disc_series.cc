@@ -11,10 +11,11 @@ law::LawResponse DiscSeries::respond(double depth_m) const RT_SAFE {
     std::size_t i = 0;
     while (i + 1 < size_ && disc_[i + 1].begin_m <= inside_m) ++i;
     const Disc& at = disc_[i];
-    const double s_m = inside_m - at.begin_m, K = at.series_N_per_m;
-    return law::LawResponse{.force_N = at.begin_N + K * s_m,
-                            .stiffness_N_per_m = K,
-                            .energy_J = at.begin_J + (at.begin_N + 0.5 * K * s_m) * s_m};
+    const double s_m = inside_m - at.begin_m, stiffness_N_per_m = at.series_N_per_m;
+    return law::LawResponse{
+        .force_N = at.begin_N + stiffness_N_per_m * s_m,
+        .stiffness_N_per_m = stiffness_N_per_m,
+        .energy_J = at.begin_J + (at.begin_N + 0.5 * stiffness_N_per_m * s_m) * s_m};
   });
 }
 

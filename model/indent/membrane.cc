@@ -28,21 +28,23 @@ struct Press {
 class Solver {
  public:
   Solver(const MembraneParameters& p, double tip_radius_m)
-      : p_(p), R_(tip_radius_m), length_m_(std::sqrt(p.tension_N_per_m / p.foundation_Pa_per_m)) {}
+      : p_(p),
+        tip_radius_m_(tip_radius_m),
+        length_m_(std::sqrt(p.tension_N_per_m / p.foundation_Pa_per_m)) {}
 
   Press at(double contact_radius_m) const {
-    const double a = contact_radius_m, slope = -a / R_;
-    double low_m = 0.0, high_m = a * a / R_ + 6.0 * length_m_ * a / R_;
+    const double a = contact_radius_m, slope = -a / tip_radius_m_;
+    double low_m = 0.0, high_m = a * a / tip_radius_m_ + 6.0 * length_m_ * a / tip_radius_m_;
     while (crosses(a, high_m, slope)) high_m *= 2.0;
     for (int i = 0; i < kBisections; ++i) {
       const double middle_m = 0.5 * (low_m + high_m);
       (crosses(a, middle_m, slope) ? low_m : high_m) = middle_m;
     }
-    const double edge_m = 0.5 * (low_m + high_m), depth_m = edge_m + 0.5 * a * a / R_;
+    const double edge_m = 0.5 * (low_m + high_m), depth_m = edge_m + 0.5 * a * a / tip_radius_m_;
     // HX-33  the pressure inside, and the membrane that pulls at its edge
-    const double force_N =
-        2.0 * std::numbers::pi *
-        (R_ * pressure_integral(edge_m, depth_m) + p_.tension_N_per_m * a * a / R_);
+    const double force_N = 2.0 * std::numbers::pi *
+                           (tip_radius_m_ * pressure_integral(edge_m, depth_m) +
+                            p_.tension_N_per_m * a * a / tip_radius_m_);
     return {.depth_m = depth_m, .force_N = force_N};
   }
 
@@ -83,7 +85,7 @@ class Solver {
   }
 
   MembraneParameters p_;
-  double R_, length_m_;
+  double tip_radius_m_, length_m_;
 };
 
 /// ln F linear in ln d; below the first press F ~ d^e with its exponent.
