@@ -25,9 +25,9 @@ struct Press {
   double depth_m = 0.0, force_N = 0.0;
 };
 
-class Solver {
+class MembraneSolver {
  public:
-  Solver(const MembraneParameters& p, double tip_radius_m)
+  MembraneSolver(const MembraneParameters& p, double tip_radius_m)
       : p_(p),
         tip_radius_m_(tip_radius_m),
         length_m_(std::sqrt(p.tension_N_per_m / p.foundation_Pa_per_m)) {}
@@ -126,7 +126,7 @@ void visit(ParameterVisitor& v, MembraneParameters& p) {
 Result<Membrane> make_membrane(const MembraneParameters& p, double tip_radius_m) {
   if (auto wrong = check_meaning("membrane", p)) return *wrong;
   if (!is_positive(tip_radius_m)) return Error{"membrane: the tip's radius must be above 0"};
-  const Solver solver(p, tip_radius_m);
+  const MembraneSolver solver(p, tip_radius_m);
   std::vector<Press> presses;
   double a_m = kFirstRadius_ratio * std::sqrt(2.0 * tip_radius_m * p.working_depth_m);
   // The depth is at least a^2 / (2 R), so it gets there.
