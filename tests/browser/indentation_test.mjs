@@ -6,7 +6,7 @@
 // CHROMIUM names another browser. Prints "N passed, M failed"; exit status 0 or 1.
 import { join } from "node:path";
 
-import { check, folder, play, size, start_browser, start_tactd, start_view, stop, waits } from "./stage.mjs";
+import { check, folder, open_waiting, play, start_browser, start_tactd, stop } from "./stage.mjs";
 
 /** Least and largest share of the tip's depth that is drawn. */
 const drawn_ratios = (page) =>
@@ -27,10 +27,7 @@ const drawn_ratios = (page) =>
 await play(async () => {
   const browser = await start_browser();
   const socket = join(folder, "tactd.sock");
-  const { viewer, url } = await start_view(["--socket", socket]);
-  const page = await browser.newPage({ viewport: size });
-  await page.goto(url);
-  await waits(page, () => document.getElementById("notice").textContent.includes("waiting for tactd"));
+  const { viewer, page } = await open_waiting(browser, socket);
   const tactd = start_tactd("skin", socket);
   const { frames, lifted, least, most } = await drawn_ratios(page);
   check("sees the tip press", frames > 5, `${frames} frames`);

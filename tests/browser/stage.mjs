@@ -104,6 +104,15 @@ export async function start_browser(flags = []) {
   return browser;
 }
 
+/** A page that waits for tactd on this socket, and its viewer. */
+export async function open_waiting(browser, socket) {
+  const { viewer, url } = await start_view(["--socket", socket]);
+  const page = await browser.newPage({ viewport: size });
+  await page.goto(url);
+  await waits(page, () => document.getElementById("notice").textContent.includes("waiting for tactd"));
+  return { viewer, page };
+}
+
 /** What the page reports of itself. */
 export const numbers = (page) => page.evaluate(() => ({ ...window.tact }));
 /** True when the condition holds in time. */

@@ -6,17 +6,14 @@
 // CHROMIUM names another browser. Prints "N passed, M failed"; exit status 0 or 1.
 import { join } from "node:path";
 
-import { check, folder, play, size, start_browser, start_tactd, start_view, stop, waits } from "./stage.mjs";
+import { check, folder, open_waiting, play, size, start_browser, start_tactd, stop, waits } from "./stage.mjs";
 
 const words = (page) => page.textContent("#task_text");
 
 await play(async () => {
   const browser = await start_browser();
   const socket = join(folder, "tactd.sock");
-  const { viewer, url } = await start_view(["--socket", socket]);
-  const page = await browser.newPage({ viewport: size });
-  await page.goto(url);
-  await waits(page, () => document.getElementById("notice").textContent.includes("waiting for tactd"));
+  const { viewer, page } = await open_waiting(browser, socket);
   // The force ends the first task: with none of that size it stays due.
   const weak = start_tactd("maintenance", socket, ["--set", "task.0.force_min_N=1.9"]);
   check("sees the tip press", await waits(page, () => Math.hypot(...(window.tact.force_N ?? [0])) > 0.3));

@@ -44,12 +44,12 @@ export function organ(name: string): Surface {
 
 /** A ball's indentation: round in the contact area, then as a half-space under a disc. */
 export function rings_m(depth_m: number, tip_m: number): number[] {
-  const touch_m = Math.min(0.97 * tip_m, Math.sqrt(depth_m * tip_m));
-  const edge_m = depth_m - tip_m + Math.sqrt(tip_m ** 2 - touch_m ** 2);
+  const contact_m = Math.min(0.97 * tip_m, Math.sqrt(depth_m * tip_m));
+  const edge_m = depth_m - tip_m + Math.sqrt(tip_m ** 2 - contact_m ** 2);
   return Array.from({ length: 32 }, (_, j) => {
     const r_m = j * kPitch_m;
-    if (r_m <= touch_m) return depth_m - tip_m + Math.sqrt(tip_m ** 2 - r_m ** 2);
-    return ((2 * edge_m) / Math.PI) * Math.asin(touch_m / r_m) * (1 - (j / 31) ** 4);
+    if (r_m <= contact_m) return depth_m - tip_m + Math.sqrt(tip_m ** 2 - r_m ** 2);
+    return ((2 * edge_m) / Math.PI) * Math.asin(contact_m / r_m) * (1 - (j / 31) ** 4);
   });
 }
 

@@ -7,6 +7,7 @@
 
 #include "model/law/series_law.h"
 #include "model/units.h"
+#include "tests/model/indent/rigid_ball.h"
 #include "tests/model/law/law_contract.h"
 
 namespace tact::model::indent::disc_series_test {
@@ -97,20 +98,7 @@ TEST(DiscSeries, IsTheSumOfItsDiscsOnAnyNumbers) {
   }
 }
 
-/// F of a rigid ball on a half-space by its contact radius (C. Segedin, Mathematika 4 (1957) 156).
-TEST(DiscSeries, ABallIsFollowedWithinThreePercent) {
-  const DiscSeries law = make();
-  const double plane_Pa = 5000.0 / (1.0 - 0.45 * 0.45), R = 4_mm;
-  int checked = 0;
-  for (double a = 0.01 * R; a < 0.999999 * R; a += 1e-4 * (R - a)) {
-    const double log = std::log((R + a) / (R - a)), depth_m = 0.5 * a * log;
-    if (depth_m < 0.3_mm || depth_m > 12_mm) continue;
-    ++checked;
-    const double force_N = plane_Pa * (0.5 * (a * a + R * R) * log - a * R);
-    EXPECT_NEAR(law.respond(depth_m).force_N / force_N, 1.0, 0.03) << depth_m;
-  }
-  EXPECT_GT(checked, 1000);
-}
+TEST(DiscSeries, ABallIsFollowedWithinThreePercent) { tests::check_follows_ball(make(), 0.03); }
 
 TEST(DiscSeries, AFlatDiscSharesNoFurtherDepth) {
   const DiscSeries law = make();

@@ -10,6 +10,7 @@
 #include "model/law/series_law.h"
 #include "model/law/tabulated_law.h"
 #include "model/units.h"
+#include "tests/model/indent/rigid_ball.h"
 #include "tests/model/law/law_contract.h"
 
 namespace tact::model::indent::membrane_test {
@@ -68,19 +69,8 @@ TEST(Membrane, IsTheBesselSolutionOnALinearFoundation) {
   }
 }
 
-/// F of a rigid ball on a half-space by its contact radius (C. Segedin, Mathematika 4 (1957) 156).
 TEST(Membrane, ABallIsFollowedWithinOneAndAHalfPercent) {
-  const Membrane law = make();
-  const double plane_Pa = 5000.0 / (1.0 - 0.45 * 0.45), R = kTip_m;
-  int checked = 0;
-  for (double a = 0.01 * R; a < 0.999999 * R; a += 1e-3 * (R - a)) {
-    const double log = std::log((R + a) / (R - a)), depth_m = 0.5 * a * log;
-    if (depth_m < 0.3_mm || depth_m > 12_mm) continue;
-    ++checked;
-    const double force_N = plane_Pa * (0.5 * (a * a + R * R) * log - a * R);
-    EXPECT_NEAR(law.respond(depth_m).force_N / force_N, 1.0, 0.015) << depth_m;
-  }
-  EXPECT_GT(checked, 100);
+  tests::check_follows_ball(make(), 0.015);
 }
 
 TEST(Membrane, ItsForceIsInProportionToTensionAndFoundation) {

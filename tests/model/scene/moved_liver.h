@@ -51,11 +51,11 @@ inline const Liver& rough_liver() {
 
 /// A straight press: the point of first contact, and the way from there.
 struct Press {
-  Vec3 touch_m, inward;  // unit
+  Vec3 contact_m, inward;  // unit
   Quat orientation;
 
   Tool at(double depth_m) const {
-    return {.position_m = touch_m + depth_m * inward, .orientation = orientation};
+    return {.position_m = contact_m + depth_m * inward, .orientation = orientation};
   }
 };
 
@@ -89,7 +89,7 @@ inline Press press_at(const Vec3& point_m, const Vec3& inward, double about_deg 
     const double middle_m = 0.5 * (low_m + high_m);
     (gap_m(press.at(middle_m)) > 0.0 ? low_m : high_m) = middle_m;
   }
-  press.touch_m += low_m * inward;
+  press.contact_m += low_m * inward;
   return press;
 }
 
