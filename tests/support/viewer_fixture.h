@@ -73,10 +73,10 @@ class Viewer : public ::testing::Test {
     thread_ = std::thread([this] { io_.run(); });
   }
 
-  /// Runs the source until a condition of the viewer's thread holds, at most five seconds.
+  /// Runs the source until a condition of the viewer's thread holds, at most a minute.
   template <typename Condition>
   bool wait_until(const Condition& condition) {
-    for (int i = 0; i < 500; ++i) {
+    for (int i = 0; i < 6000; ++i) {
       if (source_) source_->accept(header_, meshes_);
       bool holds = false;
       std::atomic<bool> asked = false;

@@ -52,7 +52,7 @@ class IgtlPeers : public testing::Test {
   }
   template <typename Condition>
   bool becomes(const Condition& condition) {
-    for (int i = 0; i < 500; ++i) {
+    for (int i = 0; i < 6000; ++i) {
       if (ask(condition)) return true;
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }

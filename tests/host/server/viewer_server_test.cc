@@ -127,10 +127,10 @@ TEST_F(Viewer, KeepsServingWhenBrowsersLeave) {
   }
   Frame frame;
   for (frame.tick = 1; frame.tick <= 50; ++frame.tick) {
-    source_->send(frame);  // the queue of a local socket holds about 40
-    if (frame.tick % 20 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    source_->send(frame);  // one at a time: the queue of a local socket holds about 40
+    ASSERT_TRUE(wait_until([&] { return frames_ == frame.tick; }));
   }
-  EXPECT_TRUE(wait_until([this] { return frames_ == 50 && view_.listeners() == 0; }));
+  EXPECT_TRUE(wait_until([this] { return view_.listeners() == 0; }));
 }
 
 TEST_F(Viewer, ForgetsABrowserThatSendsTooMuch) {
@@ -154,7 +154,7 @@ TEST_F(Viewer, SaysThatTactdWentAwayAndFindsItAgain) {
   source_.reset();
   EXPECT_EQ(read(socket)["link"], "lost");
   source_ = std::make_unique<TelemetrySource>((folder_ / "t.sock").string());
-  for (int i = 0; i < 500 && !source_->accept(header_, meshes_); ++i)
+  for (int i = 0; i < 6000 && !source_->accept(header_, meshes_); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   const auto status = read(socket);
   EXPECT_EQ(status["link"], "live");
@@ -184,7 +184,7 @@ TEST_F(Viewer, SaysWhatIsWrongWithTelemetryOfAnotherBuild) {
   EXPECT_EQ(read(socket)["link"], "waiting");
   source_ = std::make_unique<TelemetrySource>((folder_ / "t.sock").string());
   source_->first_message = "tactrun2";
-  for (int i = 0; i < 500 && !source_->accept(header_, meshes_); ++i)
+  for (int i = 0; i < 6000 && !source_->accept(header_, meshes_); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   const std::string detail = read(socket)["detail"];
   EXPECT_NE(detail.find("one build"), std::string::npos) << detail;

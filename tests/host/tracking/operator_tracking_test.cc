@@ -49,14 +49,24 @@ class Input : public ::testing::Test {
   static std::string line(double x_m, double time_s, std::uint64_t sequence) {
     return test::line_of(test::look(kEye, Pose{}, "h", hand_at(x_m), time_s, sequence));
   }
-  /// Runs the input until the condition holds, at most five seconds.
+  /// Runs the input until the condition holds, at most a minute.
   template <typename Condition>
   bool run_until(const Condition& condition) {
-    for (int i = 0; i < 1000 && !condition(); ++i) {
+    for (int i = 0; i < 12000 && !condition(); ++i) {
       io_.restart();
       io_.run_for(std::chrono::milliseconds(5));
     }
     return condition();
+  }
+  /// Sends the pose again until it is seen: on a busy machine one datagram may be found only after
+  /// the time from which a body counts as silent.
+  bool tracked_by_sends(double x_m, std::uint64_t sequence) {
+    return run_until([&] {
+      const bool tracked = hand().state == BodyState::kTracked;
+      if (!tracked) send(line(x_m, static_cast<double>(sequence), sequence));
+      ++sequence;
+      return tracked;
+    });
   }
   const TrackedBody& hand() { return tracking_.now()[BodyRole::kHand]; }
 
@@ -71,8 +81,7 @@ TEST_F(Input, ADatagramBecomesAPose) {
   ASSERT_EQ(open("udp_port = " + std::to_string(free_port())), "");
   tracking_.start();
   EXPECT_EQ(hand().state, BodyState::kLost);
-  send(line(0.25, 1.0, 1));
-  ASSERT_TRUE(run_until([&] { return hand().state == BodyState::kTracked; }));
+  ASSERT_TRUE(tracked_by_sends(0.25, 1));
   EXPECT_LT((hand().raw.position_m - hand_at(0.25).position_m).norm(), 1e-5);
   EXPECT_EQ(tracking_.refused(), 0u);
   ASSERT_TRUE(run_until([&] { return hand().state == BodyState::kLost; }));  // nothing more comes
@@ -95,8 +104,7 @@ TEST_F(Input, BadDatagramsAreCountedAndTheFirstIsReported) {
   ASSERT_TRUE(run_until([&] { return tracking_.refused() == 5; }));
   ASSERT_EQ(said_.size(), 1u);
   EXPECT_NE(said_[0].find("no JSON object"), std::string::npos) << said_[0];
-  send(line(0.1, 2.0, 2));  // and the good ones go on
-  EXPECT_TRUE(run_until([&] { return hand().state == BodyState::kTracked; }));
+  EXPECT_TRUE(tracked_by_sends(0.1, 2));  // and the good ones go on
 }
 
 TEST_F(Input, MissingRegistrationIsReported) {
