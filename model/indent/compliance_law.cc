@@ -55,7 +55,7 @@ Result<ComplianceCurve> make_compliance_curve(const ComplianceCurveParameters& p
                                     last.depth_m + p.regular_m_per_N * last.force_N);  // CL-1
   // CL-2  d = (c_disc + r) F
   curve.pulled_N_per_m_ = 1.0 / (1.0 / p.tip.pulled_stiffness_N_per_m() + p.regular_m_per_N);
-  curve.working_depth_m_ = p.working_depth_m;
+  curve.pull_depth_m_ = p.pull_depth_m > 0.0 ? p.pull_depth_m : p.working_depth_m;
   curve.ring_pitch_m_ = p.ring_pitch_m;
   curve.rings_ = p.ring_m_per_N.size();
   curve.ring_m_per_N_[0] = p.regular_m_per_N;
@@ -102,7 +102,7 @@ TipState ComplianceCurve::exact(double depth_m) const RT_SAFE {
 
 law::LawResponse ComplianceCurve::respond(double depth_m) const RT_SAFE {
   if (!std::isfinite(depth_m)) return {.status = law::LawStatus::kInvalid};
-  const double inside_m = std::clamp(depth_m, -working_depth_m_, press_depth_m_);
+  const double inside_m = std::clamp(depth_m, -pull_depth_m_, press_depth_m_);
   law::LawResponse out;
   if (inside_m > 0.0) {
     const law::CurvePoint p = press_.at(inside_m);

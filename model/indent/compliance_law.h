@@ -36,6 +36,7 @@ struct ComplianceCurveParameters {
   ElasticTip tip;
   double regular_m_per_N = 0.0;          // r, > -1 / (largest K_tip) and > -c_disc
   double working_depth_m = 0.0;          // press and pull, > 0
+  double pull_depth_m = 0.0;             // where the range of a pull is another; 0: as press
   double ring_pitch_m = 0.0;             // > 0
   std::span<const double> ring_m_per_N;  // g_1 .. g_N, 1 to kMaxComplianceRings; read once
   std::size_t table_knots = 65;          // in press
@@ -44,7 +45,7 @@ struct ComplianceCurveParameters {
 class ComplianceCurve final : public law::Law {
  public:
   law::LawResponse respond(double depth_m) const RT_SAFE override;
-  law::LawRange range() const RT_SAFE override { return {-working_depth_m_, press_depth_m_}; }
+  law::LawRange range() const RT_SAFE override { return {-pull_depth_m_, press_depth_m_}; }
   std::size_t profile(double depth_m, std::span<double> ring_m) const RT_SAFE override;
   double ring_pitch_m() const RT_SAFE override { return ring_pitch_m_; }
 
@@ -61,8 +62,8 @@ class ComplianceCurve final : public law::Law {
   ElasticTip tip_;
   double regular_m_per_N_ = 0.0;
   double pulled_N_per_m_ = 0.0;
-  double working_depth_m_ = 0.0;
-  double press_depth_m_ = 0.0;  // at most working_depth_m_
+  double pull_depth_m_ = 0.0;
+  double press_depth_m_ = 0.0;  // at most working_depth_m
   double ring_pitch_m_ = 0.0;
   std::size_t rings_ = 0;                                       // N
   std::array<double, kMaxComplianceRings + 1> ring_m_per_N_{};  // g_0 .. g_N

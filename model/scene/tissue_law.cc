@@ -13,6 +13,11 @@
 #include "model/tissue/compliance_family.h"
 
 namespace tact::model::scene {
+namespace {
+
+constexpr double kPastTear_ratio = 1.1;  // so that the tear force lies within the range
+
+}  // namespace
 
 TissueLawBuilder::Step TissueLawBuilder::add_curve(const LawRow& row) {
   auto curve = row.curve(scene_);
@@ -38,18 +43,23 @@ TissueLawBuilder::Step TissueLawBuilder::add_compliance() {
   const auto tip_radius_m = scene_tip_radius_m(scene_);
   if (!tip_radius_m) return blame(tip_radius_m.error());
   if (auto map = read_scene_map(scene_); !map) return map.error();
-  auto curve =
-      indent::make_compliance_curve({.tip = {.youngs_modulus_Pa = scene_.elastic->youngs_modulus_Pa,
-                                             .poisson_ratio = scene_.elastic->poisson_ratio,
-                                             .radius_m = *tip_radius_m,
-                                             .large_strain = true},
-                                     .working_depth_m = scene_.compliance.working_depth_m,
-                                     .ring_pitch_m = *tip_radius_m,
-                                     .ring_m_per_N = std::array{0.0},
-                                     .table_knots = scene_.table_knots});
+  const indent::ElasticTip tip{.youngs_modulus_Pa = scene_.elastic->youngs_modulus_Pa,
+                               .poisson_ratio = scene_.elastic->poisson_ratio,
+                               .radius_m = *tip_radius_m,
+                               .large_strain = true};
+  // A pull is linear (CL-2). Its range reaches the force that tears, at any place.
+  const double torn_m = scene_.contact.tear_force_N / tip.pulled_stiffness_N_per_m();
+  const double working_depth_m = scene_.compliance.working_depth_m;
+  auto curve = indent::make_compliance_curve(
+      {.tip = tip,
+       .working_depth_m = working_depth_m,
+       .pull_depth_m = std::max(working_depth_m, kPastTear_ratio * torn_m),
+       .ring_pitch_m = *tip_radius_m,
+       .ring_m_per_N = std::array{0.0},
+       .table_knots = scene_.table_knots});
   if (!curve) return blame(curve.error());
   law_->memory_bytes_ += curve->memory_bytes();
-  return bend(keep(std::move(*curve)), scene_.compliance.working_depth_m);
+  return bend(keep(std::move(*curve)), working_depth_m);
 }
 
 // The organ's bending is of small strain, so the tip is, too.
