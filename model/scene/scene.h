@@ -62,6 +62,7 @@ struct Scene {
   ComplianceSettings compliance;
   std::size_t table_knots = 65;
   bool varies_by_place = false;  // by [compliance]: closed-form laws in series, anchors
+  bool exact_tip = false;        // the law is the organ below the tip of [elastic]
   std::optional<law::LinearPullParameters> pull;
   std::vector<law::PronyTerm> relaxation;
   std::optional<ElasticSettings> elastic;

@@ -55,6 +55,8 @@ void visit_laws(Keys& k, Scene& scene) {
           scene.table_knots, kOptional);
   k.flag("varies_by_place", "closed-form laws in series with [compliance], spring_patch by it",
          scene.varies_by_place, kOptional);
+  k.flag("exact_tip", "the law is the organ alone, below the tip's own indentation",
+         scene.exact_tip, kOptional);
   std::vector<Choice> choices;
   for (const LawRow& row : all_laws()) choices.push_back({row.name, row.meaning});
   choices.push_back({kAutoLaw, "the least law that meets [tolerance], by tact-lab plan"});
@@ -69,6 +71,10 @@ void visit_laws(Keys& k, Scene& scene) {
   if (scene.varies_by_place && !scene.describes("compliance"))
     k.refuse({"varies_by_place"},
              "varies_by_place = true needs a section [compliance]; write it or leave the key out");
+  if (scene.exact_tip && scene.varies_by_place)
+    k.refuse({"exact_tip", "varies_by_place"},
+             "exact_tip = true takes the law for the organ, varies_by_place = true for the tip; "
+             "leave one of the two out");
   if (scene.law == kAutoLaw || scene.describes(scene.law)) return;
   k.refuse({"law"}, fmt::format("law = \"{}\" has no section [{}]; write it or choose another law",
                                 scene.law, scene.law));

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "model/law/laws_in_series.h"
 #include "model/law/tabulated_law.h"
 #include "model/scene/tissue_law_builder.h"
 #include "model/scene/tissue_map.h"
@@ -26,7 +27,14 @@ TissueLawBuilder::Step TissueLawBuilder::add_curve(const LawRow& row) {
   draws_tissue_ = curve->draws_tissue;
   is_measured_ = curve->is_measured;
   law_->owned_.push_back(std::move(curve->law));
-  const auto pulled = with_pull(*law_->owned_.back());
+  const law::Law* press = law_->owned_.back().get();
+  if (scene_.exact_tip) {
+    const auto pair = on_organ(*press);
+    if (!pair) return pair.error();
+    press = *pair;
+    curve->untabled_bytes = 0;
+  }
+  const auto pulled = with_pull(*press);
   if (!pulled) return pulled.error();
   law_->memory_bytes_ += curve->untabled_bytes;
   if (curve->untabled_bytes > 0) return finish_curve(**pulled);
@@ -109,6 +117,32 @@ TissueLawBuilder::Step TissueLawBuilder::add_spring_patch() {
   return std::nullopt;
 }
 
+/// The tip's own indentation on top of an organ that moves as the law says.
+Result<const law::Law*> TissueLawBuilder::on_organ(const law::Law& organ) {
+  if (!scene_.elastic)
+    return blame({"exact_tip = true needs a section [elastic]; write it or leave the key out"});
+  if (is_measured_)
+    return blame({"a measured press has its tip's indentation already; leave exact_tip out"});
+  const auto tip_radius_m = scene_tip_radius_m(scene_);
+  if (!tip_radius_m) return blame(tip_radius_m.error());
+  auto tip = indent::make_compliance_curve(
+      {.tip = {.youngs_modulus_Pa = scene_.elastic->youngs_modulus_Pa,
+               .poisson_ratio = scene_.elastic->poisson_ratio,
+               .radius_m = *tip_radius_m,
+               .large_strain = scene_.compliance.large_strain},
+       // As far as CT-8 is valid.
+       .working_depth_m = indent::kDeepestIndentation_ratio * *tip_radius_m,
+       .ring_pitch_m = *tip_radius_m,
+       .ring_m_per_N = std::array{0.0},
+       .table_knots = law::kMaxKnots});
+  if (!tip) return blame(tip.error());
+  auto pair = make_laws_in_series(keep(std::move(*tip)), organ);
+  if (!pair) return blame(pair.error());
+  law_->title_ += ", under an exact tip";
+  draws_tissue_ = false;
+  return &keep(std::move(*pair));
+}
+
 /// Press as the law gives it, pull as [pull] says.
 Result<const law::Law*> TissueLawBuilder::with_pull(const law::Law& press) {
   // Without [pull] the law's own pull counts, if it has one.
@@ -122,6 +156,9 @@ Result<std::unique_ptr<TissueLaw>> make_tissue_law(const Scene& scene, std::stri
   const LawRow* row = find_law(name);
   if (row == nullptr)
     return Error{fmt::format("{}: law \"{}\" cannot be felt; choose another", scene.path, name)};
+  if (scene.exact_tip && !row->curve)
+    return Error{
+        fmt::format("{}: law \"{}\" has its own tip; leave exact_tip out", scene.path, name)};
   TissueLawBuilder builder(scene);
   if (auto failed = row->curve ? builder.add_curve(*row) : (builder.*row->build)()) return *failed;
   return builder.take();

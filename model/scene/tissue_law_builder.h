@@ -28,6 +28,7 @@ class TissueLawBuilder {
 
  private:
   Step add_small_compliance();
+  Result<const law::Law*> on_organ(const law::Law& organ);
   Result<const law::Law*> with_pull(const law::Law& press);
   Step finish_curve(const law::Law& curve);
   Step vary_by_place(const law::Law& curve);

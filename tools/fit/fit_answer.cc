@@ -122,7 +122,7 @@ Result<std::vector<FitAnswer>> answers_of(const model::scene::Scene& scene,
                                           AnswerBy by) {
   const model::scene::LawRow* row = model::scene::find_law(law_name);
   // Not in series with an organ: there tables take less time, and the place shows in the shape.
-  const bool is_one_curve = row && row->curve && !scene.varies_by_place;
+  const bool is_one_curve = row && row->curve && !scene.varies_by_place && !scene.exact_tip;
   if (by == AnswerBy::kSolving && is_one_curve) {
     const auto curve = row->curve(scene);
     return curve ? solved_answers(*curve->law, scene, data) : curve.error();

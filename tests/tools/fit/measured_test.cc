@@ -75,6 +75,27 @@ TEST(Measured, NoLinearStackFollowsSiliconeTo60PercentStrain) {
   }
 }
 
+// Finite elements at one place of the liver: one spring is too stiff at light touch, unless the
+// tip's own indentation is in series with it.
+TEST(Measured, OneSpringUnderAnExactTipFollowsAPlaceOfTheLiver) {
+  FitData place{.sites = {{.name = "1725",
+                           .samples = {{0.001, 0.0121933},
+                                       {0.002, 0.0317602},
+                                       {0.0035, 0.0670282},
+                                       {0.005, 0.106287},
+                                       {0.007, 0.162209},
+                                       {0.01, 0.251425}}}}};
+  const auto worst_ratio = [&](const std::string& exact_tip) {
+    const auto scene = model::scene::load_scene(
+        kRoot + "/model/scenes/liver.toml",
+        {"varies_by_place=false", "compliance.large_strain=false", "exact_tip=" + exact_tip});
+    EXPECT_TRUE(scene) << scene.error().message;
+    return fit("disc_stack_linear", *scene, place).checked.fitted.local_ratio;
+  };
+  EXPECT_GT(worst_ratio("false"), 0.12);
+  EXPECT_LT(worst_ratio("true"), 0.01);
+}
+
 // A step of force on a linear law with two terms: with a = 1 / tau_1, b = 1 / tau_2 the indentation
 // grows as 1 / g_0 + sum of R_i exp(-t / lambda_i), where 1 / lambda_i = p, q solve
 //

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// The elastic tip of a tissue law: how far it is pulled, and an organ of another law below it.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "model/law/law_bounds.h"
+#include "model/scene/tissue.h"
+#include "model/scene/tissue_map.h"
+#include "tests/model/scene/shipped_law.h"
+
+namespace tact::model::scene::tissue_law_tip_test {
+
+using shipped_law::made;
+using shipped_law::Overrides;
+using shipped_law::refusal;
+using shipped_law::shipped;
+
+const std::string kLinear = "compliance.large_strain=false";  // the organ stays where it was drawn
+
+// The pull of a small tip is so soft that it would saturate below the force that tears.
+TEST(TissueLawTip, ComplianceTearsInEveryShippedOrganThatBends) {
+  for (const char* name : {"grasper", "heart", "liver", "liver_twist", "skin"}) {
+    const Scene scene = shipped(name, {"law=compliance"});
+    const auto tissue = make_tissue(scene);
+    ASSERT_TRUE(tissue) << tissue.error().message;
+    const auto law = made(scene);
+    const law::Law& tip = *law->curve();
+    const double pull_m = law::tear_depth_m(tip, scene.contact.tear_force_N);
+    EXPECT_GT(pull_m, tip.range().pull_m) << name;
+    EXPECT_NEAR(-tip.respond(pull_m).force_N, scene.contact.tear_force_N, 1e-6) << name;
+  }
+}
+
+// Any law may be the organ below the tip: a linear stack as soft as a place is that place.
+TEST(TissueLawTip, AnExactTipIsInSeriesWithTheOrgan) {
+  const Overrides tip{"exact_tip=true", "varies_by_place=false", kLinear};
+  const auto family = read_scene_family(shipped("liver", {kLinear}));
+  const indent::ComplianceCurve& place = family->curve.at(9);
+  ASSERT_GT(place.regular_m_per_N(), 0.0);
+  const double own_N_per_m = made(shipped("liver", {"varies_by_place=false"}), "disc_stack")
+                                 ->curve()
+                                 ->respond(1e-3)
+                                 .stiffness_N_per_m;
+  Overrides soft = tip;
+  soft.push_back(fmt::format("disc_stack.youngs_modulus_Pa={:.17g}",
+                             11005.0 / place.regular_m_per_N() / own_N_per_m));
+  const auto law = made(shipped("liver", soft), "disc_stack");
+  for (const double depth_m : {0.0005, 0.001, 0.003, 0.006})
+    EXPECT_NEAR(law->curve()->respond(depth_m).force_N / place.respond(depth_m).force_N, 1.0, 2e-3)
+        << depth_m;
+  EXPECT_NE(law->title().find("under an exact tip"), std::string::npos) << law->title();
+  for (const char* kind : {"compliance", "spring_patch"})
+    EXPECT_NE(refusal(shipped("liver", tip), kind).find("leave exact_tip out"), std::string::npos);
+  Overrides measured = tip;
+  measured.emplace_back("table.data=\"press.csv\"");
+  EXPECT_NE(refusal(shipped("liver", measured), "table").find("has its tip"), std::string::npos);
+}
+
+}  // namespace tact::model::scene::tissue_law_tip_test
