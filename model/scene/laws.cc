@@ -120,7 +120,13 @@ Result<Curve> table(const Scene& scene) {
 
 void compliance_keys(ParameterVisitor& v, Scene& scene) {
   ComplianceSettings& c = scene.compliance;
-  v.file("map", "file of tact-lab condense, absolute or from the scene's folder", c.map_path);
+  v.file("map", "file of tact-lab condense, absolute or from the scene's folder", c.map_path,
+         Need::kOptional);
+  v.number("layer_thickness_m", kDepth_m, "in place of a map: a wide flat layer on its support",
+           c.layer_thickness_m, Need::kOptional);
+  if (c.map_path.empty() == !(c.layer_thickness_m > 0.0))
+    v.refuse({"map", "layer_thickness_m"},
+             "write compliance.map, or compliance.layer_thickness_m for a wide layer; one of both");
   v.number("working_depth_m", kDepth_m, "press and pull up to here", c.working_depth_m);
   v.count("curves", {2, 65}, "of the family, soft to stiff", c.curves, Need::kOptional);
   v.flag("large_strain", "organ and tip; false: small strain, as a linear reference",

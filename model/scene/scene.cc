@@ -71,7 +71,7 @@ bool needs_compliance(const Scene& scene) {
 /// A map is of one organ: on another mesh the law is felt as it is at every place. A map that
 /// cannot be read stays an error of the law.
 void vary_on_the_own_organ_only(Scene& scene) {
-  if (!scene.varies_by_place) return;
+  if (!scene.varies_by_place || scene.compliance.layer_thickness_m > 0.0) return;
   const auto map = read_compliance_map(scene.compliance.map_path);
   if (!map || map->mesh_hash == surface_hash(scene.organ_mesh.view())) return;
   scene.varies_by_place = false;

@@ -6,10 +6,13 @@
 #include <filesystem>
 
 #include "model/scene/compliance_file.h"
+#include "model/tissue/elastic_layer.h"
 
 namespace tact::model::scene {
 
 namespace {
+
+constexpr double kLayerRingsPerRadius = 2.0;  // of the tip
 
 /// Makes the scene's own map beside it. One that the scene names elsewhere may be of other scenes,
 /// as the shipped ones are, and is never the output.
@@ -33,6 +36,15 @@ Result<tissue::ComplianceMap> read_scene_map(const Scene& scene) {
     return Error{scene.path +
                  ": compliance needs a section [elastic]: modulus, Poisson's ratio "
                  "and where the organ is held"};
+  const ElasticSettings& e = *scene.elastic;
+  if (scene.compliance.layer_thickness_m > 0.0) {
+    if (!e.inclusions.empty())
+      return Error{
+          fmt::format("{}: a layer knows no [[elastic.inclusion]]; {}", scene.path, command)};
+    return tissue::layer_map({scene.compliance.layer_thickness_m, e.poisson_ratio},
+                             scene.organ_mesh.view(),
+                             scene.tool.spheres[0].radius_m / kLayerRingsPerRadius);
+  }
   std::error_code failed;
   if (!std::filesystem::is_regular_file(path, failed))
     return Error{
@@ -40,7 +52,6 @@ Result<tissue::ComplianceMap> read_scene_map(const Scene& scene) {
                     scene.path, path, command)};
   auto map = read_compliance_map(path);
   if (!map) return Error{fmt::format("{}: {}", map.error().message, command)};
-  const ElasticSettings& e = *scene.elastic;
   if (map->mesh_hash != surface_hash(scene.organ_mesh.view()))
     return Error{fmt::format("{} belongs to another organ mesh; make one: {}", path, command)};
   // E may change, since the map holds r E; nu and what is held may not. Equal to the bit, as both

@@ -56,4 +56,49 @@ TEST(TissueLawTip, AnExactTipIsInSeriesWithTheOrgan) {
   EXPECT_NE(refusal(shipped("liver", measured), "table").find("has its tip"), std::string::npos);
 }
 
+// The pad of skin is 30 mm of tissue on a support: far from its sides a closed form gives what
+// finite elements gave.
+TEST(TissueLawTip, AWideLayerNeedsNoMap) {
+  const Scene map = shipped("skin", {kLinear}),
+              layer = shipped(
+                  "skin", {kLinear, "compliance.map=\"\"", "compliance.layer_thickness_m=0.0298"});
+  EXPECT_TRUE(layer.varies_by_place);
+  const contact::SurfaceView surface = map.organ_mesh.view();
+  for (const char* kind : {"compliance", "rhombus"}) {
+    const auto by_map = made(map, kind), closed = made(layer, kind);
+    std::size_t seen = 0;
+    for (std::uint32_t t = 0; t < surface.triangle.size(); ++t) {
+      const Vec3 corner_m = surface.vertex_m[surface.triangle[t][0]];
+      const bool is_inside = std::abs(corner_m.x) < 0.015 && std::abs(corner_m.y) < 0.03;
+      if (!is_inside || corner_m.z < -0.001 || ++seen > 20) continue;
+      for (const double depth_m : {0.001, 0.004, 0.006}) {
+        const contact::Indentation in{.surface_point = {t, {1, 0, 0}}, .indentation_m = depth_m};
+        const auto force_N = [&](TissueLaw& law) {
+          return law.contact_law().respond(in).law.force_N;
+        };
+        EXPECT_NEAR(force_N(*closed) / force_N(*by_map), 1.0, 0.03) << kind << " at " << t;
+      }
+    }
+    EXPECT_GT(seen, 10U);
+  }
+}
+
+TEST(TissueLawTip, ANetOfSpringsOnALayerHasTheForceOfTheLayer) {
+  const Scene layer =
+      shipped("liver", {kLinear, "compliance.map=\"\"", "compliance.layer_thickness_m=0.03"});
+  const auto net = made(layer, "spring_patch"), organ = made(layer, "compliance");
+  const contact::Indentation in{.surface_point = {7, {1, 0, 0}}, .indentation_m = 0.003};
+  const double force_N = net->contact_law().respond(in).law.force_N;
+  EXPECT_GT(force_N, 0.01);
+  EXPECT_EQ(force_N, organ->contact_law().respond(in).law.force_N);
+}
+
+TEST(TissueLawTip, EitherAMapOrALayerIsWritten) {
+  for (const char* set : {"compliance.layer_thickness_m=0.03", "compliance.map=\"\""}) {
+    const auto scene = load_scene(TACT_SOURCE_DIR "/model/scenes/liver.toml", {set});
+    ASSERT_FALSE(scene) << set;
+    EXPECT_NE(scene.error().message.find("one of both"), std::string::npos);
+  }
+}
+
 }  // namespace tact::model::scene::tissue_law_tip_test
