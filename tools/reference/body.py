@@ -4,7 +4,7 @@
 Lengths in m, frame of the mesh file. Elements have ten nodes (CalculiX C3D10): corners, then the middles of EDGES; faces six:
 corners, then the middles of edges 01, 12, 20.
 """
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -90,6 +90,16 @@ def size_text(lengths):
     return f"Min({min(lengths.largest_m * MM, 1e9)}, {lengths.fine_m * MM} + {lengths.growth} * {away})"
 
 
+def size_fields(lengths):
+    """gmsh's commands for the background field: the least of all, each of four places, as gmsh bounds the length of a text."""
+    parts = [replace(lengths, at_m=lengths.at_m[i:i + 4]) for i in range(0, len(lengths.at_m), 4)]
+    fields = "".join(f'Field[{i}] = MathEval;\nField[{i}].F = "{size_text(part)}";\n' for i, part in enumerate(parts, 1))
+    if len(parts) == 1:
+        return fields + "Background Field = 1;\n"
+    least, all_of = len(parts) + 1, ", ".join(str(i) for i in range(1, len(parts) + 1))
+    return f"{fields}Field[{least}] = Min;\nField[{least}].FieldsList = {{{all_of}}};\nBackground Field = {least};\n"
+
+
 def read_mesh(text, vertex_m):
     """Nodes (N, 3), m, and the corners (E, 4) of tetrahedra of a file of gmsh 2.2; the first nodes are the vertices."""
     nodes = np.array(text.split("$Nodes")[1].split("$EndNodes")[0].split()[1:], dtype=float).reshape(-1, 4)
@@ -118,7 +128,7 @@ def fill(vertex_m, triangle, lengths):
             f"$Elements\n{len(triangle)}\n{elements}\n$EndElements\n")
         (scratch.path / "fill.geo").write_text(
             'Merge "surface.msh";\nSurface Loop(1) = {1};\nVolume(1) = {1};\n'
-            f'Field[1] = MathEval;\nField[1].F = "{size_text(lengths)}";\nBackground Field = 1;\n'
+            f"{size_fields(lengths)}"
             "Mesh.CharacteristicLengthExtendFromBoundary = 0;\nMesh.CharacteristicLengthFromPoints = 0;\n"
             "Mesh.Algorithm3D = 1;\nMesh.Optimize = 1;\nMesh.MshFileVersion = 2.2;\nMesh.Binary = 0;\nMesh.SaveAll = 1;\n")
         run_program(["gmsh", "fill.geo", "-3", "-nt", "1", "-format", "msh2", "-o", "body.msh"], scratch, "gmsh", TIME_LIMIT_S)

@@ -188,7 +188,7 @@ function show(frame: Frame): void {
 async function look_for_headset(): Promise<void> {
   if (!navigator.xr || !stage.renderer) return;
   const { Headset } = await import("./operator/headset");
-  headset = new Headset(stage, stage.renderer, draw);
+  headset = new Headset(stage, stage.renderer, draw, () => operator.eyes_m);
   await headset.offer();
 }
 
@@ -280,6 +280,7 @@ const numbers = {
   get figure_on() { return operator.there && operator.on; },
   get eyes_on() { return operator.eyes_on; },
   get figure_m() { return operator.joints_m; },
+  get figure_eyes_m() { return operator.eyes_m; },
   get drawn_figure_m() { return operator.drawn_m; },
   /** Where a place in the tool's own axes is drawn. */
   drawn_tool_m(place_m: Vec) { return tool?.drawn_m(place_m) ?? null; },

@@ -1,7 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { across, distance_to_line, eyes_of, grip_error_m, hides, joint, outline, turned } from "../src/operator/figure";
+import {
+  across,
+  distance_to_line,
+  eyes_of,
+  grip_error_m,
+  hides,
+  joint,
+  outline,
+  turned,
+  with_head,
+} from "../src/operator/figure";
 import { follow_share } from "../src/scene/eyes";
 import type { FigureFrame, Skeleton } from "../src/link/protocol";
 
@@ -94,4 +104,23 @@ test("a follower goes two thirds of its way in one time constant and stays witho
 
 test("the grip's error is the way from the finger tips to the tool", () => {
   near(grip_error_m(kFrame, kSkeleton), 0.005);
+});
+
+test("a headset's pose is the figure's head, and the eyes are the wearer's", () => {
+  const half = Math.sin(0.3);
+  const worn = {
+    at_m: [0.3, -0.05, 0.55] as [number, number, number],
+    turn: [Math.cos(0.3), 0, 0, half] as [number, number, number, number],
+  };
+  const frame = with_head(kFrame, kSkeleton, worn);
+  const eyes = eyes_of(frame, kSkeleton);
+  worn.at_m.forEach((value, i) => near(eyes.at_m[i], value));
+  assert.deepEqual(frame.head, worn.turn);
+  assert.deepEqual(joint(frame, 0), joint(kFrame, 0));
+  assert.deepEqual(joint(frame, 2), joint(kFrame, 2));
+});
+
+test("a wearer who has left the figure sees it whole", () => {
+  const far = { at_m: [1.5, 0, 0.5] as [number, number, number], turn: [1, 0, 0, 0] as [number, number, number, number] };
+  assert.equal(with_head(kFrame, kSkeleton, far), kFrame);
 });

@@ -46,6 +46,14 @@ class Gmsh(Solves):
         np.testing.assert_array_equal(made.node_m[made.face[:, 4]], made.node_m[made.face[:, [1, 2]]].mean(axis=1))
         np.testing.assert_array_equal(made.held, np.unique(made.face[(made.node_m[made.face, 2] == 0.0).all(axis=1)]))
 
+    def test_ten_balls_are_finer_than_one_and_no_text_is_too_long(self):
+        organ = cube()[0]
+        at_m = SIDE_M * np.array([[0.05 + 0.1 * i, 0.512345678912345, 1.0123456789123] for i in range(10)])
+        sizes = [surface.EdgeLengths(at, 1e-4, 1e-3, 0.5) for at in (at_m, at_m[:1])]
+        ten, one = (body.make_body(organ, lengths) for lengths in sizes)
+        self.assertGreater(len(ten.element), 1.5 * len(one.element))
+        self.assertEqual(body.size_fields(sizes[0]).count("MathEval"), 3)
+
     def test_refuses_an_open_surface_and_keeps_its_log(self):
         organ = cube()[0]
         with unittest.mock.patch("tempfile.tempdir", str(self.folder)), self.assertRaisesRegex(run.Failure, "gmsh") as refused:

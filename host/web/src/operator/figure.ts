@@ -3,10 +3,12 @@
 // view, where the eyes are. Vectors are [x, y, z] in frame W, m.
 
 import type { FigureFrame, Skeleton, Vec } from "../link/protocol";
-import type { Eyes } from "../scene/eyes";
+import type { Eyes, WornHead } from "../scene/eyes";
 
 /** Eyes are so far from the head's joint, in the head's own axes (-x is where the face looks). */
 const kEyes_m: Vec = [-0.085, 0, 0.04];
+/** A wearer who is farther from the figure's eyes has left it, and sees it whole. */
+const kOwnHead_m = 0.4;
 /** At work the eyes look below where the face points. */
 const kGaze: Vec = [-Math.cos(0.28), 0, -Math.sin(0.28)];
 
@@ -74,6 +76,16 @@ export function eyes_of(frame: FigureFrame, skeleton: Skeleton): Eyes {
     at_m: [head_m[0] + from_head_m[0], head_m[1] + from_head_m[1], head_m[2] + from_head_m[2]],
     towards: turned(frame.head, kGaze),
   };
+}
+
+/** The figure with the head of a headset's wearer: eyes there, turned so from looking along -x; as it is, if far away. */
+export function with_head(frame: FigureFrame, skeleton: Skeleton, eyes: WornHead): FigureFrame {
+  const own_m = eyes_of(frame, skeleton).at_m;
+  if (Math.hypot(...eyes.at_m.map((value, i) => value - own_m[i])) > kOwnHead_m) return frame;
+  const from_head_m = turned(eyes.turn, kEyes_m);
+  const joint_m = [...frame.joint_m];
+  for (let i = 0; i < 3; ++i) joint_m[3 * skeleton.head + i] = eyes.at_m[i] - from_head_m[i];
+  return { ...frame, joint_m, head: eyes.turn };
 }
 
 /** How far the finger tips are from the tool's grip. */

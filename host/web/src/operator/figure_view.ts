@@ -73,8 +73,7 @@ export class FigureView {
   }
 
   /** Parts around the camera step aside. */
-  clear_view(frame: FigureFrame, camera_m: THREE.Vector3): void {
-    const eye = camera_m.toArray() as Vec;
+  clear_view(frame: FigureFrame, eye: Vec): void {
     for (const part of this.parts) {
       const { a, b, radius_a_m, radius_b_m } = part.capsule;
       part.mesh.visible = !hides(eye, joint(frame, a), joint(frame, b), Math.max(radius_a_m, radius_b_m));

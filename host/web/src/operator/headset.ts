@@ -6,9 +6,11 @@ import * as THREE from "three";
 import { HeadsetPanel } from "./headset_panel";
 import { by_id } from "../document/dom";
 import type { Said } from "../panels/hud";
+import { kHeadsetBasis } from "../scene/headset_axes";
 import type { Stage } from "../scene/stage";
+import type { Vec } from "../link/protocol";
 
-// Where the eyes are when a session begins, from the middle of the device's workspace. That is 0.57 m away and 38 deg
+// Where the eyes are when a session begins and no figure is shown, from the middle of the device's workspace. That is 0.57 m away and 38 deg
 // below the horizon: where hands work, with bent elbows, and not nearer than a headset's lenses bear for long. From
 // the eyes and not from the floor (`local`), so that it is right seated and standing, and the headset's
 // own recentring brings the scene before the wearer again.
@@ -33,16 +35,15 @@ export class Headset {
   private busy = false;
   private offered = false;
 
-  /** `draw` is the page's picture, as the stage calls it. */
+  /** `draw` is the page's picture, as the stage calls it; `figure_eyes_m`: where a session begins, if a figure is shown. */
   constructor(
     private readonly stage: Stage,
     private readonly renderer: THREE.WebGLRenderer,
     private readonly draw: (now_ms: number) => void,
+    private readonly figure_eyes_m: () => Vec | null,
   ) {
     this.camera = new THREE.PerspectiveCamera(90, 1, 0.02, 12); // the session says its angles
-    // A headset's x is to the right, y up, z backwards.
-    this.place.matrix.makeBasis(new THREE.Vector3(0, 1, 0), new THREE.Vector3(0, 0, 1), new THREE.Vector3(1, 0, 0));
-    this.place.matrix.setPosition(kBack_m, 0, kUp_m);
+    this.place.matrix.copy(kHeadsetBasis);
     this.place.matrixAutoUpdate = false;
     this.place.add(this.camera);
     renderer.xr.setReferenceSpaceType("local");
@@ -114,6 +115,9 @@ export class Headset {
   }
 
   private begin(): void {
+    const [x_m, y_m, z_m] = this.figure_eyes_m() ?? [kBack_m, 0, kUp_m];
+    this.place.matrix.setPosition(x_m, y_m, z_m);
+    this.place.matrixWorldNeedsUpdate = true;
     this.stage.wear(this.camera);
     this.stage.scene.add(this.place, this.panel.object);
     this.stage.scene.background = this.background;

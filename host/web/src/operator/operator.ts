@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // operator.ts - the operator in the picture: shown or hidden, seen from outside or with the own eyes.
 
-import { eyes_of, grip_error_m } from "./figure";
+import { eyes_of, grip_error_m, with_head } from "./figure";
 import { FigureView } from "./figure_view";
 import { by_id } from "../document/dom";
 import type { Hud } from "../panels/hud";
@@ -17,6 +17,7 @@ export class Operator {
   private figure: FigureView | null = null;
   private skeleton: Skeleton | null = null;
   private known = ""; // what the figure was made of
+  private was_worn = false; // the last picture had a headset's head
 
   constructor(
     private readonly stage: Stage,
@@ -77,11 +78,24 @@ export class Operator {
       this.figure.show(this.shown);
       this.hud.tracking(heard ? this.shown : null);
     }
-    this.figure.object.visible = this.on && this.shown !== null && !this.stage.wearer; // who has a body of their own
+    this.figure.object.visible = this.on && this.shown !== null;
     if (!this.shown) return;
     if (this.shown.head_tracked && this.on && !this.view_chosen && !this.eyes_on) this.see_with_eyes(true);
     if (this.eyes_on) this.stage.look_through(eyes_of(this.shown, this.skeleton));
-    this.figure.clear_view(this.shown, this.stage.camera.position);
+    this.show_wearer(this.shown, this.figure, this.skeleton);
+  }
+
+  /** A headset's own pose is the head of the figure, not that of a tracker; the rest is the figure's. */
+  private show_wearer(shown: FigureFrame, figure: FigureView, skeleton: Skeleton): void {
+    const worn = this.stage.worn_head;
+    if (worn || this.was_worn) figure.show(worn ? with_head(shown, skeleton, worn) : shown);
+    this.was_worn = worn !== null;
+    figure.clear_view(shown, worn ? worn.at_m : (this.stage.camera.position.toArray() as Vec));
+  }
+
+  /** Where the figure's eyes are, m; null without one that is shown. */
+  get eyes_m(): Vec | null {
+    return this.on && this.shown && this.skeleton ? eyes_of(this.shown, this.skeleton).at_m : null;
   }
 
   /** Joints by name, m. */

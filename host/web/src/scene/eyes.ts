@@ -3,6 +3,12 @@
 
 import type { Vec } from "../link/protocol";
 
+/** Of who wears a headset: where the eyes are, and the turn w, x, y, z from looking along -x with +z up. */
+export interface WornHead {
+  at_m: Vec;
+  turn: [number, number, number, number];
+}
+
 export interface Eyes {
   at_m: Vec;
   towards: Vec; // unit

@@ -4,8 +4,9 @@
 
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { follow_share, type Eyes } from "./eyes";
+import { follow_share, type Eyes, type WornHead } from "./eyes";
 import { make_ground } from "./ground";
+import { kHeadsetAxes } from "./headset_axes";
 import { kSteel, look_material, paint } from "./look";
 import { snapshot } from "./snapshot";
 import type { Vec } from "../link/protocol";
@@ -151,6 +152,13 @@ export class Stage {
     this.wearer = camera;
     this.free_controls();
     this.resize();
+  }
+
+  /** Where the head of a headset's wearer is, of the last picture; null without a headset. */
+  get worn_head(): WornHead | null {
+    if (!this.wearer) return null;
+    const { x, y, z, w } = this.wearer.getWorldQuaternion(new THREE.Quaternion()).multiply(kHeadsetAxes.clone().invert());
+    return { at_m: this.wearer.getWorldPosition(new THREE.Vector3()).toArray(), turn: [w, x, y, z] };
   }
 
   /** What is drawn now, with these lines under it; null while that is in a headset. */
