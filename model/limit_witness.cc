@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kHair = 1.0 + 1e-12;  // for the rounding of a difference or a product
 constexpr double kRounding_J = 1e-8;   // for the sum of all energies since arming
-constexpr double kFade_s = 0.010;      // of the force, from the second missed sample on
+constexpr double kRampDown_s = 0.010;      // of the force, from the second missed sample on
 
 /// Small turns: twice the vector part of now * conjugate(before). Written out, as the operators of
 /// Quat are the gate's, too.
@@ -126,7 +126,7 @@ const char* LimitWitness::broken_peak(const WrittenTick& tick, bool stopped) con
   constexpr double kNothing = kRounding_ratio - 1.0;
   const bool zero = norm(w.force_N) <= kNothing * limits_.force_N &&
                     norm(w.torque_Nm) <= kNothing * limits_.torque_Nm;
-  if (missed_samples_ > 0 && static_cast<double>(missed_samples_ - 1) * period_s_ >= kFade_s &&
+  if (missed_samples_ > 0 && static_cast<double>(missed_samples_ - 1) * period_s_ >= kRampDown_s &&
       !zero)
     return "zero within 10 ms of the second missed sample";
   return nullptr;

@@ -35,6 +35,8 @@ constexpr Limits limits_in_use(Limits limits, double force_share) {
 /// Without a sample the force ramps down to zero in this time (RT-15), and no slew may hold that
 /// up.
 inline constexpr double kStaleRampDown_s = 0.010;
+/// So many samples in a row that are missing are a lost device.
+inline constexpr int kLostAfterSamples = 20;
 
 /// GT-6: |d(r F)| <= r |dF| + F dr <= s dt. The change of force in a period that the ramp,
 /// dr = dt/tr, leaves for everything else: (s - Fm/tr) dt. A scene whose slew is too slow for its

@@ -2,10 +2,12 @@
 // haptics.h - a scene in a program with its own loop: from a sample of the tool to the force that
 // the device may get.
 //
-//     auto haptics = std::move(*tact::Haptics::make("liver.toml"));
-//     haptics->arm();                                      // on the request of a person
-//     const auto out = haptics->tick(sample);              // once a period, out.written
-//     haptics->set({"elastic.youngs_modulus_Pa=4000"});    // used when the tool is out of contact
+//     const auto made = tact::Haptics::make("liver.toml");
+//     if (!made) return report(made.error().message);
+//     tact::Haptics& haptics = **made;
+//     haptics.arm();                                       // on the request of a person
+//     const auto out = haptics.tick(sample);               // once a period, out.written
+//     haptics.set({"elastic.youngs_modulus_Pa=4000"});     // used when the tool is out of contact
 #pragma once
 
 #include <atomic>

@@ -14,7 +14,7 @@ using model::slew_beside_ramp_N;
 
 // Chosen: slower than the ramp-down for missed samples, as the device works.
 constexpr double kWorkspaceRampDown_s = 0.050;
-constexpr std::int64_t kLostAfter = 20;  // missed samples in a row
+constexpr std::int64_t kLostAfter = model::kLostAfterSamples;
 // The margin of 1/4 lets the tool accelerate while the force falls at the slew limit:
 //
 //     GT-5   power   F . v + T . w <= 3/4 P

@@ -32,7 +32,7 @@ class CanDevice final : public Device {
         start_(std::move(start)),
         drives_(*start_.drives),
         period_ns_(model::period_ns(rate_Hz)),
-        gap_(1.0 / rate_Hz),
+        gap_(rate_Hz),
         loop_{.bus = *bus_} {
     for (std::size_t i = 0; i < 3; ++i) loop_.axes[i].node = can_.node[i];
     if (can_.homing == Homing::kJig) delta_.home_on_jig(start_.motor_turns);
@@ -215,7 +215,7 @@ class CanDevice final : public Device {
   }
 
   void check_gap(bool fresh) RT_SAFE {
-    gap_.step(fresh);
+    gap_.step(fresh, loop_.now_ns - loop_.before_ns);
     if (!gap_.is_lost()) return;
     std::size_t oldest = 0;  // the drive that the words name
     for (std::size_t i = 1; i < 3; ++i)

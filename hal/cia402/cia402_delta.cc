@@ -12,6 +12,7 @@
 #include "hal/cia402/cia402_bring_up.h"
 #include "hal/cia402/cia402_state.h"
 #include "hal/cia402/heartbeat_guard.h"
+#include "model/limits.h"
 #include "model/time_ns.h"
 
 namespace tact::hal::cia402 {
@@ -23,8 +24,7 @@ using model::Result;
 
 // Four in the 20 ms that a drive waits (CstConfiguration): one may be lost.
 constexpr double kHostHeartbeat_Hz = 200.0;
-// As many as the gate bears without a sample (gate.h): 20 ms at 1 kHz.
-constexpr int kMaxIdleTicks = 20;
+constexpr int kMaxIdleTicks = model::kLostAfterSamples;  // 20 ms at 1 kHz
 
 class Cia402s final : public can::CanDrives {
  public:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // moteus_delta.h - a delta with three moteus on one CAN FD bus: the rules of its drives.
 //
-//     off --permit--> starting --three replies say position mode, no torque--> ready --> off
-//     stop            zero torque                                              torques   stop
+//     off --permit--> starting --10 replies in a row of each: position mode, no torque--> ready
+//     stop            zero torque                                                         torques
 //
 // Each tick asks each drive and commands it in one frame; its reply is read in the next tick, so a
 // position is one period old. Each command is valid for 10 ms: without the loop the drive ends its

@@ -11,7 +11,8 @@ namespace {
 
 constexpr int kMaxTickSteps = 64;  // per period
 
-/// Interpolates between two poses.
+/// Interpolates between two poses. Orientations by the normalised mix, along the shorter rotation:
+/// q(s) = ((1 - s) a + s b) / |(1 - s) a + s b|, where b is -b if a . b < 0.
 Tool between(const Tool& from, const Tool& to, double share) RT_SAFE {
   const Quat &a = from.orientation, &b = to.orientation;
   // q and -q are the same orientation: take the smaller rotation.
@@ -31,7 +32,7 @@ Tool between(const Tool& from, const Tool& to, double share) RT_SAFE {
 }  // namespace
 
 Contact::Contact(const ContactScene& scene)
-    : scene_(scene), rest_(scene), moved_(scene), fade_ratio_(scene.law->fade_ratio()) {
+    : scene_(scene), rest_(scene), moved_(scene), relaxation_ratio_(scene.law->relaxation_ratio()) {
   for (std::size_t i = 0; i < scene.spheres.size(); ++i)
     sphere_[i] = {.index = i, .radius_m = scene.spheres[i].radius_m};
   reset();
@@ -248,11 +249,13 @@ Vec3 Contact::resistance_N(const Sphere& sphere, const Vec3& answer_N) const RT_
 }
 
 // FR-1  |P' - P| <= n + 10 K w + (2 q + r) P_max + J T / T_r
+// P: reported_N. n: kNoise_N. K: stiffest_N_per_m. w: way_m. q: relaxation_ratio_. r: let_go_ratio.
+// P_max: largest_N. J: lag_N. T: period_s. T_r: kLetGo_s.
 // The wanted force may jump when the organ snaps to another shape, a solution is found again, or
 // the proxy reaches another side. The reported force P follows. While it lags behind a lost force,
 // the hand gets at most a tenth of the energy that was lost.
 void Contact::follow_force(Sphere& sphere, const Vec3& wanted_N, double way_m) RT_SAFE {
-  constexpr double kSteepest_ratio = 10.0, kFade_ratio = 2.0, kLetGo_ratio = 2.0;
+  constexpr double kSteepest_ratio = 10.0, kRelaxation_ratio = 2.0, kLetGo_ratio = 2.0;
   constexpr double kNoise_N = 1e-3;  // numerical noise of a solution
   const Vec3 change_N = wanted_N - sphere.reported_N;
   const double length_N = norm(change_N);
@@ -260,7 +263,7 @@ void Contact::follow_force(Sphere& sphere, const Vec3& wanted_N, double way_m) R
   // A contact that lets go loses its force in 0.1 s, or faster if its law is steep.
   const double let_go_ratio = sphere.lets_go ? kLetGo_ratio * scene_.period_s / kLetGo_s : 0.0;
   const double smooth_N = kNoise_N + kSteepest_ratio * sphere.stiffest_N_per_m * way_m +
-                          (kFade_ratio * fade_ratio_ + let_go_ratio) * sphere.largest_N;
+                          (kRelaxation_ratio * relaxation_ratio_ + let_go_ratio) * sphere.largest_N;
   const bool is_held = sphere.state == ContactState::kHeld;
   // When held tissue is released or tears, the force drops in one tick.
   const bool is_let_go = sphere.was_held && !is_held && organ().is_solved() &&

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // contact.h - contact of the tool's probe spheres with the surface of an organ.
 //
-// Each sphere has one contact point and one of four states (transitions: detect.h):
+// Each sphere has one contact point and one of four states (transitions: detect.h). A sphere that
+// is ending is in contact, while its depth shrinks to 0:
 //
 //   free      no force
 //   contact   force from organ_contact.h: the negative gradient of one potential W
@@ -98,7 +99,7 @@ class Contact {
   ContactScene scene_;
   RestContact rest_;                        // used if scene_.organ is null
   MovedContact moved_;                      // used if it is not
-  double fade_ratio_;                       // ContactLaw::fade_ratio
+  double relaxation_ratio_;                       // ContactLaw::relaxation_ratio
   std::array<Vec3, kMaxSpheres> goal_m_{};  // centres of the spheres at the pose in work
   std::array<Sphere, kMaxSpheres> sphere_{};
   std::array<SphereContact, kMaxSpheres> contact_{};  // as reported

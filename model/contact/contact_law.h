@@ -74,7 +74,7 @@ class ContactLaw : public IndentationView {
   }
   /// Largest decrease of the instantaneous force by relaxation in a tick at constant depth, as a
   /// ratio.
-  virtual double fade_ratio() const RT_SAFE { return 0.0; }
+  virtual double relaxation_ratio() const RT_SAFE { return 0.0; }
   /// MC-5: tangential compliance of the contact point in these axes. All 0: not known.
   virtual TangentCompliance tangent_compliance(const SurfacePoint& surface_point, bool held,
                                                const Axes& axes) const RT_SAFE {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // detect.h - state transitions of each sphere, for any path of the tool.
 //
+// To locate a sphere is to search its nearest point without a start; ending is a part of contact.
+//
 //     located outside -> free       located overlapping the organ -> inside
 //     free            -> contact    the nearest point of the surface is nearer than r
 //     free            -> inside     deeper than its displacement: it came through a hole of an

@@ -50,7 +50,7 @@ void refuse_slow_slew(Keys& k, const Limits& limits) {
   if (limits.slew_N_per_s >= least_N_per_s) return;
   k.refuse({"slew_N_per_s", "force_N"},
            fmt::format("limits.slew_N_per_s = {} is too slow for force_N = {}: a lost device must "
-                       "fade to zero in 10 ms; allowed: {} or more",
+                       "ramp down in 10 ms; allowed: {} or more",
                        limits.slew_N_per_s, limits.force_N, least_N_per_s));
 }
 

@@ -162,8 +162,8 @@ double SpringPatch::stiffest_N_per_m(const contact::SurfacePoint& surface_point,
   return organ() != nullptr ? organ()->stiffest_N_per_m(surface_point, held) : 0.0;
 }
 
-double SpringPatch::fade_ratio() const RT_SAFE {
-  return organ() != nullptr ? organ()->fade_ratio() : 0.0;
+double SpringPatch::relaxation_ratio() const RT_SAFE {
+  return organ() != nullptr ? organ()->relaxation_ratio() : 0.0;
 }
 
 // 1 / q + that of the place: linear over each triangle.

@@ -76,7 +76,7 @@ class SpringPatch final : public contact::ContactLaw {
                                     double distance_m) const RT_SAFE override;
   double stiffest_N_per_m(const contact::SurfacePoint& surface_point,
                           bool held) const RT_SAFE override;
-  double fade_ratio() const RT_SAFE override;
+  double relaxation_ratio() const RT_SAFE override;
   double ring_pitch_m() const RT_SAFE override { return ring_pitch_m_; }
 
   /// Displaced vertices, cut edges first, then the nearest to the contact; cost bounded.

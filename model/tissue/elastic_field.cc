@@ -161,7 +161,7 @@ contact::ContactCoupling ElasticField::coupling(const contact::Indentation& a,
           .structural_m_per_N = std::max(map_m_per_N, 0.0)};
 }
 
-double ElasticField::fade_ratio() const RT_SAFE {
+double ElasticField::relaxation_ratio() const RT_SAFE {
   double sum = 0.0;
   for (std::size_t i = 0; i < parts_.relaxation.terms(); ++i)
     sum += parts_.relaxation.share(i + 1) * parts_.relaxation.rate_per_tick(i);

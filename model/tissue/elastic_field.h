@@ -81,7 +81,7 @@ class ElasticField final : public contact::ContactLaw {
                                     double distance_m) const RT_SAFE override;
   double stiffest_N_per_m(const contact::SurfacePoint& surface_point,
                           bool held) const RT_SAFE override;
-  double fade_ratio() const RT_SAFE override;
+  double relaxation_ratio() const RT_SAFE override;
   contact::TangentCompliance tangent_compliance(const contact::SurfacePoint& surface_point,
                                                 bool held,
                                                 const contact::Axes& axes) const RT_SAFE override;

@@ -31,8 +31,8 @@ async function run() {
       [x_m, turn_rad],
     );
     await page.waitForTimeout(500);
-    const { drawn_figure_m, figure_eyes_m, figure_m, headset } = await numbers(page);
-    return { drawn_m: drawn_figure_m, own_m: figure_m, eyes_m: figure_eyes_m, eye_m: place_of(headset.eyes[0]) };
+    const { drawn_figure_m, figure_m, headset } = await numbers(page);
+    return { drawn_m: drawn_figure_m, own_m: figure_m, eyes_m: headset.figure_eyes_m, eye_m: place_of(headset.eyes[0]) };
   };
   const at = await seen(0);
   check("the figure stays in the headset", at.drawn_m !== null && at.drawn_m["right fingers"] !== undefined);

@@ -89,5 +89,5 @@ int main(int count, char** arguments) {
   device.stop();
   std::printf("largest force %.3f N, limit %.3f N, %s\n", device.largest_N, haptics.force_limit_N(),
               model::describe(out.fault).name);
-  return out.fault == model::Fault::kNone ? 0 : 1;
+  return out.fault == model::Fault::kNone && wrote == hal::Fault::kNone ? 0 : 1;
 }

@@ -280,7 +280,6 @@ const numbers = {
   get figure_on() { return operator.there && operator.on; },
   get eyes_on() { return operator.eyes_on; },
   get figure_m() { return operator.joints_m; },
-  get figure_eyes_m() { return operator.eyes_m; },
   get drawn_figure_m() { return operator.drawn_m; },
   /** Where a place in the tool's own axes is drawn. */
   drawn_tool_m(place_m: Vec) { return tool?.drawn_m(place_m) ?? null; },

@@ -79,7 +79,7 @@ TEST(Gate, OneMissedSampleHoldsTheForce) {
   EXPECT_EQ(v.acting, Fault::kSampleHeld);
 }
 
-TEST(Gate, FromTheSecondMissedSampleForceFadesToZeroIn10ms) {
+TEST(Gate, FromTheSecondMissedSampleForceRampsDownIn10ms) {
   Gate gate = open_gate({1, 0, 0});
   GateInput stale = wanting({1, 0, 0});
   stale.fresh = false;
@@ -115,7 +115,7 @@ GateInput late_and_missing(const Vec3& force_N, std::uint32_t skipped_periods) {
   return input;
 }
 
-TEST(Gate, ALoopThatIsLateFadesInTenMillisecondsOfTimeNotOfTicks) {
+TEST(Gate, ALateLoopRampsDownInTenMillisecondsNotTenTicks) {
   Gate two = open_gate({4, 0, 0});  // two periods a tick: 2, 4, .. samples are missing
   for (const double left : {0.9, 0.7, 0.5, 0.3, 0.1, 0.0}) {
     const LimitedForce v = two.limit(late_and_missing({4, 0, 0}, 1));
@@ -128,7 +128,7 @@ TEST(Gate, ALoopThatIsLateFadesInTenMillisecondsOfTimeNotOfTicks) {
     EXPECT_LE(five.limit(late_and_missing({8, 0, 0}, 4)).wrench.force_N.x, 8.0 * left + 1e-12);
 }
 
-TEST(Gate, AForceFarAboveItsLimitFadesInTenMillisecondsToo) {
+TEST(Gate, AForceFarAboveItsLimitRampsDownInTenMilliseconds) {
   GateInput much = wanting({1000, 0, 0});
   much.wanted.torque_Nm = {0, 0, 50};
   Gate gate = open_gate();
@@ -160,13 +160,13 @@ TEST(Gate, AfterALateTickAForceGrowsByOnePeriodsSlew) {
   late.skipped_periods = 4;
   EXPECT_LE(gate.limit(late).wrench.force_N.x, 1.0);
   GateInput back = wanting({8, 0, 0});
-  Gate faded = open_gate({8, 0, 0});
-  for (int i = 0; i < 11; ++i) faded.limit(late_and_missing({8, 0, 0}, 0));
+  Gate ramped = open_gate({8, 0, 0});
+  for (int i = 0; i < 11; ++i) ramped.limit(late_and_missing({8, 0, 0}, 0));
   back.skipped_periods = 4;
-  EXPECT_LE(faded.limit(back).wrench.force_N.x, 1.0);
+  EXPECT_LE(ramped.limit(back).wrench.force_N.x, 1.0);
 }
 
-TEST(Gate, ALoopThatIsLateFadesOutsideTheWorkspaceInFiftyMilliseconds) {
+TEST(Gate, ALateLoopRampsDownOutsideTheWorkspaceInFiftyMilliseconds) {
   Gate gate = open_gate({1, 0, 0});
   GateInput outside = wanting({1, 0, 0});
   outside.tool.position_m = {0, 0.19, 0};
@@ -175,12 +175,12 @@ TEST(Gate, ALoopThatIsLateFadesOutsideTheWorkspaceInFiftyMilliseconds) {
     EXPECT_NEAR(gate.limit(outside).wrench.force_N.x, 1.0 - 0.1 * tick, 1e-12);
 }
 
-TEST(Gate, OutsideTheWorkspaceTheForceFadesAndComesBackInside) {
+TEST(Gate, OutsideTheWorkspaceTheForceRampsDownAndBackInside) {
   Gate gate = open_gate({1, 0, 0});
   GateInput outside = wanting({1, 0, 0});
   outside.tool.position_m = {0, 0.19, 0};
   const LimitedForce first = gate.limit(outside);
-  EXPECT_GT(first.wrench.force_N.x, 0.9) << "fades, never cuts";
+  EXPECT_GT(first.wrench.force_N.x, 0.9) << "ramps down, no step";
   EXPECT_EQ(first.acting, Fault::kOutsideWorkspace);
   for (int i = 0; i < 60; ++i) gate.limit(outside);
   EXPECT_EQ(gate.limit(outside).wrench.force_N.x, 0.0);
@@ -230,12 +230,12 @@ TEST(Gate, RampsUpAfterArming) {
   EXPECT_LT(gate.limit(wanting({1, 0, 0})).wrench.force_N.x, 0.01) << "arming again ramps again";
 }
 
-TEST(Gate, TooFastTheForceFadesAndComesBackWhenItIsSlow) {
+TEST(Gate, TooFastTheForceRampsDownAndBackWhenItIsSlow) {
   Gate gate = open_gate({0.1, 0, 0});
   GateInput fast = wanting({0.1, 0, 0});
   fast.tool.velocity_mps = {0, 1.6, 0};
   const LimitedForce first = gate.limit(fast);
-  EXPECT_GT(first.wrench.force_N.x, 0.09) << "fades, never cuts";
+  EXPECT_GT(first.wrench.force_N.x, 0.09) << "ramps down, no step";
   EXPECT_EQ(first.acting, Fault::kTooFast);
   for (int i = 0; i < 60; ++i) gate.limit(fast);
   EXPECT_EQ(gate.limit(fast).wrench.force_N.x, 0.0);

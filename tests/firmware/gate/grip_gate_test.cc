@@ -68,7 +68,7 @@ TEST_F(GripGateTest, HasTheSlewInProportion) {
 TEST_F(GripGateTest, IsZeroAtOnceWhenNotArmed) {
   ticks(20, 2.0);
   EXPECT_EQ(tick(2.0, true, false).force_N, 0.0);
-  EXPECT_LT(tick(2.0).force_N, 0.1) << "it fades in again";
+  EXPECT_LT(tick(2.0).force_N, 0.1) << "it ramps up again";
 }
 
 TEST_F(GripGateTest, AForceOrAGapThatIsNoNumberLatches) {
@@ -80,7 +80,7 @@ TEST_F(GripGateTest, AForceOrAGapThatIsNoNumberLatches) {
   EXPECT_EQ(limited.force_N, 0.0);
 }
 
-TEST_F(GripGateTest, FadesWithoutSamplesAndThenLatches) {
+TEST_F(GripGateTest, RampsDownWithoutSamplesAndThenLatches) {
   ticks(20, 2.0);
   for (int i = 0; i < 12; ++i) tick(2.0, false);
   EXPECT_EQ(limited.force_N, 0.0);

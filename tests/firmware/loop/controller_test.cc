@@ -106,7 +106,7 @@ TEST_F(ControllerTest, BeyondTheLawIsReportedBeforeALimitThatLeavesTheForceOn) {
   EXPECT_EQ(tick().limit, Fault::kLawSaturated);
   input.sample.fresh = false;
   EXPECT_EQ(controller->tick(input).limit, Fault::kLawSaturated) << "a sample is held, too";
-  EXPECT_EQ(controller->tick(input).limit, Fault::kSampleStale) << "its force fades";
+  EXPECT_EQ(controller->tick(input).limit, Fault::kSampleStale) << "its force ramps down";
   input.sample.fresh = true;
   input.commands.arm = false;
   law.is_beyond = false;
@@ -122,7 +122,7 @@ TEST_F(ControllerTest, ArmingChangesNothingOfContact) {
   const TickOutput armed = tick();
   EXPECT_EQ(armed.state, State::kArmed);
   EXPECT_EQ(armed.wanted, before.wanted);
-  EXPECT_LT(armed.written.force_N.z, 0.02) << "the ramp fades it in";
+  EXPECT_LT(armed.written.force_N.z, 0.02) << "the ramp limits it";
   for (int i = 0; i < 600; ++i) tick();
   EXPECT_NEAR(tick().written.force_N.z, before.wanted.force_N.z, 1e-9);
 }

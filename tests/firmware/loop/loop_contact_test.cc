@@ -9,7 +9,7 @@ namespace tact::firmware::loop::loop_contact_test {
 
 using LoopContact = PuppetLoop;
 
-TEST_F(LoopContact, ArmedWhilePressingTheForceIsFadedIn) {
+TEST_F(LoopContact, ArmedWhilePressingTheForceRampsUp) {
   device.height_m = 0.006;
   run_ticks(5);
   for (; device.height_m > 0.001; device.height_m -= 0.0001) loop.step();

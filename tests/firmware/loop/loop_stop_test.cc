@@ -88,7 +88,7 @@ TEST_F(LoopStop, DisarmingTakesTheForceInTheSameTickAndNoStopComesOfIt) {
   EXPECT_TRUE(lines.last.healthy) << "the drives keep their power";
   EXPECT_EQ(answer_to(Request::kArm), true);
   EXPECT_EQ(newest().output.state, State::kArmed);
-  EXPECT_LT(device.last.force_N.z, 0.01) << "it fades in again";
+  EXPECT_LT(device.last.force_N.z, 0.01) << "it ramps up again";
   run_ticks(600);
   EXPECT_GT(device.last.force_N.z, 0.05);
 }
@@ -235,7 +235,7 @@ TEST_F(LoopStop, ReportsWhenForceStopped) {
   EXPECT_LE(stop.missed_ns, before_ns + 1'000'000);
   EXPECT_NEAR(static_cast<double>(stop.fault_ns - stop.missed_ns), 19e6, 1.0) << "20 in a row";
   EXPECT_LE(stop.zero_ns - stop.missed_ns, 11'000'000) << "10 ms from the second";
-  EXPECT_GE(stop.zero_ns - stop.missed_ns, 9'000'000) << "a fade, not a cut";
+  EXPECT_GE(stop.zero_ns - stop.missed_ns, 9'000'000) << "a ramp, no step";
 }
 
 }  // namespace tact::firmware::loop::loop_stop_test

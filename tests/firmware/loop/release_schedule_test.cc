@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace tact::firmware::loop::grid_test {
+namespace tact::firmware::loop::release_schedule_test {
 
 constexpr std::int64_t kPeriods_ns[] = {250'000, 500'000, 1'000'000, 2'000'000, 4'000'000};
 constexpr std::int64_t kStarts_ns[] = {0,         1,          299'999,           300'000,
@@ -50,4 +50,4 @@ TEST(ReleaseSchedule, ADeadlineIsMissedFromItsOwnInstantOn) {
   EXPECT_EQ(periods_missed(5'000, 7'500, 1'000), 3);
 }
 
-}  // namespace tact::firmware::loop::grid_test
+}  // namespace tact::firmware::loop::release_schedule_test

@@ -76,7 +76,7 @@ TEST_F(RtLoopTest, AFaultOfTheLastTicksWriteIsNotForgotten) {
   EXPECT_EQ(requests.fault.load(), Fault::kDeviceFailed);
 }
 
-TEST_F(RtLoopTest, TicksLieOnTheGridOfTheClockWheneverItStarts) {
+TEST_F(RtLoopTest, TicksKeepTheReleaseScheduleOfTheClock) {
   for (int i = 0; i < 3; ++i) {
     run_ticks(1);
     const std::int64_t due_ns = newest().due_ns;
@@ -85,14 +85,14 @@ TEST_F(RtLoopTest, TicksLieOnTheGridOfTheClockWheneverItStarts) {
   }
 }
 
-TEST_F(RtLoopTest, ALateTickSkipsWholePeriodsAndNeverShiftsTheGrid) {
+TEST_F(RtLoopTest, ALateTickSkipsWholePeriodsOfTheReleaseSchedule) {
   run_ticks(10);
-  const std::int64_t grid_ns = newest().due_ns % 1'000'000;
+  const std::int64_t phase_ns = newest().due_ns % 1'000'000;
   device.slow_ns = 3'400'000;  // eats three whole periods and a part
   run_ticks(1);
   run_ticks(1);
   const TickRecord after = newest();
-  EXPECT_EQ(after.due_ns % 1'000'000, grid_ns);
+  EXPECT_EQ(after.due_ns % 1'000'000, phase_ns);
   EXPECT_EQ(after.late_ticks, 1u);
   EXPECT_EQ(after.skipped_ticks, 3u);
   EXPECT_EQ(loop.statistics().ticks + loop.statistics().skipped_ticks, 15u);
@@ -109,7 +109,7 @@ TEST_F(RtLoopTest, LetsGoWhenTheDeviceIsLost) {
   press();
   device.silent = true;
   run_ticks(12);
-  EXPECT_NEAR(norm(device.last.force_N), 0.0, 1e-9) << "faded within 10 ms of the second miss";
+  EXPECT_NEAR(norm(device.last.force_N), 0.0, 1e-9) << "ramped down within 10 ms of the second miss";
   EXPECT_EQ(newest().output.state, State::kArmed);
   run_ticks(8);
   EXPECT_EQ(newest().output.fault, Fault::kDeviceLost);

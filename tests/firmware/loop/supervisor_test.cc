@@ -255,7 +255,7 @@ int model_constant(const std::string& name) {
 }
 
 // What tests/spin/supervisor.pml says of the gate, at 1 kHz.
-TEST(Supervisor, TheModelFadesAndLosesAfterAsManyMissedSamplesAsTheGate) {
+TEST(Supervisor, TheModelRampsDownAndLosesAfterAsManyMissedAsTheGate) {
   const model::Limits limits{.force_N = 8.0,
                              .torque_Nm = 0.2,
                              .slew_N_per_s = 1000.0,

@@ -87,6 +87,7 @@ export class Headset {
       shown: this.panel.shown,
       alarm: this.background.equals(kAlarm),
       panel_m: this.panel.corners_m,
+      figure_eyes_m: this.figure_eyes_m(),
       eyes: cameras.map((eye) => ({ projection: eye.projectionMatrix.toArray(), view: eye.matrixWorldInverse.toArray() })),
     };
   }
