@@ -81,9 +81,9 @@ class Loopback(ProcessCase):
     @unittest.skipUnless(HAS_ROS, "needs tact-ros")
     def test_what_is_bound_elsewhere_is_seen_there(self):
         _, log = self.tactd()
-        self.assertEqual(sent(), 0)
+        before = sent()
         self.start("tact-ros", log, "--domain", "8", "--interface", OUT)
-        until(lambda: sent() > 0, "a packet that leaves")
+        until(lambda: sent() > before, "a packet that leaves")
 
 
 if __name__ == "__main__":
