@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -33,6 +34,7 @@ struct Sample {
   std::int64_t stamp_ns = 0;    // CLOCK_MONOTONIC when the device state was sampled
   std::uint64_t sequence = 0;   // counts device samples, never repeats
   bool fresh = false;
+  double temperature_C = std::numeric_limits<double>::quiet_NaN();  // hottest drive; NaN: none
 };
 
 /// How the hand closes the jaws of the tool.

@@ -29,6 +29,23 @@ constexpr std::array kPatch{FIELD(vertex_count, "displaced vertices in this fram
                             FIELD(displacement_um, "from rest; vertex_count are in use")};
 #undef FIELD
 
+/// kBound_us as text; the last bucket has no bound.
+constexpr std::array kBound_names{"1us",   "2us",   "5us",   "10us",   "20us",   "50us",
+                                  "100us", "200us", "500us", "1000us", "5000us", "inf"};
+static_assert(kBound_names.size() == FrameDurations::kBound_us.size() + 1);
+
+#define FIELD(member, meaning) TACT_FIELD(FrameDurations, member, #member, meaning)
+constexpr std::array kDurations{
+    FIELD(ticks, "count since start; a tick counts at the least bound that it keeps")
+        .with_components(kBound_names),
+    FIELD(sum_ns, "of those ticks")};
+#undef FIELD
+
+#define FIELD(member, meaning) TACT_FIELD(FrameEvent, member, #member, meaning)
+constexpr std::array kEvent{FIELD(number, "0: none yet"),
+                            FIELD(due_ns, "deadline of its tick, CLOCK_MONOTONIC")};
+#undef FIELD
+
 #define FIELD(member, meaning) TACT_FIELD(Frame, member, #member, meaning)
 constexpr std::array kFrame{
     FIELD(tick, "number of the newest tick"),
@@ -59,6 +76,10 @@ constexpr std::array kFrame{
     FIELD(state, "").labelled(state_name),
     FIELD(non_rt, meaning::kNonRt),
     FIELD(contact_losses, meaning::kContactLosses),
+    FIELD(temperature_C, meaning::kTemperature),
+    FIELD(wake, "ticks by wake-up latency"),
+    FIELD(duration, "ticks by duration, without the newest"),
+    FIELD(event, "newest one of tactctl"),
     FIELD(contact, "probe spheres of the tool; as many as the head has spheres are in use"),
     FIELD(patch, "of a mass-spring law")};
 #undef FIELD
@@ -67,6 +88,15 @@ constexpr std::array kFrame{
 
 FieldTable FrameContact::fields() { return kContact; }
 FieldTable FramePatch::fields() { return kPatch; }
+FieldTable FrameEvent::fields() { return kEvent; }
+FieldTable FrameDurations::fields() { return kDurations; }
+
+void FrameDurations::add(std::int64_t duration_ns) {
+  std::size_t i = 0;
+  while (i < kBound_us.size() && duration_ns > 1000 * std::int64_t{kBound_us[i]}) ++i;
+  ++ticks[i];
+  sum_ns += static_cast<std::uint64_t>(duration_ns);
+}
 
 FieldTable Frame::fields(std::size_t spheres) { return with_contacts<kFrame>(spheres); }
 

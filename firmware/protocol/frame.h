@@ -3,7 +3,9 @@
 // before. frame.cc says what each field is.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <limits>
 
 #include "firmware/loop/state.h"
 #include "firmware/protocol/chunks.h"
@@ -42,6 +44,25 @@ struct FramePatch {
   static FieldTable fields();
 };
 
+/// Of all ticks whose records have reached telemetry, by a duration of the tick.
+struct FrameDurations {
+  /// Upper bounds, us, of all buckets but the last; frame.cc has them as names of the components.
+  static constexpr std::array kBound_us{1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 5000};
+  std::uint64_t ticks[kBound_us.size() + 1] = {};
+  std::uint64_t sum_ns = 0;
+
+  void add(std::int64_t duration_ns);
+  static FieldTable fields();
+};
+
+/// Newest one of tactctl.
+struct FrameEvent {
+  std::uint8_t number = 0;
+  std::int64_t due_ns = 0;
+
+  static FieldTable fields();
+};
+
 struct Frame {
   static constexpr ChunkKind kKind = ChunkKind::kFrame;
   static constexpr const char* kName = "frame";
@@ -69,6 +90,9 @@ struct Frame {
   loop::State state = loop::State::kOff;
   bool non_rt = false;
   std::uint32_t contact_losses = 0;
+  float temperature_C = std::numeric_limits<float>::quiet_NaN();
+  FrameDurations wake, duration;
+  FrameEvent event;
   FrameContact contact[kMaxContacts] = {};
   FramePatch patch;
 

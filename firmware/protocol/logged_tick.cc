@@ -40,6 +40,7 @@ constexpr std::array kTick{
     INPUT(sample.stamp_ns, "sample_stamp_ns", "when the device was read, CLOCK_MONOTONIC"),
     INPUT(sample.sequence, "sample_sequence", "counts the device's samples, never repeats"),
     INPUT(sample.fresh, "sample_fresh", "0: the device had no new sample"),
+    INPUT(sample.temperature_C, "temperature_C", meaning::kTemperature),
     INPUT(device_fault, "device_fault", "number of tactd --faults, 0 none").labelled(fault_name),
     INPUT(commands.arm, "command_arm", ""),
     INPUT(commands.stop, "command_stop", ""),

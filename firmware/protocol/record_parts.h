@@ -36,6 +36,7 @@ inline constexpr const char* kFault = "latched; number of tactd --faults, 0 none
 inline constexpr const char* kNonRt = "the PC has no hard real time, the force is capped";
 inline constexpr const char* kContactLosses =
     "count since start: contact was lost as the tool moved too far between samples";
+inline constexpr const char* kTemperature = "of the hottest drive; NaN: no drive reports one";
 }  // namespace meaning
 
 /// `table` with so many elements in its field "contact".

@@ -13,9 +13,6 @@
 namespace tact::firmware::run {
 namespace {
 
-// With a poll every 0.2 s the answer comes within a second, also while the tool is in contact.
-constexpr int kMaxPolls = 5;
-
 std::vector<std::string> words_of(const std::string& text) {
   std::istringstream in(text);
   return {std::istream_iterator<std::string>(in), {}};

@@ -20,6 +20,7 @@
 #include "firmware/telemetry/telemetry.h"
 #include "hal/threads/thread.h"
 #include "model/scene/variant.h"
+#include "model/time_ns.h"
 
 namespace tact::firmware::run {
 
@@ -37,6 +38,11 @@ class LawUpdater {
   static State next(State state, Event event);
   /// Does a client wait for its answer? A further request is refused.
   static bool waits(State state) { return state != State::kIdle && state != State::kDeferred; }
+
+  /// Time between two calls of poll() while a client waits; within a second it has its answer, also
+  /// while the tool is in contact.
+  static constexpr std::int64_t kPollPeriod_ns = 20 * model::kMillisecond_ns;
+  static constexpr int kMaxPolls = model::kSecond_ns / kPollPeriod_ns;
 
   /// All of these outlive it. The destructor is called after the loop has ended.
   struct Use {

@@ -33,7 +33,9 @@ void serve_operator(const ServiceParts& s, LoopExecutor& executor) {
   };
   while (!executor.ended()) {
     const std::int64_t now_ns = clock.now_ns();
-    const std::int64_t until_ns = loop::next_half_way_ns(now_ns + kStatusPeriod_ns, s.period_ns);
+    const bool is_waited_for = LawUpdater::waits(s.updater.state());
+    const std::int64_t pause_ns = is_waited_for ? LawUpdater::kPollPeriod_ns : kStatusPeriod_ns;
+    const std::int64_t until_ns = loop::next_half_way_ns(now_ns + pause_ns, s.period_ns);
     request_handler.serve(until_ns - now_ns);
     service.report({now_ns, view.why_not_arm().empty(), s.progress.ticks(), view.status()});
     report_news();

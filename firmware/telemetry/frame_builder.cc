@@ -34,6 +34,7 @@ void put(Frame& frame, const loop::TickInput& input, const loop::TickOutput& out
   put(frame.torque_Nm, output.written.torque_Nm);
   put(frame.wanted_force_N, output.wanted.force_N);
   frame.grip_force_N = static_cast<float>(output.written_grip_N);
+  frame.temperature_C = static_cast<float>(input.sample.temperature_C);
   frame.fault = static_cast<std::uint16_t>(output.fault);
   frame.state = output.state;
   constexpr std::uint64_t kMax_count = std::numeric_limits<std::uint32_t>::max();
@@ -132,7 +133,11 @@ void FrameBuilder::add(const loop::TickRecord& record) {
   given_energy_J_ = tick_us_.empty() ? given_energy_J : std::max(given_energy_J_, given_energy_J);
   worst_margin_us_ = tick_us_.empty() ? margin_us : std::min(worst_margin_us_, margin_us);
   // The total of the tick before: a tick's own total is known only after its record is published.
-  tick_us_.push_back(to_us(record.phase_ns[static_cast<std::size_t>(loop::Phase::kTotal)]));
+  const std::int32_t total_ns = record.phase_ns[static_cast<std::size_t>(loop::Phase::kTotal)];
+  tick_us_.push_back(to_us(total_ns));
+  wake_.add(record.phase_ns[static_cast<std::size_t>(loop::Phase::kWake)]);
+  if (record.event != 0) event_ = {.number = record.event, .due_ns = record.due_ns};
+  if (record.tick > 0) duration_.add(total_ns);
   peak_force_N_ = std::max(peak_force_N_, static_cast<float>(norm(record.output.written.force_N)));
   // A limit that acted for only one tick still appears in the frame.
   if (record.output.limit != model::Fault::kNone) limit_ = record.output.limit;
@@ -175,6 +180,9 @@ Frame FrameBuilder::take(std::uint64_t dropped_records) {
   frame.given_energy_J = given_energy_J_;
   frame.limit = static_cast<std::uint16_t>(limit_);
   frame.non_rt = non_rt_;
+  frame.event = event_;
+  frame.wake = wake_;
+  frame.duration = duration_;
   static_assert(protocol::kMaxContacts == model::contact::kMaxSpheres);
   const auto contacts = r.contacts.all();
   for (std::size_t i = 0; i < contacts.size(); ++i) add_contact(contacts[i], frame.contact[i]);

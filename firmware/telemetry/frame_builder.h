@@ -65,6 +65,8 @@ class FrameBuilder {
   loop::TickRecord newest_;
   std::int64_t first_due_ns_ = -1;
   std::vector<float> tick_us_;  // since the last frame
+  protocol::FrameEvent event_;
+  protocol::FrameDurations wake_, duration_;
   float worst_margin_us_ = 0.0f;
   float peak_force_N_ = 0.0f;
   float given_energy_J_ = 0.0f;

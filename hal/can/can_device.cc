@@ -74,6 +74,7 @@ class CanDevice final : public Device {
     check_gap(measured);
     if (fault() != Fault::kNone || !measured) return fault();
     sample = {.tool = tool, .stamp_ns = stamp_ns, .sequence = ++sequence_, .fresh = true};
+    sample.temperature_C = loop_.hottest_C();
     return Fault::kNone;
   }
 

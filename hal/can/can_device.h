@@ -19,6 +19,8 @@
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -44,7 +46,8 @@ struct CanAxis {
   double motor_turns = 0.0;       // the newest
   std::int64_t arrival_ns = 0;    // of that
   std::int64_t heartbeat_ns = 0;  // arrival of the newest one
-  ReplyBalance replies{};         // of drives that sample at SYNC or answer each command
+  double temperature_C = std::numeric_limits<double>::quiet_NaN();  // of a drive that reports it
+  ReplyBalance replies{};  // of drives that sample at SYNC or answer each command
 
   void sample(double turns, std::int64_t at_ns) RT_SAFE {
     located = sampled = true;
@@ -104,6 +107,12 @@ struct BasicCanLoop {
   void become_ready() RT_SAFE {
     power = CanPower::kReady;
     waits.clear();
+  }
+  /// NaN if no drive reports a temperature.
+  double hottest_C() const RT_SAFE {
+    double out = axes[0].temperature_C;
+    for (const CanAxis& axis : axes) out = std::fmax(out, axis.temperature_C);  // leaves NaN out
+    return out;
   }
   bool start_is_late() const RT_SAFE {
     return power == CanPower::kStarting && asked_ns != 0 && now_ns - asked_ns > kLongestStart_ns;

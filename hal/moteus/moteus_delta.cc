@@ -71,6 +71,7 @@ class Moteuses final : public can::CanFdDrives {
     extra_ += loop.axes[at].sampled ? 1 : 0;
     loop.axes[at].replies.add_reply();
     loop.axes[at].sample(*reply->position_turns, arrival_ns);
+    loop.axes[at].temperature_C = *reply->temperature_C;
     axis.incomplete = 0;
     axis.torque_Nm = *reply->torque_Nm;
     limited_ += is_moteus_limit(axis.fault) ? 1 : 0;

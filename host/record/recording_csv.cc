@@ -16,13 +16,14 @@
 namespace tact::host::record {
 namespace {
 
-/// What of a frame has columns: spheres and profile points in use; of a patch the sums below.
+/// What of a frame has columns: spheres and profile points in use; of a patch the sums below; of
+/// events and histograms nothing.
 firmware::protocol::ElementLimit columns_of(const RunHeader& header) {
   return [&header](const firmware::protocol::Field& field) -> std::optional<std::size_t> {
     const std::string_view name = field.name;
     if (name == "contact") return header.spheres.size();
     if (name == "profile_m") return header.profile_points;
-    return name == "patch" ? std::optional<std::size_t>(0) : std::nullopt;
+    return field.record != nullptr ? std::optional<std::size_t>(0) : std::nullopt;
   };
 }
 

@@ -54,6 +54,10 @@ void add_page(CLI::App& app, Options& options) {
   app.add_option(
       "--page", options.viewer.page_folder,
       "folder of the built page (default: ../share/tact/page or page/ beside this program)");
+  app.add_flag(
+      "--keys", options.keys,
+      "for a program that asks for answers, as tact-trial does: a digit that is typed at a "
+      "page becomes the line \"key DIGIT\" of the output");
   app.add_flag("--json", options.json, "say what is ready or done as one line of JSON");
 }
 

@@ -24,6 +24,7 @@ struct Options {
   std::size_t poses = 12;     // for the registration
   bool figure = false;        // show the operator even without a tracker
   double height_m = 1.75;     // the operator's
+  bool keys = false;          // digits of pages become lines of the output
   bool json = false;
 };
 

@@ -241,6 +241,7 @@ int show_live(const Options& options) {
   if (!options.scenes.empty())
     server.let_choose([&picker](const nlohmann::json& request) { picker.ask(request); },
                       picker.list());
+  if (options.keys) server.let_answer([](char digit) { say_line(fmt::format("key {}", digit)); });
   const int status = serve(options, io, server, [&] {
     client.start();
     inputs.start();

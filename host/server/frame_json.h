@@ -14,7 +14,7 @@
 
 namespace tact::host::server {
 
-inline constexpr std::size_t kMaxFrameJsonBytes = 11'904;  // 16 spheres pressing
+inline constexpr std::size_t kMaxFrameJsonBytes = 11'936;  // 16 spheres pressing
 
 /// {"kind":"frame","tick":..,"force_N":[x,y,z],...,"contacts":[{"contact":0,"depth_m":..,...}]}
 std::string frame_json(const record::Frame& frame, const record::RunHeader& header);

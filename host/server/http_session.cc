@@ -169,7 +169,7 @@ void HttpSession::upgrade(const Request& request) {
                      request);
   if (!from_own_page(request, view_of(request[http::field::origin]))) return;
   std::make_shared<LiveSession>(std::move(stream_), std::move(slot_), site_.view, site_.move_hand,
-                                site_.steer, site_.ask_scene)
+                                site_.steer, site_.ask_scene, site_.take_digit)
       ->start(request);
 }
 

@@ -30,8 +30,9 @@ struct Site {
   Access access;
   std::function<ConnectionSlot()> take_slot;  // null: all are taken
   MoveHand move_hand;
-  Steer steer;         // only of a replay
-  AskScene ask_scene;  // only of a simulation that offers scenes
+  Steer steer;           // only of a replay
+  AskScene ask_scene;    // only of a simulation that offers scenes
+  TakeDigit take_digit;  // only for a program that asks for answers
   std::function<void(const std::string& text)> warn_once;  // a line on the terminal
   std::string scenes;                                      // the offered scenes, as JSON; or empty
   std::chrono::milliseconds request_timeout;  // for one whole request, after the last response

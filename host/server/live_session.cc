@@ -45,14 +45,25 @@ std::optional<HandRequest> parse_hand(const std::string& text) {
                      .grip_ratio = std::clamp(value[6], 0.0, 1.0)};
 }
 
+std::optional<char> parse_digit(const std::string& text) {
+  const auto message = model::io::parse_json(text, "request");
+  if (!message || !message->is_object()) return std::nullopt;
+  const nlohmann::json key = message->value("key", nlohmann::json());
+  const std::string word = key.is_string() ? key.get<std::string>() : "";
+  if (word.size() != 1 || word[0] < '0' || word[0] > '9') return std::nullopt;
+  return word[0];
+}
+
 LiveSession::LiveSession(beast::tcp_stream stream, ConnectionSlot slot, LiveView& view,
-                         const MoveHand& move_hand, const Steer& steer, const AskScene& ask_scene)
+                         const MoveHand& move_hand, const Steer& steer, const AskScene& ask_scene,
+                         const TakeDigit& take_digit)
     : socket_(std::move(stream)),
       slot_(std::move(slot)),
       view_(view),
       move_hand_(move_hand),
       steer_(steer),
-      ask_scene_(ask_scene) {}
+      ask_scene_(ask_scene),
+      take_digit_(take_digit) {}
 
 // The view holds a plain pointer to this session.
 LiveSession::~LiveSession() { view_.unsubscribe(*this); }
@@ -128,6 +139,8 @@ void LiveSession::take(const std::string& text) {
   }
   if (steer_)
     if (const std::optional<ReplayRequest> request = parse_replay(text)) steer_(*request);
+  if (take_digit_)
+    if (const std::optional<char> digit = parse_digit(text)) take_digit_(*digit);
   if (!move_hand_) return;
   if (const std::optional<HandRequest> hand = parse_hand(text)) move_hand_(*hand);
   // After the check above: a page that may not move the hand may not choose a scene.

@@ -7,8 +7,8 @@
 // never older ones, and delays no other. A page may send
 // {"hand":{"x_m":..,"y_m":..,"z_m":..,"turn_x_rad":..,"turn_y_rad":..,"turn_z_rad":..,
 // "grip_ratio":..}} for a simulated device, the requests of replay_request.h to a replay, and those
-// of scene_picker.h to a simulation that offers scenes. Any other message is ignored: no page arms,
-// stops or resets a device.
+// of scene_picker.h to a simulation that offers scenes, and {"key":"1"} to a program that asks for
+// answers. Any other message is ignored: no page arms, stops or resets a device.
 #pragma once
 
 #include <boost/beast/core/flat_buffer.hpp>
@@ -36,9 +36,12 @@ struct HandRequest {
 };
 using MoveHand = std::function<void(const HandRequest&)>;
 using AskScene = std::function<void(const nlohmann::json& request)>;
+using TakeDigit = std::function<void(char digit)>;
 
 /// The hand target in a page's message; none if it is missing or a number is out of range.
 std::optional<HandRequest> parse_hand(const std::string& text);
+/// The key of a page, '0' to '9'; none if it is missing or another one.
+std::optional<char> parse_digit(const std::string& text);
 
 class LiveSession final : public LiveListener, public std::enable_shared_from_this<LiveSession> {
  public:
@@ -46,7 +49,8 @@ class LiveSession final : public LiveListener, public std::enable_shared_from_th
   static constexpr std::uint64_t kMaxUnseen = 4;
 
   LiveSession(boost::beast::tcp_stream stream, ConnectionSlot slot, LiveView& view,
-              const MoveHand& move_hand, const Steer& steer, const AskScene& ask_scene);
+              const MoveHand& move_hand, const Steer& steer, const AskScene& ask_scene,
+              const TakeDigit& take_digit);
   ~LiveSession();
 
   void start(const Request& upgrade);
@@ -66,6 +70,7 @@ class LiveSession final : public LiveListener, public std::enable_shared_from_th
   const MoveHand& move_hand_;
   const Steer& steer_;
   const AskScene& ask_scene_;
+  const TakeDigit& take_digit_;
   Text next_status_, next_frame_, next_beside_, writing_;
   Text due_beside_;  // overlay of the frame that was written last
   std::uint64_t sent_frames_ = 0, seen_frames_ = 0;

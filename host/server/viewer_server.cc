@@ -40,6 +40,7 @@ ViewerServer::ViewerServer(boost::asio::io_context& io, LiveView& view, MoveHand
             .move_hand = std::move(move_hand),
             .steer = {},
             .ask_scene = {},
+            .take_digit = {},
             .warn_once = [this](const std::string& text) { warn_once(text); },
             .scenes = {},
             .request_timeout = {}},

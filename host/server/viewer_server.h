@@ -37,6 +37,8 @@ class ViewerServer {
   std::optional<model::Error> open(const ViewerOptions& options);
   /// Of a replay: takes the requests of pages. Call before start.
   void let_steer(Steer steer) { site_.steer = std::move(steer); }
+  /// Takes the digits that a person types at a page. Call before start.
+  void let_answer(TakeDigit take) { site_.take_digit = std::move(take); }
   /// Enables requests for another scene; `scenes`: the offered ones, as JSON. Call before start.
   void let_choose(AskScene ask, std::string scenes) {
     site_.ask_scene = std::move(ask);

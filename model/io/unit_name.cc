@@ -33,6 +33,7 @@ constexpr std::array kUnits{
     UnitName{"_px", "px"},
     UnitName{"_N", "N"},
     UnitName{"_A", "A"},
+    UnitName{"_C", "degC"},
     UnitName{"_J", "J"},
     UnitName{"_W", "W"},
     UnitName{"_mps", "m/s"},

@@ -66,6 +66,7 @@ inline Frame make_frame(float value, model::ContactState state) {
   }
   for (float& part : frame.tool_orientation) part = value;
   frame.grip_ratio = frame.worst_margin_us = frame.median_tick_us = frame.peak_force_N = value;
+  frame.temperature_C = value;
   for (firmware::protocol::FrameContact& contact : frame.contact) {
     for (float* array : {contact.surface_point_m, contact.normal, contact.shift_m, contact.tilt})
       for (int i = 0; i < 3; ++i) array[i] = value;

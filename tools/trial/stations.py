@@ -10,17 +10,16 @@ import time
 
 import numpy as np
 import tact
+from answers import END, MARKS
 from methods import weibull
 from protocol import Wrong
 
-MARKS = {"interval_1": 1, "interval_2": 2, "interval_end": 3, "answer_1": 4, "answer_2": 5}
-
 
 class Running:
-    """The tactd that runs the scene, by tactctl; the answers are lines of `lines`."""
+    """The tactd that runs the scene, by tactctl; `answers` is a source of answers.py."""
 
-    def __init__(self, protocol, tactctl, lines, show):
-        self.protocol, self.tactctl, self.lines, self.show = protocol, [*tactctl, str(protocol.scene)], lines, show
+    def __init__(self, protocol, tactctl, answers, show):
+        self.protocol, self.tactctl, self.answers, self.show = protocol, [*tactctl, str(protocol.scene)], answers, show
         self.begun_ns = None
         self.ask("status")
 
@@ -50,29 +49,30 @@ class Running:
             raise Wrong(f"tactctl {self.protocol.scene} event: answered {said!r}, which names no tick")
         return int(found[1]), 1e-9 * (now_ns - self.begun_ns)
 
-    def line(self):
-        line = self.lines.readline()
-        if not line:
-            raise Wrong("the answers have ended before the protocol; what was answered is in the table")
-        return line.strip()
+    def heard(self, *wanted):
+        """A word of a person, and s since the first mark."""
+        word, at_ns = self.answers.next(wanted)
+        if at_ns is not None:  # its mark is in the log
+            return word, 1e-9 * (at_ns - self.begun_ns)
+        return word, self.mark("interval_end" if word == END else f"answer_{word}")[1]
 
     def interval(self, number, values):
         self.use(values)
         tick, onset_s = self.mark(f"interval_{number}")
-        self.show(f"interval {number}" + ("" if self.protocol.interval_s else ": a line (Enter) ends it"))
+        self.answers.ready()
+        self.show(f"interval {number}" + ("" if self.protocol.interval_s else f": {self.answers.how_to_end}"))
         if self.protocol.interval_s:
             time.sleep(self.protocol.interval_s)
+            _, end_s = self.mark("interval_end")
         else:
-            self.line()
-        _, end_s = self.mark("interval_end")
+            _, end_s = self.heard(END)
         return {"tick": tick, "onset_s": onset_s, "end_s": end_s}
 
     def answer(self, intervals):
         """1 or 2, and s since the last interval."""
+        self.answers.ready()
         self.show(self.protocol.question)
-        while (said := self.line()) not in ("1", "2"):
-            self.show("answer 1 or 2")
-        _, at_s = self.mark(f"answer_{said}")
+        said, at_s = self.heard("1", "2")
         return int(said), at_s - intervals[-1]["end_s"]
 
     def pause(self):

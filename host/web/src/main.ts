@@ -244,7 +244,7 @@ function move_by_keys(key: string, shift: boolean): boolean {
   return moved;
 }
 
-bind_keys((key, shift) => timeline.key(key, shift), move_by_keys, actions);
+bind_keys((key, shift) => timeline.key(key, shift), move_by_keys, { ...actions, ...connection.digits });
 
 stage.start();
 stage.controls.addEventListener("start", () => (operator.view_chosen = true));

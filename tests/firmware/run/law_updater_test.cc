@@ -122,7 +122,7 @@ class LawUpdaterTest : public testing::Test {
     step_until_clear(false);
     EXPECT_FALSE(updater->request(first.request(), kSofter));
     poll_until_prepared();
-    for (int i = 0; i < 5; ++i) poll();  // law_updater.cc: kMaxPolls
+    for (int i = 0; i < LawUpdater::kMaxPolls; ++i) poll();
     ASSERT_EQ(updater->state(), State::kDeferred);
   }
 

@@ -5,8 +5,11 @@
 #include <unistd.h>
 
 #include <array>
+#include <cmath>
 #include <memory>
+#include <numeric>
 #include <span>
+#include <string>
 #include <utility>
 
 #include "tests/support/shapes.h"
@@ -65,6 +68,71 @@ TEST(FrameBuilder, CarriesLossesOfContactAndASphereInsideWithoutIndentation) {
   record.output.contact_losses = 5'000'000'000;
   const LoggedTick tick = LoggedTick::of(record, false);
   EXPECT_EQ(frame_of_tick(frame, tick, 0).contact_losses, 4'294'967'295u);
+}
+
+TEST(FrameBuilder, CountsEveryTickByWakeUpLatencyAndDuration) {
+  const LeaningLaw law;
+  const auto shapes = std::make_unique<loop::ShapeSlot>();
+  FrameBuilder builder(law, *shapes, false);
+  loop::TickRecord record;
+  const auto add = [&](std::int32_t wake_ns, std::int32_t total_before_ns) {
+    record.phase_ns.front() = wake_ns;
+    record.phase_ns.back() = total_before_ns;
+    builder.add(record);
+    ++record.tick;
+  };
+  add(1'000, 0);  // before the first tick there was none
+  add(1'001, 20'000);
+  const Frame first = builder.take(0);
+  add(6'000'000, 20'001);
+  const Frame second = builder.take(0);
+  EXPECT_EQ(first.wake.ticks[0], 1u) << "the bound belongs to its bucket";
+  EXPECT_EQ(first.wake.ticks[1], 1u);
+  EXPECT_EQ(first.duration.ticks[4], 1u);
+  EXPECT_EQ(second.wake.ticks[0], 1u) << "since the start, not since the last frame";
+  EXPECT_EQ(std::accumulate(std::begin(second.wake.ticks), std::end(second.wake.ticks), 0u), 3u);
+  EXPECT_EQ(second.wake.ticks[protocol::FrameDurations::kBound_us.size()], 1u);
+  EXPECT_EQ(second.duration.ticks[5], 1u);
+  EXPECT_EQ(second.wake.sum_ns, 6'002'001u);
+  EXPECT_EQ(second.duration.sum_ns, 40'001u);
+}
+
+TEST(FrameBuilder, NamesTheBoundsOfItsHistograms) {
+  const auto& bound_us = protocol::FrameDurations::kBound_us;
+  const auto names = protocol::FrameDurations::fields().front().components;
+  ASSERT_EQ(names.size(), bound_us.size() + 1);
+  for (std::size_t i = 0; i < bound_us.size(); ++i)
+    EXPECT_EQ(names[i], std::to_string(bound_us[i]) + "us");
+}
+
+TEST(FrameBuilder, CarriesTheTemperatureOfADeviceThatReportsOne) {
+  const LeaningLaw law;
+  const auto shapes = std::make_unique<loop::ShapeSlot>();
+  FrameBuilder builder(law, *shapes, false);
+  loop::TickRecord record;
+  builder.add(record);
+  EXPECT_TRUE(std::isnan(builder.take(0).temperature_C));
+  record.input.sample.temperature_C = 41.0;
+  builder.add(record);
+  EXPECT_EQ(builder.take(0).temperature_C, 41.0F);
+}
+
+TEST(FrameBuilder, KeepsTheNewestEvent) {
+  const LeaningLaw law;
+  const auto shapes = std::make_unique<loop::ShapeSlot>();
+  FrameBuilder builder(law, *shapes, false);
+  loop::TickRecord record;
+  record.due_ns = 5;
+  record.event = 4;
+  builder.add(record);
+  record.due_ns = 6;
+  record.event = 0;
+  builder.add(record);
+  for (int frames = 0; frames < 2; ++frames) {
+    const Frame frame = builder.take(0);
+    EXPECT_EQ(frame.event.number, 4);
+    EXPECT_EQ(frame.event.due_ns, 5);
+  }
 }
 
 TEST(FrameBuilder, TheMeshesEndWithTheColoursOfTheOrgansVertices) {

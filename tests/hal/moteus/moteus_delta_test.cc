@@ -92,6 +92,13 @@ TEST(MoteusDelta, ThePoseIsThatOfTheArms) {
   EXPECT_EQ(bench.sample.stamp_ns, bench.now_ns - 100'000);
 }
 
+TEST(MoteusDelta, TheSampleHasTheTemperatureThatDrivesReport) {
+  MoteusBench bench;
+  bench.run();
+  bench.tick();
+  EXPECT_EQ(bench.sample.temperature_C, bench.axis(0).get(0x00E));
+}
+
 TEST(MoteusDelta, TorqueIsLimitedByTheSceneAndKeepsTheForceDirection) {
   MoteusBench bench;
   bench.settings.of<can::DeltaSettings>().max_joint_torque_Nm = 2.0;

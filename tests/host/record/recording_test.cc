@@ -194,7 +194,7 @@ TEST(RecordingCsv, HasOneNameForEveryColumn) {
   std::string row;
   append_csv_row(row, test::make_frame(1.0f, model::ContactState::kHeld), header);
   EXPECT_EQ(columns(row), columns(csv_header(header)));
-  EXPECT_EQ(columns(row), 46 + 2 * (12 + 11 + 3));
+  EXPECT_EQ(columns(row), 47 + 2 * (12 + 11 + 3));
   EXPECT_EQ(std::count(row.begin(), row.end(), '\n'), 1);
 }
 
@@ -205,7 +205,7 @@ TEST(RecordingCsv, ReportsASphereInsideAndLossesOfContact) {
   append_csv_row(row, frame, test::make_header(3, 1, 3, 1));
   EXPECT_NE(row.find(",inside,"), std::string::npos) << row;
   EXPECT_NE(row.find(",0,21,"), std::string::npos) << row;
-  EXPECT_NE(csv_header({}).find(",non_rt,contact_losses,cut_triangles,"), std::string::npos);
+  EXPECT_NE(csv_header({}).find(",non_rt,contact_losses,temperature_C,cut_triangles,"), std::string::npos);
 }
 
 TEST(RecordingCsv, ReportsCutsAndTheLargestDisplacementOfAPatch) {

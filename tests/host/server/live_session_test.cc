@@ -25,6 +25,13 @@ TEST(LiveSession, KeepsTheGripBetweenOpenAndClosed) {
   EXPECT_EQ(hand->grip_ratio, 0.0);
 }
 
+TEST(LiveSession, TakesOneDigitAsAKeyAndNothingElse) {
+  EXPECT_EQ(parse_digit(R"({"key":"1"})"), '1');
+  for (const char* text : {R"({"key":"12"})", R"({"key":"a"})", R"({"key":1})", R"({"key":""})",
+                           R"({"key":"1\n"})", R"(["key"])", R"({})", "1", ""})
+    EXPECT_FALSE(parse_digit(text)) << text;
+}
+
 TEST(LiveSession, MalformedHandTargetIsRefused) {
   for (const char* text :
        {"", "{", "[]", "null", "7", R"({"hand":7})", R"({"hand":{}})", R"({"hand":[0,0,0,0]})",

@@ -6,6 +6,8 @@
 
 Needs python3-prometheus-client and python3-numpy. prometheus_test.py asks Prometheus. Exit status 0 or 1.
 """
+import importlib.machinery
+import importlib.util
 import json
 import pathlib
 import re
@@ -16,10 +18,15 @@ import sys
 import unittest
 import urllib.parse
 
+import prometheus_client.core
+
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 sys.dont_write_bytecode = True
-from stations import BUILD, UP, Case, get  # noqa: E402
+from stations import BUILD, METRICS, ROOT, SLOW, UP, Case, get  # noqa: E402
 from processes import MAX_WAIT_S, until  # noqa: E402
+
+sys.path.insert(0, str(ROOT / "tools/client"))
+import tact  # noqa: E402
 
 FREE_RUN_TICKS = 200000
 
@@ -55,6 +62,53 @@ class Stuck(Case):
             client = self.enterContext(socket.create_connection((at.hostname, at.port)))
             client.sendall(b"GET /metrics HTTP/1.1\r\nHost: x\r\n\r\n" if i % 2 else b"GET /met")
         self.assertIn("tact_up{", get(url)[0])
+
+
+class Histograms(Case):
+    def test_histograms_count_each_tick_of_the_log(self):
+        log = self.folder / "run.tactlog"
+        station = self.tactd("log", *SLOW, "--record", log)
+        _, url = self.exporter(self.folder / "log.sock")
+        until(lambda: re.search(r"tact_ticks_total\{.*\} [1-9]\d\d", get(url)[0]) or
+              self.assertIsNone(station.poll(), "tactd has ended"), "a hundred ticks")
+        text, _ = get(url)
+        station.terminate()
+        self.assertEqual(station.wait(MAX_WAIT_S), 0)
+        value = dict(re.findall(r"^(tact_\w+)\{socket=[^,}]*\} (\S+)$", text, re.M))
+        self.assertEqual(float(value["tact_dropped_records_total"]), 0.0)
+        ticks = tact.read_ticks(log).ticks
+        ticks = ticks[ticks["tick"] <= float(value["tact_ticks_total"])]
+        for name, phase, first in (("tact_wake_seconds", 0, 0), ("tact_tick_seconds", -1, 1)):
+            took_s = 1e-9 * ticks["phase_ns"][first:, phase]
+            buckets = re.findall(rf'^{name}_bucket{{le="([^"]+)",.*}} (\S+)$', text, re.M)
+            self.assertEqual([float(count) for _, count in buckets],
+                             [float((took_s <= float(bound) + 1e-12).sum()) for bound, _ in buckets])
+            self.assertEqual(float(value[f"{name}_count"]), len(took_s))
+            self.assertAlmostEqual(float(value[f"{name}_sum"]), took_s.sum(), places=9)
+
+    def test_a_temperature_is_there_where_a_device_has_one(self):
+        """No simulated device reports one: the frame of a run is given one here."""
+        station = self.tactd("warm", *SLOW)
+        until(lambda: (self.folder / "warm.sock").exists() or self.assertIsNone(station.poll(), "tactd has ended"), "the socket")
+        module = exporter_module()
+        source = module.Source(self.folder / "warm.sock")
+        source.run = tact.live(self.folder / "warm.sock", timeout_s=60.0)
+        self.addCleanup(source.run.close)
+        for given, seen in ((float("nan"), []), (41.5, [41.5])):
+            frame = next(source.run).copy()
+            frame["temperature_C"] = given
+            source._add(frame)
+            found = {family.name: family for family in module.Metrics([source], {}).collect()}
+            self.assertEqual([sample.value for sample in found["tact_temperature_celsius"].samples], seen)
+
+
+def exporter_module():
+    path = METRICS / "tact-metrics"
+    loader = importlib.machinery.SourceFileLoader("tact_metrics", str(path))
+    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("tact_metrics", loader))
+    loader.exec_module(module)
+    module.core, module.tact = prometheus_client.core, tact  # which it imports as a program
+    return module
 
 
 class Files(Case):

@@ -19,7 +19,7 @@ import urllib.parse
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 sys.dont_write_bytecode = True
-from stations import METRICS, ROOT, UP, Case, get  # noqa: E402
+from stations import METRICS, ROOT, SLOW, UP, Case, get  # noqa: E402
 from processes import until  # noqa: E402
 
 sys.path.insert(0, str(ROOT / "tools/client"))
@@ -39,8 +39,7 @@ def promtool(*arguments, text=None):
 
 class Fleet(Case):
     def test_prometheus_scrapes_eight_and_alerts(self):
-        slow = ("--set", "rate_Hz=300", "--set", "telemetry.frame_rate_Hz=20", "--set", "limits.energy_J=0.2")
-        victim, *others = [self.tactd(number, *slow) for number in range(STATIONS)]
+        victim, *others = [self.tactd(number, *SLOW) for number in range(STATIONS)]
         ends = [self.exporter(self.folder / f"{number}.sock")[1] for number in range(STATIONS)]
         for url in ends:
             until(lambda: re.search(UP, get(url)[0]) or self.assertIsNone(victim.poll(), "tactd has ended"), f"frames at {url}")
@@ -57,7 +56,7 @@ class Fleet(Case):
         self.assertEqual((checked.returncode, checked.stderr + checked.stdout), (0, ""))
         asked = "".join((METRICS / name).read_text() for name in ("tact.rules.yml", "tact.dashboard.json"))
         for name in set(re.findall(r"\btact_\w+", asked)):
-            if name != "tact_limit_frames_total":  # of limits that have acted
+            if name not in ("tact_limit_frames_total", "tact_temperature_celsius"):  # limits that act, drives that report
                 self.assertIn("\n" + name.replace("_bucket", ""), text.replace("_bucket", ""), name)
         openmetrics, kind = get(url, "application/openmetrics-text; version=1.0.0")
         self.assertIn("application/openmetrics-text", kind)
@@ -87,7 +86,7 @@ class Fleet(Case):
         panels = json.loads((METRICS / "tact.dashboard.json").read_text())["panels"]
         for query in (target["expr"] for panel in panels for target in panel["targets"]):
             found = self.ask(base, query)
-            if not re.search(r"rate\(|fault", query):
+            if not re.search(r"rate\(|fault|temperature", query):
                 self.assertTrue(found, query)
 
     def check_alert(self, base, victim, instance):

@@ -13,6 +13,7 @@ from processes import ProcessCase  # noqa: E402
 METRICS = ROOT / "tools/metrics"
 LIVER = ROOT / "model/scenes/liver.toml"
 BUILD = pathlib.Path(sys.argv.pop(1)).resolve()
+SLOW = ("--set", "rate_Hz=300", "--set", "telemetry.frame_rate_Hz=20", "--set", "limits.energy_J=0.2")  # for a busy machine
 UP = r"tact_up\{.*\} 1\.0"
 
 

@@ -6,6 +6,7 @@
 
 No person was tested: answers are computed or written here. Needs python3-numpy. Exit status 0 or 1.
 """
+import contextlib
 import csv
 import json
 import math
@@ -28,6 +29,8 @@ import tact  # noqa: E402
 BUILD = pathlib.Path(sys.argv.pop(1)).resolve()
 LIVER = ROOT / "model/scenes/liver.toml"
 NOTICED = 0.07
+IS_LONG = os.environ.get("TACT_EXTENT") == "long"
+SWITCHES = 1000 if IS_LONG else 100
 PROTOCOL = """
 name = "stiffness"
 scene = "{scene}"
@@ -145,30 +148,44 @@ class Simulated(Case):
 class Live(Case):
     """On the real clock; what is asserted are marks, numbers and bits, no time."""
 
-    def run_beside(self, protocol, answers):
-        """tact-trial's end, and the log of the tactd that it asks."""
-        log = self.folder / "run.tactlog"
-        scene = self.folder / "scene.toml"
-        scene.write_text(LIVER.read_text().replace('"meshes/', f'"{LIVER.parent}/meshes/'))
-        environment = self.environment()
-        tactd = subprocess.Popen([BUILD / "tactd", scene, "--no-black-box", "--record", log, "--json", self.folder / "run.json"],
-                                 stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, env=environment)
+    def setUp(self):
+        super().setUp()
+        self.log, self.scene = self.folder / "run.tactlog", self.folder / "scene.toml"
+        self.scene.write_text(LIVER.read_text().replace('"meshes/', f'"{LIVER.parent}/meshes/'))
+
+    def tactctl(self, *words):
+        return subprocess.run([BUILD / "tactctl", self.scene, *map(str, words)], capture_output=True, text=True,
+                              env=self.environment())
+
+    @contextlib.contextmanager
+    def running(self):
+        """A tactd that has its report and its log when it has ended."""
+        tactd = subprocess.Popen([BUILD / "tactd", self.scene, "--no-black-box", "--record", self.log, "--json",
+                                  self.folder / "run.json"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
+                                 env=self.environment())
         try:
-            while subprocess.run([BUILD / "tactctl", scene, "status"], capture_output=True, env=environment).returncode:
+            while self.tactctl("status").returncode:
                 self.assertIsNone(tactd.poll(), "tactd has ended")
-            done = subprocess.run([BUILD / "tact-trial", protocol, "--out", self.folder / "out"], input=answers,
-                                  capture_output=True, text=True, env=environment)
+            yield tactd
         finally:
             tactd.terminate()
             tactd.communicate()
-        return done, scene, log
+
+    def run_beside(self, protocol, answers):
+        """tact-trial's end."""
+        with self.running():
+            return self.trial(protocol, "--out", self.folder / "out", answers=answers)
+
+    def check_replay(self):
+        replay = subprocess.run([BUILD / "tactd", self.scene, "--replay", self.log], capture_output=True, text=True)
+        self.assertEqual(replay.returncode, 0, replay.stdout + replay.stderr)
 
     def test_marks_numbers_and_bits(self):
-        repeats = 50 if os.environ.get("TACT_EXTENT") == "long" else 2
+        repeats = 50 if IS_LONG else 2
         protocol = self.protocol(PAIRS.format(repeats=repeats), "scene.toml")
-        done, scene, log = self.run_beside(protocol, "x\n" + "1\n2\n" * 3 * repeats)
+        done = self.run_beside(protocol, "x\n" + "1\n2\n" * 3 * repeats)
         self.assertEqual(done.returncode, 0, done.stderr + done.stdout)
-        rows, ticks = self.table("out"), tact.read_ticks(log).ticks
+        rows, ticks = self.table("out"), tact.read_ticks(self.log).ticks
         self.assertEqual(len(rows), 3 * repeats)
         event = dict(zip(ticks["tick"].tolist(), ticks["event"].tolist()))
         for row in rows:
@@ -181,17 +198,45 @@ class Live(Case):
         self.check_switches(ticks)
         report = json.loads((self.folder / "run.json").read_text())
         self.assertEqual(report["thread"]["allocations"], 0)
-        replay = subprocess.run([BUILD / "tactd", scene, "--replay", log], capture_output=True, text=True)
-        self.assertEqual(replay.returncode, 0, replay.stdout + replay.stderr)
+        self.check_replay()
 
-    def check_switches(self, ticks):
+    def test_events_of_tactctl_answer_and_are_the_marks(self):
+        protocol = self.protocol(PAIRS.format(repeats=1).replace("interval_s = 0.05", ""), "scene.toml")
+        trial = [BUILD / "tact-trial", protocol, "--out", self.folder / "out", "--answers", "events"]
+        with self.running(), subprocess.Popen(trial, stdout=subprocess.PIPE, text=True, env=self.environment()) as trial:
+            for line in trial.stdout:
+                for event in (9, 5, 3) if line.startswith("interval 1") else (3,) if line.startswith("interval 2") else \
+                        (3, 4) if line.startswith("Which") else ():
+                    self.assertEqual(self.tactctl("event", event).returncode, 0)
+            self.assertEqual(trial.wait(), 0)
+        rows, ticks = self.table("out"), tact.read_ticks(self.log).ticks
+        self.assertEqual([row["response"] for row in rows], ["1"] * 3, "the 5 of before the question does not count")
+        self.assertEqual(self.about("out")["tact"]["observer"], "by events of tactctl")
+        marks = ticks[ticks["event"] > 0]
+        self.assertEqual(marks["event"].tolist(), [1, 9, 5, 3, 2, 3, 3, 4] * 3, "no mark is there twice")
+        for row, end, answer in zip(rows, marks[5::8], marks[7::8]):
+            self.assertAlmostEqual(float(row["response_time"]), 1e-9 * float(answer["due_ns"] - end["due_ns"]), places=6)
+
+    def test_switches_neither_allocate_nor_step_the_force(self):
+        with self.running():
+            for i in range(SWITCHES):
+                E_Pa = 5000 if i % 2 else 5500
+                while not (said := self.tactctl("set", f"elastic.youngs_modulus_Pa={E_Pa}")).stdout.rstrip().endswith(": set"):
+                    self.assertEqual(said.returncode, 0, said.stdout + said.stderr)
+        ticks, report = tact.read_ticks(self.log).ticks, json.loads((self.folder / "run.json").read_text())
+        self.assertEqual(int(ticks["variant"].max()), report["variants"])
+        self.check_switches(ticks, SWITCHES)
+        self.assertEqual((report["thread"]["allocations"], report["dropped_records"]), (0, 0))
+        self.check_replay()
+
+    def check_switches(self, ticks, least=5):
         changed = np.flatnonzero(np.diff(ticks["variant"].astype(int))) + 1
-        self.assertGreater(len(changed), 4)
+        self.assertGreaterEqual(len(changed), least)
         force_N = np.linalg.norm(ticks["wanted_force_N"], axis=1)
         self.assertEqual(float(np.abs(force_N[changed] - force_N[changed - 1]).max()), 0.0, "a force steps")
 
     def test_answers_that_end_early_leave_what_was_answered(self):
-        done, _, _ = self.run_beside(self.protocol(PAIRS.format(repeats=2), "scene.toml"), "1\n2\n")
+        done = self.run_beside(self.protocol(PAIRS.format(repeats=2), "scene.toml"), "1\n2\n")
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertIn("the answers have ended", done.stderr)
         self.assertEqual([row["response"] for row in self.table("out")], ["1", "2"])
@@ -228,6 +273,11 @@ class Files(Case):
             self.assertEqual(done.returncode, 2, more)
             self.assertIn(said, done.stderr, more)
             self.assertFalse((self.folder / "out").exists())
+        for arguments, said in ((["--answers", "page", "--simulate", "0.1"], "leave out one"),
+                                (["--socket", "x.sock"], "--answers events or page"), (["--answers", "none"], "invalid choice")):
+            done = self.trial(self.protocol(QUEST), "--out", self.folder / "out", *arguments)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(said, done.stderr)
         done = self.trial(self.protocol(QUEST, "none.toml"), "--out", self.folder / "out")
         self.assertIn("no such file", done.stderr)
 

@@ -86,6 +86,11 @@ export class Connection {
     return answer.ok ? ((await answer.json()) as OfferedScene[]) : [];
   }
 
+  /** Digits, for a tact-view with --keys; another one hears nothing of them. */
+  readonly digits: Record<string, () => void> = Object.fromEntries(
+    [..."0123456789"].map((key) => [key, () => this.send({ key })]),
+  );
+
   private async open(): Promise<void> {
     const why = await this.enter();
     if (why !== null) return this.retry(why);

@@ -96,6 +96,7 @@ export interface FrameFields {
   state: number;
   non_rt: boolean; // the PC has no hard real time, the force is capped
   contact_losses: number; // count since start: contact was lost as the tool moved too far between samples
+  temperature_C: number; // of the hottest drive; NaN: no drive reports one
 }
 
 export interface ContactFields {
