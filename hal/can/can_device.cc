@@ -156,7 +156,7 @@ class CanDevice final : public Device {
     for (CanAxis& axis : loop_.axes) axis.sampled = false;
   }
 
-  void receive() RT_SAFE {
+  void receive() RT_SAFE {  // bound: kMaxReceived (frames)
     for (const auto& one : bus_->receive()) take(one.frame, loop_.now_ns - one.age_ns);
     if (bus_->fault() != Fault::kNone) loop_.latch.set(bus_->cause());
   }
@@ -165,7 +165,7 @@ class CanDevice final : public Device {
     if (drives_.is_command(frame)) return on_foreign_command(frame);
     const int node = drives_.node_of(frame);
     std::size_t i = 0;
-    while (i < 3 && loop_.axes[i].node != node) ++i;
+    while (i < 3 && loop_.axes[i].node != node) ++i;  // bound: 3 (axes)
     if (i == 3 || !drives_.take(loop_, i, frame, arrival_ns)) ++unknown_frames_;
   }
 

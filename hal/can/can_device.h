@@ -111,7 +111,8 @@ struct BasicCanLoop {
   /// NaN if no drive reports a temperature.
   double hottest_C() const RT_SAFE {
     double out = axes[0].temperature_C;
-    for (const CanAxis& axis : axes) out = std::fmax(out, axis.temperature_C);  // leaves NaN out
+    for (const CanAxis& axis : axes)             // bound: 3
+      out = std::fmax(out, axis.temperature_C);  // leaves NaN out
     return out;
   }
   bool start_is_late() const RT_SAFE {

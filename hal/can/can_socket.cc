@@ -80,14 +80,14 @@ BasicCanSocket<Bytes>::~BasicCanSocket() {
 template <class Bytes>
 int BasicCanSocket<Bytes>::receive(std::span<Arrival> out) RT_SAFE {
   const std::size_t most = std::min(out.size(), kMaxReceived);
-  for (std::size_t i = 0; i < most; ++i)
+  for (std::size_t i = 0; i < most; ++i)              // bound: most (kMaxReceived)
     in_[i].msg_hdr.msg_controllen = sizeof(Control);  // the kernel wrote what it used
   const int reported = receive_batch(fd_, std::span(in_).first(most));
   const int n = reported == -EAGAIN || reported == -EINTR ? 0 : reported;
   if (n < 0) return n;
   const bool empties = static_cast<std::size_t>(n) < most && reported != -EINTR;
   stamps_.look(in_ns(wall_clock()), monotonic_ns(), empties);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) {  // bound: n (kMaxReceived)
     const bool whole = in_[i].msg_len == sizeof(Bytes);
     out[i] = {.bytes = whole ? in_bytes_[i] : Bytes{}, .age_ns = age_ns(in_[i].msg_hdr)};
     if constexpr (sizeof(Bytes) > kCanFrameBytes) {  // an error frame comes as a classic one

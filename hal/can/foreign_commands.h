@@ -22,6 +22,7 @@ class ForeignCommands {
   void add(const Frame& frame) RT_SAFE {
     if (count_++ > 0) return;
     std::uint64_t bytes = 0;
+    // bound: 8 (bytes)
     for (std::size_t i = 0; i < frame.payload().size() && i < sizeof bytes; ++i)
       bytes |= std::uint64_t{frame.data[i]} << (8 * i);
     first_bytes_.store(bytes, std::memory_order_relaxed);

@@ -21,7 +21,7 @@ constexpr std::uint64_t get_unsigned(std::span<const std::uint8_t> bytes, std::s
                                      std::size_t count) RT_SAFE {
   assert(count <= 8 && offset + count <= bytes.size());
   std::uint64_t value = 0;
-  for (std::size_t i = 0; i < count; ++i)
+  for (std::size_t i = 0; i < count; ++i)  // bound: 8 (bytes)
     value |= static_cast<std::uint64_t>(bytes[offset + i]) << (8 * i);
   return value;
 }
@@ -47,7 +47,7 @@ constexpr float get_f32(std::span<const std::uint8_t> bytes, std::size_t offset)
 constexpr void put_unsigned(std::span<std::uint8_t> bytes, std::size_t offset, std::size_t count,
                             std::uint64_t value) RT_SAFE {
   assert(count <= 8 && offset + count <= bytes.size());
-  for (std::size_t i = 0; i < count; ++i)
+  for (std::size_t i = 0; i < count; ++i)  // bound: 8 (bytes)
     bytes[offset + i] = static_cast<std::uint8_t>(value >> (8 * i));
 }
 constexpr void put_f32(std::span<std::uint8_t> bytes, std::size_t offset, float value) RT_SAFE {

@@ -89,7 +89,7 @@ constexpr CanopenText kAbort[] = {
 };
 
 const char* message_of(std::uint32_t code, std::span<const CanopenText> words) RT_SAFE {
-  for (const CanopenText& one : words)
+  for (const CanopenText& one : words)  // bound: words of the table
     if ((code & one.mask) == one.code) return one.message;
   // Never reached, as the last entry has mask 0; the compiler cannot know.
   return words.back().message;

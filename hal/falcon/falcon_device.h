@@ -45,9 +45,9 @@ class FalconExchange {
   }
   /// How many of these new reports answer a command.
   std::uint64_t answered(std::uint64_t reports, std::int64_t now_ns) RT_SAFE {
-    while (count_ > 0 && now_ns - sent_ns_[first_] > kLost_ns) drop();
+    while (count_ > 0 && now_ns - sent_ns_[first_] > kLost_ns) drop();  // bound: kSlots
     std::uint64_t answers = 0;
-    for (; answers < reports && count_ > 0; ++answers) drop();
+    for (; answers < reports && count_ > 0; ++answers) drop();  // bound: kSlots
     return answers;
   }
 

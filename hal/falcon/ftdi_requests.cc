@@ -25,12 +25,14 @@ std::optional<FtdiRead> ftdi_strip(std::span<const std::uint8_t> transfer,
   if (data.size() < transfer.size() - packets * kFtdiStatusSize) return std::nullopt;
   FtdiRead out;
   unsigned errors = 0;
+  // bound: packets of a transfer
   for (std::size_t at = 0; at < transfer.size(); at += kFtdiPacketSize) {
     const auto packet = transfer.subspan(at, std::min(kFtdiPacketSize, transfer.size() - at));
     out.modem = packet[0];
     out.line = packet[1];
     errors |= packet[1] & unsigned{kFtdiLineErrors};
     // Forward, and never past what is read: `data` may begin where the transfer does.
+    // bound: bytes of a packet
     for (const std::uint8_t byte : packet.subspan(kFtdiStatusSize)) data[out.size++] = byte;
   }
   // An error of an earlier packet is reported, although the last one no longer shows it.

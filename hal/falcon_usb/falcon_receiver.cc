@@ -14,7 +14,7 @@ void FalconReceiver::take(std::span<const std::uint8_t> transfer, std::int64_t n
     const unsigned errors = read->line & unsigned{falcon::kFtdiLineErrors};
     if (errors != 0) line_errors_.fetch_or(static_cast<std::uint8_t>(errors));
     falcon::FalconReply newest;
-    for (std::size_t i = 0; i < read->size; ++i) {
+    for (std::size_t i = 0; i < read->size; ++i) {  // bound: bytes of a transfer
       const auto report = stream_.push(data[i]);
       if (report) newest = {.report = *report, .stamp_ns = now_ns, .sequence = stream_.reports()};
     }

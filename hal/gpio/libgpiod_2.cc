@@ -48,13 +48,13 @@ struct Chip::Handle {
 bool LineRequest::get(Levels& levels) RT_SAFE {
   std::array<gpiod_line_value, kMaxRequestLines> values{};
   if (gpiod_line_request_get_values(lines_->request, values.data()) != 0) return false;
-  for (std::size_t i = 0; i < lines_->count; ++i)
+  for (std::size_t i = 0; i < lines_->count; ++i)  // bound: kMaxRequestLines
     levels[i] = values[i] == GPIOD_LINE_VALUE_ACTIVE ? 1 : 0;
   return true;
 }
 bool LineRequest::set(const Levels& levels) RT_SAFE {
   std::array<gpiod_line_value, kMaxRequestLines> values{};
-  for (std::size_t i = 0; i < lines_->count; ++i)
+  for (std::size_t i = 0; i < lines_->count; ++i)  // bound: kMaxRequestLines
     values[i] = levels[i] != 0 ? GPIOD_LINE_VALUE_ACTIVE : GPIOD_LINE_VALUE_INACTIVE;
   return gpiod_line_request_set_values(lines_->request, values.data()) == 0;
 }

@@ -56,7 +56,7 @@ class Writer {
   std::optional<can::CanFdFrame> frame() RT_SAFE {
     const auto length = can::can_fd_length(at_);
     if (!good_ || !length) return std::nullopt;
-    while (at_ < *length) u8(kNothing);
+    while (at_ < *length) u8(kNothing);  // bound: 64 (bytes of a frame)
     frame_.length = *length;
     return frame_;
   }
@@ -172,6 +172,7 @@ void take_values(Reader& reader, std::uint8_t head, MoteusReply& reply) RT_SAFE 
   const auto type = static_cast<Type>(head >> 2 & 3u);
   const std::uint32_t count = (head & 3u) != 0 ? head & 3u : reader.varuint();
   const std::uint32_t first = reader.varuint();
+  // bound: 64 (bytes of a frame)
   for (std::uint32_t i = 0; i < count && reader.good(); ++i)  // ends with the frame
     take(reply, first + i, type, reader.value(type));
 }
@@ -221,7 +222,7 @@ std::optional<MoteusReply> decode_moteus(const can::CanFdFrame& frame, int node)
   if (!is_node(node) || frame.id != moteus_reply_id(node)) return std::nullopt;
   MoteusReply reply;
   Reader reader(frame.payload());
-  while (reader.more()) {
+  while (reader.more()) {  // bound: 64 (bytes of a frame)
     const std::uint8_t head = reader.u8();
     if (head >= kReply && head < kReply + 0x10) {
       take_values(reader, head, reply);

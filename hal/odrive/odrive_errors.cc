@@ -103,7 +103,7 @@ const OdriveErrorText* first_of(std::uint32_t axis_error,
                                 std::span<const OdriveErrorText> words) RT_SAFE {
   if (axis_error == 0) return nullptr;
   const std::uint32_t lowest = axis_error & (~axis_error + 1u);
-  for (const OdriveErrorText& one : words)
+  for (const OdriveErrorText& one : words)  // bound: words of the table
     if (one.bit == lowest) return &one;
   return &kUnknown;
 }

@@ -167,6 +167,7 @@ void SimDelta::between_ticks(double elapsed_s) RT_SAFE {
   const double simulated_s = std::min(elapsed_s, kMaxPhysics_s);
   // The small allowance keeps 1 ms at four steps when the caller's arithmetic says 1.0000001 ms.
   const int steps = std::max(1, static_cast<int>(std::ceil(simulated_s / kLongestStep_s - 1e-6)));
+  // bound: kMaxPhysics_s / kLongestStep_s
   for (int i = 0; i < steps; ++i) step_physics(simulated_s / steps);
 }
 
