@@ -10,7 +10,7 @@ namespace tact::firmware::loop {
 namespace {
 
 // The gate ramps down or has zero force, for this reason.
-bool lets_go(Fault limit) RT_SAFE {
+bool is_ramped_down(Fault limit) RT_SAFE {
   return limit == Fault::kNotArmed || limit == Fault::kSampleStale ||
          limit == Fault::kOutsideWorkspace || limit == Fault::kTooFast;
 }
@@ -96,10 +96,11 @@ Fault Controller::find_fault(const TickInput& input, bool finite, bool too_late)
 }
 
 // Limits of contact and law are reported before those of the gate, unless the gate has ramped down
-// or is not armed (lets_go). Lost contact is reported in any case while armed, because its causes,
-// missed samples and jumps, also ramp the gate down. "Tool inside" is reported before arming, too.
+// or is not armed (is_ramped_down). Lost contact is reported in any case while armed, because its
+// causes, missed samples and jumps, also ramp the gate down. "Tool inside" is reported before
+// arming, too.
 Fault Controller::find_limit(Fault acting, bool is_coupled) const RT_SAFE {
-  const bool open = !lets_go(acting);
+  const bool open = !is_ramped_down(acting);
   const State state = supervisor_.state();
   if (rendered_.is_lost && state == State::kArmed) return Fault::kContactLost;
   if (!is_coupled) return Fault::kClutchPressed;
@@ -114,7 +115,8 @@ gate::LimitedGrip Controller::limit_grip(const TickInput& input) RT_SAFE {
   if (!grip_gate_) return {};
   const hal::Sample& sample = input.sample;
   return grip_gate_->limit(  // bound: grips a call (1 with a gripper that has a motor, else 0)
-      {.wanted_N = lets_go(acting_) || input.clutch != ClutchState::kCoupled ? 0.0 : jaw_force_N_,
+      {.wanted_N =
+           is_ramped_down(acting_) || input.clutch != ClutchState::kCoupled ? 0.0 : jaw_force_N_,
        .gap_m = sample.grip_gap_m,
        .speed_mps = sample.grip_speed_mps,
        .fresh = sample.fresh,

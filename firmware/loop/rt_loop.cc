@@ -27,7 +27,7 @@ void RtLoop::step() RT_SAFE {
     due_ns_ = next_deadline_ns(now_ns() + period_ns, period_ns);
   }
   clock_.sleep_until_ns(due_ns_);
-  cycle(due_ns_);
+  tick(due_ns_);
   due_ns_ += period_ns;  // absolute deadlines: one late tick does not delay the next
   // Read from the clock, not extrapolated: lateness must be in the kernel's time (RT-14).
   const std::int64_t behind_ns = clock_.now_ns() - due_ns_;
@@ -43,6 +43,51 @@ void RtLoop::step() RT_SAFE {
   constexpr std::int64_t kMax = std::numeric_limits<std::uint32_t>::max();
   record_.input.skipped_periods = static_cast<std::uint32_t>(std::min(skipped, kMax));
   device_.between_ticks(static_cast<double>((1 + skipped) * period_ns) * 1e-9);
+}
+
+void RtLoop::tick(std::int64_t due_ns) RT_SAFE {
+  const std::int64_t wake_ns = now_ns();
+  // Counted before any call that could hang, so that the watch sees this tick.
+  progress_.tick();
+  lines_.scope(true);
+  record_.tick = statistics_.ticks++;
+  record_.due_ns = due_ns;
+  record_.sync = due_ns / model::kSecond_ns % 2 != 0;
+  record_.event = requests_.take_event(record_.tick);
+  record_phase(Phase::kWake, wake_ns - due_ns);
+
+  hear_requests();
+  TickInput& input = record_.input;
+  contacts_.take(controller_, input);
+  input.device_fault = read(wake_ns);
+  // After both were read: a loss of power stops the force in the same tick.
+  input.ready = lines_.enabled() && device_.ready();
+  const std::int64_t read_ns = end_phase(Phase::kRead, wake_ns);
+
+  controller_.detect_contact(input);
+  const std::int64_t detected_ns = end_phase(Phase::kDetect, read_ns);
+  controller_.render_force(input);
+  const std::int64_t rendered_ns = end_phase(Phase::kRender, detected_ns);
+  record_.output = controller_.limit(input);
+  answer_requests();
+  const std::int64_t limited_ns = end_phase(Phase::kLimit, rendered_ns);
+
+  write();
+  lines_.scope(false);
+  const std::int64_t written_ns = end_phase(Phase::kWrite, limited_ns);
+  const bool stopped = record_.output.state == State::kStopped;  // stop times come from the clock
+  stop_timer_.step(input, record_.output, wake_ns, stopped ? clock_.now_ns() : written_ns);
+  statistics_.stop = stop_timer_.times();
+  const model::Vec3& force_N = record_.output.written.force_N;
+  progress_.show({.time_ns = written_ns,
+                  .state = record_.output.state,
+                  .fault = record_.output.fault,
+                  .force_N = {static_cast<float>(force_N.x), static_cast<float>(force_N.y),
+                              static_cast<float>(force_N.z)}});
+
+  publish();
+  const std::int64_t end_ns = end_phase(Phase::kPublish, written_ns);
+  record_phase(Phase::kTotal, end_ns - wake_ns);
 }
 
 void RtLoop::release_device() RT_SAFE {
@@ -176,51 +221,6 @@ bool RtLoop::may_run() const RT_SAFE {
   const std::uint64_t periods = statistics_.ticks + statistics_.skipped_ticks;
   return (settings_.max_ticks == 0 || statistics_.ticks < settings_.max_ticks) &&
          (settings_.max_periods == 0 || periods < settings_.max_periods);
-}
-
-void RtLoop::cycle(std::int64_t due_ns) RT_SAFE {
-  const std::int64_t wake_ns = now_ns();
-  // Counted before any call that could hang, so that the watch sees this tick.
-  progress_.tick();
-  lines_.scope(true);
-  record_.tick = statistics_.ticks++;
-  record_.due_ns = due_ns;
-  record_.sync = due_ns / model::kSecond_ns % 2 != 0;
-  record_.event = requests_.take_event(record_.tick);
-  record_phase(Phase::kWake, wake_ns - due_ns);
-
-  hear_requests();
-  TickInput& input = record_.input;
-  contacts_.take(controller_, input);
-  input.device_fault = read(wake_ns);
-  // After both were read: a loss of power stops the force in the same tick.
-  input.ready = lines_.enabled() && device_.ready();
-  const std::int64_t read_ns = end_phase(Phase::kRead, wake_ns);
-
-  controller_.detect_contact(input);
-  const std::int64_t detected_ns = end_phase(Phase::kDetect, read_ns);
-  controller_.render_force(input);
-  const std::int64_t rendered_ns = end_phase(Phase::kRender, detected_ns);
-  record_.output = controller_.limit(input);
-  answer_requests();
-  const std::int64_t limited_ns = end_phase(Phase::kLimit, rendered_ns);
-
-  write();
-  lines_.scope(false);
-  const std::int64_t written_ns = end_phase(Phase::kWrite, limited_ns);
-  const bool stopped = record_.output.state == State::kStopped;  // stop times come from the clock
-  stop_timer_.step(input, record_.output, wake_ns, stopped ? clock_.now_ns() : written_ns);
-  statistics_.stop = stop_timer_.times();
-  const model::Vec3& force_N = record_.output.written.force_N;
-  progress_.show({.time_ns = written_ns,
-                  .state = record_.output.state,
-                  .fault = record_.output.fault,
-                  .force_N = {static_cast<float>(force_N.x), static_cast<float>(force_N.y),
-                              static_cast<float>(force_N.z)}});
-
-  publish();
-  const std::int64_t end_ns = end_phase(Phase::kPublish, written_ns);
-  record_phase(Phase::kTotal, end_ns - wake_ns);
 }
 
 std::int64_t RtLoop::now_ns() RT_SAFE {

@@ -79,7 +79,8 @@ class RtLoop {
   const Progress& progress() const { return progress_; }
 
  private:
-  void cycle(std::int64_t due_ns) RT_SAFE;
+  /// Phases in this order: read, detect, render, limit, write; then publish.
+  void tick(std::int64_t due_ns) RT_SAFE;
   /// Copies the pending request into this tick's input.
   void hear_requests() RT_SAFE;
   void answer_requests() RT_SAFE;

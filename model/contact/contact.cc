@@ -139,7 +139,7 @@ ContactResponse Contact::render_force(const Tool& tool, bool blade_may_cut) RT_S
 // Held spheres that tear are released before a closing grip bonds spheres.
 ContactResponse Contact::respond(const Tool& tool) RT_SAFE {
   watch_grip(tool.grip_ratio);
-  for (Sphere& sphere : spheres()) let_go(sphere);  // bound: spheres
+  for (Sphere& sphere : spheres()) end_contact(sphere);  // bound: spheres
   organ().respond();
   // bound: spheres (each once)
   for (std::size_t i = 0; i < scene_.spheres.size() && release_first(); ++i) {
@@ -148,7 +148,7 @@ ContactResponse Contact::respond(const Tool& tool) RT_SAFE {
     for (Sphere& sphere : spheres())  // bound: spheres
       if (sphere.state == ContactState::kInContact && organ().hold(sphere.index)) {
         sphere.state = ContactState::kHeld;
-        sphere.lets_go = false;
+        sphere.is_ending = false;
       }
   organ().finish();
   ContactResponse rendered;
@@ -182,7 +182,7 @@ void Contact::report(Sphere& sphere, const Tool& tool, double way_m,
   sphere_contact.force_N = sphere.reported_N + resistance_N(sphere, answer.resistance_N);
   rendered.wrench.force_N += sphere_contact.force_N;
   rendered.wrench.torque_Nm += cross(sphere.centre_m - tool.position_m, sphere_contact.force_N);
-  if (sphere_contact.law_status == law::LawStatus::kSaturated || sphere.lets_go)
+  if (sphere_contact.law_status == law::LawStatus::kSaturated || sphere.is_ending)
     rendered.is_saturated = true;
   if (sphere.unsolved_ratio > 0.0 || sphere.lag_N > 0.0) rendered.is_unsettled = true;
 }
@@ -196,15 +196,15 @@ void Contact::watch_grip(double grip_ratio) RT_SAFE {
 }
 
 // Shrinks the depth to 0. While the depth is beyond the law's range, the force is the law's limit.
-void Contact::let_go(Sphere& sphere) RT_SAFE {
+void Contact::end_contact(Sphere& sphere) RT_SAFE {
   if (sphere.state != ContactState::kInContact) return;
-  if (!sphere.lets_go) {
-    sphere.lets_go = organ().must_let_go(sphere);
-    if (!sphere.lets_go) return;
+  if (!sphere.is_ending) {
+    sphere.is_ending = organ().must_end(sphere);
+    if (!sphere.is_ending) return;
     sphere.shrinks_m = organ().cut_to_law_m(sphere.index);
   }
   organ().add_depth_offset(sphere.index, kSlide_ratio * norm(sphere.moved_m) +
-                                             sphere.shrinks_m * scene_.period_s / kLetGo_s);
+                                             sphere.shrinks_m * scene_.period_s / kEnding_s);
 }
 
 // Releases only the first sphere that must be released, as that changes the force on the others.
@@ -229,7 +229,7 @@ OrganForce Contact::response_of(Sphere& sphere) RT_SAFE {
   if (organ().is_solved())
     sphere.unsolved_ratio = 0.0;
   else
-    sphere.unsolved_ratio += scene_.period_s / kLetGo_s + norm(sphere.moved_m) / sphere.radius_m;
+    sphere.unsolved_ratio += scene_.period_s / kEnding_s + norm(sphere.moved_m) / sphere.radius_m;
   const OrganForce answer = organ().report(sphere, sphere_contact);
   // 0: not known.
   sphere.stiffest_N_per_m = scene_.law->stiffest_N_per_m(sphere_contact.surface_point,
@@ -249,28 +249,28 @@ Vec3 Contact::resistance_N(const Sphere& sphere, const Vec3& answer_N) const RT_
 }
 
 // FR-1  |P' - P| <= n + 10 K w + (2 q + r) P_max + J T / T_r
-// P: reported_N. n: kNoise_N. K: stiffest_N_per_m. w: way_m. q: relaxation_ratio_. r: let_go_ratio.
-// P_max: largest_N. J: lag_N. T: period_s. T_r: kLetGo_s.
+// P: reported_N. n: kNoise_N. K: stiffest_N_per_m. w: way_m. q: relaxation_ratio_. r: ending_ratio.
+// P_max: largest_N. J: lag_N. T: period_s. T_r: kEnding_s.
 // The wanted force may jump when the organ snaps to another shape, a solution is found again, or
 // the proxy reaches another side. The reported force P follows. While it lags behind a lost force,
 // the hand gets at most a tenth of the energy that was lost.
 void Contact::follow_force(Sphere& sphere, const Vec3& wanted_N, double way_m) RT_SAFE {
-  constexpr double kSteepest_ratio = 10.0, kRelaxation_ratio = 2.0, kLetGo_ratio = 2.0;
+  constexpr double kSteepest_ratio = 10.0, kRelaxation_ratio = 2.0, kEnding_ratio = 2.0;
   constexpr double kNoise_N = 1e-3;  // numerical noise of a solution
   const Vec3 change_N = wanted_N - sphere.reported_N;
   const double length_N = norm(change_N);
   sphere.largest_N = sphere.is_in_contact() ? std::max(sphere.largest_N, norm(wanted_N)) : 0.0;
-  // A contact that lets go loses its force in 0.1 s, or faster if its law is steep.
-  const double let_go_ratio = sphere.lets_go ? kLetGo_ratio * scene_.period_s / kLetGo_s : 0.0;
+  // A contact that is ending loses its force in 0.1 s, or faster if its law is steep.
+  const double ending_ratio = sphere.is_ending ? kEnding_ratio * scene_.period_s / kEnding_s : 0.0;
   const double smooth_N = kNoise_N + kSteepest_ratio * sphere.stiffest_N_per_m * way_m +
-                          (kRelaxation_ratio * relaxation_ratio_ + let_go_ratio) * sphere.largest_N;
+                          (kRelaxation_ratio * relaxation_ratio_ + ending_ratio) * sphere.largest_N;
   const bool is_held = sphere.state == ContactState::kHeld;
   // When held tissue is released or tears, the force drops in one tick.
-  const bool is_let_go = sphere.was_held && !is_held && organ().is_solved() &&
-                         norm(wanted_N) <= norm(sphere.reported_N);
-  const bool is_lag = length_N > smooth_N && sphere.stiffest_N_per_m > 0.0 && !is_let_go;
+  const bool is_released = sphere.was_held && !is_held && organ().is_solved() &&
+                           norm(wanted_N) <= norm(sphere.reported_N);
+  const bool is_lag = length_N > smooth_N && sphere.stiffest_N_per_m > 0.0 && !is_released;
   sphere.lag_N = is_lag ? std::max(sphere.lag_N, length_N) : 0.0;
-  const double most_N = smooth_N + sphere.lag_N * scene_.period_s / kLetGo_s;
+  const double most_N = smooth_N + sphere.lag_N * scene_.period_s / kEnding_s;
   sphere.reported_N =
       is_lag && length_N > most_N ? sphere.reported_N + (most_N / length_N) * change_N : wanted_N;
   sphere.was_held = is_held;

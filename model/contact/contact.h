@@ -36,12 +36,12 @@ namespace tact::model::contact {
 
 /// Chosen: time in which a contact beyond its law or without a solution ends, and in which a
 /// lagging force reaches its target.
-inline constexpr double kLetGo_s = 0.1;
+inline constexpr double kEnding_s = 0.1;
 
 /// Result of a tick.
 struct ContactResponse {
   Wrench wrench;
-  bool is_saturated = false;  // a sphere is beyond its law (LawStatus::kSaturated), or lets go
+  bool is_saturated = false;  // a sphere is beyond its law (LawStatus::kSaturated), or is ending
   bool is_unsettled = false;  // the force of a sphere lags after a jump, or has no solution
   bool is_broken = false;     // see ContactLaw::is_broken
   bool is_inside = false;     // a sphere is in state inside, without force
@@ -88,7 +88,7 @@ class Contact {
   void detect(const Tool& tool) RT_SAFE;
   ContactResponse respond(const Tool& tool) RT_SAFE;
   void watch_grip(double grip_ratio) RT_SAFE;
-  void let_go(Sphere& sphere) RT_SAFE;
+  void end_contact(Sphere& sphere) RT_SAFE;
   bool release_first() RT_SAFE;
   void report(Sphere& sphere, const Tool& tool, double way_m, ContactResponse& rendered) RT_SAFE;
   OrganForce response_of(Sphere& sphere) RT_SAFE;
@@ -99,7 +99,7 @@ class Contact {
   ContactScene scene_;
   RestContact rest_;                        // used if scene_.organ is null
   MovedContact moved_;                      // used if it is not
-  double relaxation_ratio_;                       // ContactLaw::relaxation_ratio
+  double relaxation_ratio_;                 // ContactLaw::relaxation_ratio
   std::array<Vec3, kMaxSpheres> goal_m_{};  // centres of the spheres at the pose in work
   std::array<Sphere, kMaxSpheres> sphere_{};
   std::array<SphereContact, kMaxSpheres> contact_{};  // as reported

@@ -65,7 +65,7 @@ void leave(const ContactScene& scene, OrganContact& organ, Sphere& sphere,
            ContactState state) RT_SAFE {
   sphere.state = state;
   sphere.clear_m = -kAnywhere_m;  // not known
-  sphere.lets_go = false;
+  sphere.is_ending = false;
   sphere.unsolved_ratio = 0.0;
   organ.leave(sphere.index);
   scene.law->leave(sphere.index);

@@ -55,7 +55,7 @@ class MovedContact final : public OrganContact {
   void leave(std::size_t sphere) RT_SAFE override;
   Step step(Sphere& sphere, const Vec3& moved_m) RT_SAFE override;
   void move(const Sphere& sphere) RT_SAFE override;
-  bool must_let_go(Sphere& sphere) RT_SAFE override;
+  bool must_end(Sphere& sphere) RT_SAFE override;
   double cut_to_law_m(std::size_t sphere) RT_SAFE override;
   void add_depth_offset(std::size_t sphere, double depth_m) RT_SAFE override;
   void respond() RT_SAFE override;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// MovedContact: which spheres stay in contact, leave, or must let go.
+// MovedContact: which spheres stay in contact, leave, or must end.
 #include <algorithm>
 
 #include "model/contact/detect.h"
@@ -32,7 +32,7 @@ Step MovedContact::step(Sphere& sphere, const Vec3&) RT_SAFE {
   // Displacement of the organ reduces the clearance, too.
   sphere.clear_m -= norm(b.shift_m - b.seen_shift_m);
   b.seen_shift_m = b.shift_m;
-  if (sphere.lets_go) return Step::kLeaves;
+  if (sphere.is_ending) return Step::kLeaves;
   if (sphere.clear_m > 0.0) return Step::kStays;
   const double within_m = (1.0 + kAhead_ratio) * b.radius_m;
   const Vec3 y_m = b.y_m + (sphere.centre_m - b.centre_m);
@@ -50,7 +50,7 @@ bool MovedContact::is_beyond(const OrganSphere& b) const RT_SAFE {
 
 // True outside of the organ at rest and beyond the law; or outside of the displaced organ, with
 // nothing of it between the sphere and its surface point.
-bool MovedContact::must_let_go(Sphere& sphere) RT_SAFE {
+bool MovedContact::must_end(Sphere& sphere) RT_SAFE {
   OrganSphere& b = *at(sphere.index);
   if (!(b.indentation_m > 0.0)) return false;
   if (is_beyond(b) && is_outside(scene_, sphere)) return true;

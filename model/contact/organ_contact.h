@@ -3,7 +3,7 @@
 //
 // Two implementations: the organ's surface stays at rest (rest_contact.h), or the organ has large
 // displacements (moved_contact.h). contact.h calls, in each tick in this order: step and move of
-// each sphere, must_let_go, respond, release, hold, finish, report, advance.
+// each sphere, must_end, respond, release, hold, finish, report, advance.
 #pragma once
 
 #include <cstddef>
@@ -38,7 +38,7 @@ class OrganContact {
   virtual void move(const Sphere& sphere) RT_SAFE = 0;
   /// True if the sphere is outside, and either beyond its law or with nothing of the organ between
   /// it and its surface point.
-  virtual bool must_let_go(Sphere& sphere) RT_SAFE = 0;
+  virtual bool must_end(Sphere& sphere) RT_SAFE = 0;
   /// Offsets the depth beyond the law's range; returns the remaining depth, m.
   virtual double cut_to_law_m(std::size_t sphere) RT_SAFE = 0;
   /// Reduces the depth of a sphere permanently.

@@ -57,7 +57,7 @@ Step RestContact::step(Sphere& sphere, const Vec3& moved_m) RT_SAFE {
   s.unexplained_m += s.proxy.lengthened_m();
   if (s.is_held) return Step::kStays;
   const PressingSphere& pressing = pressing_[sphere.index];
-  if (sphere.lets_go && !(pressing.in.indentation_m > 0.0)) return Step::kLeaves;
+  if (sphere.is_ending && !(pressing.in.indentation_m > 0.0)) return Step::kLeaves;
   // The offset cancels all of the depth: the sphere may be at another part of the organ.
   const bool is_all_offset = s.depth_offset_m > 0.0 && !(pressing.depth_m > 0.0);
   return s.proxy.contact_point().distance_m < sphere.radius_m && !is_all_offset ? Step::kStays
@@ -104,7 +104,7 @@ void RestContact::move_to_proxy(std::size_t i) RT_SAFE {
 }
 
 // False while a thin part of the organ is between the sphere and its surface point.
-bool RestContact::must_let_go(Sphere& sphere) RT_SAFE {
+bool RestContact::must_end(Sphere& sphere) RT_SAFE {
   const RestSphere& s = sphere_[sphere.index];
   const bool is_beyond = pressing_[sphere.index].response.law.status == law::LawStatus::kSaturated;
   const ContactPoint& contact_point = s.proxy.contact_point();

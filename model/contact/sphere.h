@@ -45,7 +45,7 @@ struct Sphere {
   bool was_outside = false;          // the whole sphere was outside
   std::uint32_t near = kNoTriangle;  // nearest triangle
   // A contact that ends
-  bool lets_go = false;
+  bool is_ending = false;
   double shrinks_m = 0.0;       // in 0.1 s
   double unsolved_ratio = 0.0;  // how far its last force has ramped down, 0 to 1
   // The reported force, without resistance

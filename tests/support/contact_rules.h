@@ -75,7 +75,7 @@ class ContactRules {
 
  private:
   using ContactState = model::ContactState;
-  static constexpr double kTiny_m = 1e-9, kLetGo_s = 0.1, kAfter_s = 0.2;
+  static constexpr double kTiny_m = 1e-9, kEnding_s = 0.1, kAfter_s = 0.2;
   enum class Side { kIn, kOut, kUnknown };
 
   Side side_of(const model::Vec3& p_m, const BruteForce::Nearest& nearest) const {
@@ -201,12 +201,12 @@ class ContactRules {
     if (!s_.is_alone || s_.friction_ratio > 0.0 || !before_ || now.is_lost) return {};
     const double jump_N = norm(now.sphere_contact.force_N - before_->sphere_contact.force_N);
     // Once begun, it goes on until there is no force.
-    lets_go_ = (lets_go_ && before_->is_saturated) ||
+    is_ending_ = (is_ending_ && before_->is_saturated) ||
                ((now.is_saturated || before_->is_saturated) && (is_outside_ || was_outside_));
     const bool is_lag = now.is_unsettled || before_->is_unsettled;
-    const double fade_s = lets_go_ ? kLetGo_s : 5.0 * kLetGo_s;
+    const double fade_s = is_ending_ ? kEnding_s : 5.0 * kEnding_s;
     const double fade_m =
-        lets_go_ || is_lag ? s_.range_m * now.periods * s_.period_s / fade_s : 0.0;
+        is_ending_ || is_lag ? s_.range_m * now.periods * s_.period_s / fade_s : 0.0;
     const double most_N = 10.0 * s_.max_slope_N_per_m * (moved_m_ + fade_m) + 1e-3 * now.periods;
     if (jump_N <= most_N) return {};
     return say('e', "force jumps by " + std::to_string(1e3 * jump_N) + " mN, at most " +
@@ -278,7 +278,7 @@ class ContactRules {
   model::Vec3 last_m_;
   bool is_outside_ = false, was_outside_ = false, stayed_out_ = false, was_beyond_ = false;
   bool has_overlapped_ = false;  // surely, ever since the start
-  bool lets_go_ = false;
+  bool is_ending_ = false;
   int without_ = 0;       // ticks in a row, deeper and without force
   bool entered_ = false;  // from outside, and not let go since
   double unsettled_s_ = 0.0;

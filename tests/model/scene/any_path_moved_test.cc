@@ -24,7 +24,7 @@ namespace tact::model::scene::any_path_moved_test {
 constexpr double kPeriod_s = 1e-3;
 constexpr double kSlope_N_per_m = 125.0;           // of the tip's law, the steepest
 constexpr double kRange_m = 18_mm;                 // of the tip's law
-constexpr double kFar_m = 40_mm, kLetGo_s = 0.2;   // beyond, after this time, there is no force
+constexpr double kFar_m = 40_mm, kEnding_s = 0.2;   // beyond, after this time, there is no force
 constexpr double kFree_J = 2.5e-7, kMade = 0.025;  // ML-9: of one contact, and of the stored energy
 
 /// What must hold of one sphere, tick by tick.
@@ -49,7 +49,7 @@ class SphereRules {
     if (must_be_inside_ && force_N != 0.0) broken = 'a';
     // Far away it is let go.
     far_s_ = !is_in && !(near_m <= kFar_m) ? far_s_ + periods * kPeriod_s : 0.0;
-    if (far_s_ > kLetGo_s && force_N > 0.0) broken = 'c';
+    if (far_s_ > kEnding_s && force_N > 0.0) broken = 'c';
     // Alone, deeper with its centre inside: force within three ticks.
     if (is_outside && force_N == 0.0) entered_ = true;
     if (is_lost || is_saturated || sphere_contact.state == ContactState::kInside) entered_ = false;
@@ -58,7 +58,7 @@ class SphereRules {
     if (without_ > 3) broken = 'd';
     // No jump: by the way, or while it lets go.
     const double most_N =
-        kSlope_N_per_m * (10.0 * way_m + kRange_m * periods * kPeriod_s / contact::kLetGo_s);
+        kSlope_N_per_m * (10.0 * way_m + kRange_m * periods * kPeriod_s / contact::kEnding_s);
     if (before_m_ && !is_lost && norm(sphere_contact.force_N - force_before_N_) > most_N)
       broken = 'e';
     jump_N_ = norm(sphere_contact.force_N - force_before_N_), most_N_ = most_N;

@@ -19,7 +19,7 @@ KERNEL = {"clock_gettime": 100, "clock_nanosleep": 100}
 ENDS = ("trap", "abort", "__stack_chk_fail", "_ZSt9terminatev", "__cxa_", "_Unwind_", "_ZSt__throw",
         "_ZSt20__throw", "_ZSt24__throw", "_ZSt17__throw", "_ZSt19__throw", "_ZSt28__throw")
 
-PHASES = ("read", "detect", "render", "limit", "write", "publish")  # as they follow one another in RtLoop::cycle
+PHASES = ("read", "detect", "render", "limit", "write", "publish")  # as they follow one another in RtLoop::tick
 
 LOOP = ("MonotonicClock",)
 # The gate of the hand alone, and with the gate of a gripper that has a motor.
