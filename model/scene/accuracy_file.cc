@@ -156,7 +156,7 @@ std::optional<Accuracy> nearest_law(const Scene& scene) {
   Scene own = scene;
   for (const LawRow& row : all_laws()) {
     // What a blade cannot cut is no law for a scene with one.
-    if (scene.tool.blade && row.name != "spring_patch") continue;
+    if (scene.tool.blade && !row.can_be_cut) continue;
     own.law = row.name;
     const auto found = scene.describes(row.name) ? read_accuracy(own) : Error{};
     if (found && (!out || worst_error_ratio(*found) <= worst_error_ratio(*out))) out = *found;

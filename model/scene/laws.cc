@@ -205,6 +205,7 @@ std::span<const LawRow> all_laws() {
        .fit_keys = {"surface_stiffness_N_per_m", "body_stiffness_N_per_m",
                     "coupling_stiffness_N_per_m"},
        .size_key = "nodes",
+       .can_be_cut = true,
        .sizes = {50, 100, 200, 500, 1000},
        .quick_sizes = {100}},
       {.name = "table",
@@ -217,6 +218,7 @@ std::span<const LawRow> all_laws() {
        .visit = compliance_keys,
        .build = &TissueLawBuilder::add_compliance,
        .size_key = "curves",
+       .follows_elastic = true,
        .sizes = {2, 3, 5, 9, 17, 33},
        .quick_sizes = {5, 17}},
   };
@@ -226,6 +228,11 @@ std::span<const LawRow> all_laws() {
 const LawRow* find_law(std::string_view name) {
   const auto found = std::ranges::find(all_laws(), name, &LawRow::name);
   return found == all_laws().end() ? nullptr : &*found;
+}
+
+bool follows_elastic(const Scene& scene) {
+  const LawRow* law = find_law(scene.law);
+  return scene.varies_by_place || scene.exact_tip || (law != nullptr && law->follows_elastic);
 }
 
 ParameterList parameters_of(const LawRow& law, Scene& scene) {

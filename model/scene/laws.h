@@ -56,6 +56,8 @@ struct LawRow {
   std::vector<std::vector<double>> fit_starts{};
   /// A count of the section that decides its cost.
   std::string_view size_key{};
+  bool follows_elastic = false;  // its force is that of [elastic], by [compliance]
+  bool can_be_cut = false;       // by the blade of a tool
   /// What tact-lab chart compares: of size_key, else of table_knots; empty: the law as it is.
   std::vector<std::size_t> sizes{}, quick_sizes{};
 };
@@ -63,6 +65,9 @@ struct LawRow {
 std::span<const LawRow> all_laws();
 /// Null: there is none of this name.
 const LawRow* find_law(std::string_view name);
+
+/// Does the force of the scene follow its [elastic]?
+bool follows_elastic(const Scene& scene);
 
 /// The numbers of a law's section, pointing into the scene.
 ParameterList parameters_of(const LawRow& law, Scene& scene);

@@ -12,6 +12,7 @@
 #include "model/mesh/turn.h"
 #include "model/reader/scene_text.h"
 #include "model/scene/compliance_file.h"
+#include "model/scene/laws.h"
 #include "model/scene/scene_keys.h"
 
 namespace tact::model::scene {
@@ -65,7 +66,7 @@ void put_origin_at(const Vec3& handle_m, Scene& scene) {
 
 /// Would another map give other forces?
 bool needs_compliance(const Scene& scene) {
-  return scene.varies_by_place || scene.law == "compliance" || scene.law == kAutoLaw;
+  return follows_elastic(scene) || scene.law == kAutoLaw;
 }
 
 /// A map is of one organ: on another mesh the law is felt as it is at every place. A map that

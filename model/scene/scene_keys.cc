@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "model/scene/laws.h"
 #include "model/scene/scene_limits.h"
 #include "model/scene/variant.h"
 
@@ -43,7 +44,8 @@ void visit_tool(Keys& k, SceneText& out) {
             out.scene.tool.blade);
   // Known by now: visit_scene visits the laws before the tool.
   const std::string& law = out.scene.law;
-  if (out.scene.tool.blade && law != "spring_patch" && law != kAutoLaw)
+  const LawRow* row = find_law(law);
+  if (out.scene.tool.blade && row != nullptr && !row->can_be_cut)
     k.refuse({"blade"}, fmt::format("tool.blade cuts nothing with law = \"{}\"; write law = "
                                     "\"spring_patch\" or leave [tool.blade] out",
                                     law));

@@ -54,7 +54,7 @@ std::vector<LawNumber> law_numbers(Scene& scene) {
   if (const LawRow* law = find_law(scene.law))
     for (const Parameter& p : parameters_of(*law, scene).all) add(law->name, p);
   // The map is of one nu.
-  if (scene.elastic && (scene.varies_by_place || scene.exact_tip || scene.law == "compliance"))
+  if (scene.elastic && follows_elastic(scene))
     add("elastic", model::parameters_of(*scene.elastic).find("youngs_modulus_Pa"));
   return out;
 }
