@@ -1,0 +1,240 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""tact-jitter late names what ran: by recorded traces, and by random ones against a count of every microsecond.
+
+    python3 tests/tools/jitter/late_test.py
+"""
+import collections
+import pathlib
+import random
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+LATE = ROOT / "tools/jitter/late"
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(LATE))
+from late_oracle import IDLE, LOOP, PERIOD_US, Trace, random_tick  # noqa: E402
+from late_reason import Evidence, LoopWatch, Tick, explain, period_of  # noqa: E402
+from late_trace import parse, priority_of, switch_of  # noqa: E402
+from late_tracefs import Counters, Wrong, cpus_of, find_loop, mask_of  # noqa: E402
+
+
+class Parts(unittest.TestCase):
+    def test_each_microsecond_belongs_to_who_ran_in_it(self):
+        kinds = collections.Counter()
+        for seed in range(600):
+            trace, tick, usual_us, want = random_tick(random.Random(seed))
+            reason = explain(trace.lines, tick, 50, usual_us)
+            self.assertEqual(dict(reason.parts), dict(want), f"seed {seed}")
+            answer = reason.answer()
+            key, most_us = max(want.items(), key=lambda pair: pair[1])
+            self.assertEqual(answer["kind"], key[0] if most_us >= want.total() / 2 else "not known", f"seed {seed}")
+            kinds[answer["kind"]] += 1
+        named = ("interrupt", "no software", "softirq", "thread", "own code", "not known", "wait")
+        self.assertGreater(min(kinds[kind] for kind in named), 5, kinds)
+
+    def test_recorded_delays_are_named(self):
+        text = (pathlib.Path(__file__).parent / "late_traces.txt").read_text(encoding="latin-1")
+        names = ("thread delay-thread", "interrupt local_timer", "softirq HRTIMER", "page fault", "no software")
+        for name, block in zip(names, text.split("# ")[1:], strict=True):
+            header, *lines = block.splitlines()
+            answers = answers_of(lines, 381, 1_000_000, due_us=float(header.split()[0]) * 1e6)
+            self.assertEqual([answer["name"] for answer in answers], [name])
+            self.assertGreater(answers[0]["explains"], 0.9)
+            self.assertAlmostEqual(answers[0]["late_us"], float(header.split()[2]), delta=60)
+
+    def test_what_was_lost_is_not_known(self):
+        trace, tick, usual_us, _ = random_tick(random.Random(1))
+        for at in range(0, len(trace.lines), 7):
+            reason = explain([*trace.lines[:at], None, *trace.lines[at:]], tick, 50, usual_us)
+            self.assertEqual((reason.answer()["kind"], "lost" in reason.answer()["why"]), ("not known", True))
+
+    def test_any_torn_line_raises_nothing(self):
+        chosen = random.Random(2)
+        for seed in range(150):
+            trace, tick, usual_us, _ = random_tick(random.Random(seed))
+            lines = list(trace.lines)
+            for _ in range(5):
+                at = chosen.randrange(len(lines))
+                cut = chosen.randrange(len(lines[at]) + 1)
+                lines[at] = lines[at][:cut] + chosen.choice(("", "\x00", "pid=", lines[at][cut // 2:]))
+            explain(lines, tick, 50, usual_us).answer()
+
+
+def answers_of(lines, pid, period_ns, due_us=None, **about):
+    """Of a short record: the deadline before it is given."""
+    out = []
+    watching = LoopWatch(pid, 50, lambda *late: out.append(explain(late[0], late[1], pid, 40, **about).answer()), period_ns)
+    watching.usual_us = 40
+    watching.due_ns = None if due_us is None else round(due_us * 1000) - period_ns
+    for line in lines:
+        watching.feed(line)
+    return out
+
+
+class Kinds(unittest.TestCase):
+    def tick(self, before="", inside="", spend_us=400, wake_us=5):
+        trace = Trace(random.Random(0))
+        if before:
+            trace.say(*before)
+        trace.spend(300)
+        due_us = trace.us
+        trace.spend(wake_us)
+        trace.say("sched_waking", "comm=tact-loop pid=50 prio=19 target_cpu=000")
+        trace.switch(LOOP)
+        woke_us = trace.us
+        trace.spend(10)
+        if inside:
+            trace.say(*inside)
+        trace.spend(spend_us)
+        tick = Tick(due_us, woke_us, trace.us, 0, 0)
+        trace.switch(IDLE)
+        return trace.lines, tick
+
+    def named(self, evidence=Evidence(), latency_us=(), **about):
+        return explain(*self.tick(**about), 50, 20, evidence, latency_us).answer()
+
+    def test_own_code_a_fault_a_frequency_or_a_counted_stall(self):
+        fault = ("page_fault_user", "address=0x7f00 ip=0x5500 error_code=0x7")
+        self.assertEqual(self.named(inside=fault)["kind"], "page fault")
+        self.assertEqual(self.named(inside=fault)["address"], "0x7f00")
+        answer = self.named(inside=("cpu_frequency", "state=800000 cpu_id=0"))
+        self.assertEqual((answer["kind"], answer["kHz"]), ("frequency change", 800000))
+        self.assertEqual(self.named(inside=("cpu_frequency", "state=800000 cpu_id=1"))["kind"], "own code")
+        self.assertEqual(self.named(evidence=Evidence(smi=1))["kind"], "no software")
+        self.assertEqual(self.named(evidence=Evidence(smi=0, steal_ms=10))["kind"], "no software")
+        self.assertEqual(self.named()["kind"], "own code")
+
+    def test_a_sleep_state_only_as_long_as_it_takes(self):
+        sleeps = ("cpu_idle", "state=2 cpu_id=0")
+        for wake_us, kind in ((180, "sleep state"), (400, "no software")):
+            answer = self.named(before=sleeps, spend_us=10, wake_us=wake_us, latency_us=(0, 2, 100))
+            self.assertEqual(answer["kind"], kind)
+        awake = ("cpu_idle", "state=4294967295 cpu_id=0")
+        self.assertEqual(self.named(before=awake, spend_us=10, wake_us=180, latency_us=(0, 2, 100))["kind"], "no software")
+
+    def test_an_interrupt_without_an_end_ends_at_the_switch(self):
+        lines, tick = self.tick(inside=("reschedule_entry", "vector=253"))
+        trace = Trace(random.Random(0), tick.end_us)
+        trace.spend(5)
+        trace.switch(LOOP)
+        trace.spend(2000)
+        trace.switch(IDLE)
+        answer = explain(lines + trace.lines, tick._replace(end_us=trace.us), 50, 20).answer()
+        self.assertEqual((answer["kind"], answer["others"][0]["name"]), ("own code", "interrupt reschedule"))
+
+    def test_an_nmi_is_reported_at_its_end(self):
+        trace = Trace(random.Random(0))
+        due_us = trace.us + 10
+        trace.say("sched_waking", "comm=x pid=3 prio=9 target_cpu=000")
+        trace.spend(250)
+        trace.say("nmi_handler", "perf_event_nmi_handler() delta_ns: 240000 handled: 1")
+        trace.say("sched_waking", "comm=tact-loop pid=50 prio=19 target_cpu=000")
+        trace.switch(LOOP)
+        tick = Tick(due_us, trace.us, trace.us + 10, 0, 0)
+        trace.spend(10)
+        trace.switch(IDLE)
+        answer = explain(trace.lines, tick, 50, 20).answer()
+        self.assertEqual((answer["name"], answer["explains_us"]), ("NMI perf_event_nmi_handler", 240))
+
+
+class Deadlines(unittest.TestCase):
+    def test_late_ticks_are_those_of_the_grid(self):
+        """Sleeps that are broken by signals and timers of other calls are no ticks; too long ticks skip periods."""
+        unslept = 0
+        for seed in range(40):
+            chosen = random.Random(seed)
+            trace, want, have = Trace(chosen), [], []
+            due_us = 5_001_000
+            trace.thread = LOOP
+            for k in range(300):
+                trace.say("hrtimer_start", f"hrtimer=1 function=hrtimer_wakeup expires={due_us}000 mode=ABS|HARD")
+                late_us = chosen.choice((3, 3, 3, 3, 300, 2500)) if k > 150 else 3
+                run_us = chosen.choice((40,) * 8 + (500, 995)) if k > 150 else 40
+                if trace.us == due_us - 2 and chosen.random() < 0.5:  # its sleep ends before it begins
+                    unslept, late_us = unslept + 1, 0
+                else:
+                    trace.switch(IDLE)
+                    if chosen.random() < 0.1:  # a signal
+                        trace.spend(max(0, due_us - trace.us - 100))
+                        trace.switch(LOOP)
+                        trace.say("hrtimer_start", f"hrtimer=1 function=hrtimer_wakeup expires={due_us}000 mode=ABS|HARD")
+                        trace.switch(IDLE)
+                trace.spend(due_us + late_us - trace.us)
+                if trace.thread is IDLE:
+                    trace.switch(LOOP)
+                if chosen.random() < 0.2:  # a call that waits for a device
+                    trace.say("hrtimer_start", f"hrtimer=2 function=hrtimer_wakeup expires={due_us + 333}123 mode=ABS")
+                    trace.switch(IDLE)
+                    trace.spend(20)
+                    trace.switch(LOOP)
+                    run_us -= 20
+                trace.spend(run_us)
+                if k > 150 and late_us + max(0, run_us - 20) > 130:
+                    want.append(due_us)
+                due_us += ((trace.us - due_us) // PERIOD_US + 1) * PERIOD_US
+            trace.say("hrtimer_start", f"hrtimer=1 function=hrtimer_wakeup expires={due_us}000 mode=ABS|HARD")
+            trace.switch(IDLE)
+            watching = LoopWatch(50, 100, lambda lines, tick, usual_us: have.append(tick.due_us))
+            for line in trace.lines:
+                watching.feed(line)
+            self.assertEqual((watching.period_ns, have), (1_000_000, want), f"seed {seed}")
+            self.assertGreater(len(want), 20)
+            self.assertLess(len(watching.lines) + len(watching.before), 40)
+        self.assertGreater(unslept, 20)
+
+    def test_a_period_is_found_between_other_timers(self):
+        chosen = random.Random(3)
+        deadlines = []
+        for k in range(20):
+            deadlines += [k * 333_333] + [k * 333_333 + chosen.randrange(333_333) for _ in range(chosen.randrange(2))]
+        self.assertEqual(period_of(deadlines), 333_333)
+
+
+class Reading(unittest.TestCase):
+    def test_a_name_of_any_bytes_is_a_name(self):
+        for comm in ("a b", "x-1 [000] d..", " prev_pid=7 ", "[LOST]", "", "é" * 15):
+            event = parse(f"{comm:>16}-42      [003] d..h1..    12.000034: sched_switch: prev_comm={comm} prev_pid=42 "
+                          f"prev_prio=9 prev_state=R+ ==> next_comm={comm} next_pid=7 next_prio=120")
+            self.assertEqual((event.us, event.cpu, event.pid), (12_000_034, 3, 42), comm)
+            before, state, after = switch_of(event.text)
+            self.assertEqual((before.comm, before.pid, state, after.comm, after.pid), (comm, 42, "R+", comm, 7))
+
+    def test_priorities_and_masks_are_the_kernels(self):
+        self.assertEqual([priority_of(prio) for prio in (-1, 0, 19, 98, 99, 120, 100, 139, None)],
+                         ["deadline", "real-time 99", "real-time 80", "real-time 1", "real-time 0", "nice 0", "nice -20",
+                          "nice 19", "priority not seen"])
+        self.assertEqual(mask_of(cpus_of("0-2,33")), "00000002,00000007")
+
+    def test_says_what_is_missing_and_the_remedy(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            said = self.run_late(root)
+            self.assertRegex(said.stderr, "no tactd runs; start it first")
+            for process in (7, 8):
+                task = root / f"proc/{process}/task/{process + 1}"
+                task.mkdir(parents=True)
+                (root / f"proc/{process}/comm").write_text("tactd\n")
+                (task / "comm").write_text("tact-loop\n")
+                (task / "status").write_text("Name:\ttact-loop\nCpus_allowed_list:\t3\n")
+            (root / "proc/stat").write_text("cpu3 1 2 3 4 5 6 7 11 0\n")
+            self.assertRegex(self.run_late(root).stderr, "2 loops run, of 7, 8; name one by --pid")
+            self.assertEqual(find_loop(root, 8)[:3], (8, 9, {3}))
+            self.assertRegex(self.run_late(root, "--pid", "7").stderr, "is not there, so no cause can be named; sudo mount")
+            self.assertRegex(self.run_late(root, "--hwlat", "1").stderr, "hwlat would hold its CPU")
+            self.assertEqual(Counters(root, 3).read()[0], None)
+            with self.assertRaises(Wrong):
+                find_loop(root, 12)
+
+    def run_late(self, root, *options):
+        run = subprocess.run([sys.executable, "-B", LATE / "tact-jitter-late", "--root", root, *options], capture_output=True,
+                             text=True)
+        self.assertEqual(run.returncode, 2)
+        return run
+
+
+if __name__ == "__main__":
+    unittest.main()
