@@ -5,17 +5,20 @@ Late is: the wake-up after the deadline, what others took while the tick ran, an
 the largest part is named, if it is half or more; else it is not known.
 """
 import collections
+import math
 
 from late_trace import IDLE_ENDS, LOST, Timeline, fields, parse, priority_of, switch_of
 
 MOST_LINES = 50_000  # of one tick: what is more is not kept
 LEARNED = 64  # ticks that the usual duration is the median of
 MIN_PART = 0.5
+SHORTEST_NS = 50_000  # period of a loop
 Tick = collections.namedtuple("Tick", "due_us woke_us end_us cpu skipped")
 Evidence = collections.namedtuple("Evidence", "smi steal_ms", defaults=(None, 0))  # counted meanwhile; None: not readable
 KINDS = {"interrupt": "interrupt {name}", "nmi": "NMI {name}", "softirq": "softirq {name}", "thread": "thread {name}",
          "page fault": "page fault", "frequency change": "frequency change", "sleep state": "sleep state {name} of the CPU",
-         "no software": "no software", "wait": "a call of the loop that waits", "own code": "the loop's own code",
+         "no software": "no software", "another CPU": "CPU {name}",
+         "wait": "a call of the loop that waits", "own code": "the loop's own code, or a stall in it",
          "not known": "not known"}
 
 
@@ -25,7 +28,7 @@ class Reason:
     def __init__(self, tick, usual_us):
         self.tick, self.usual_us = tick, usual_us
         self.parts, self.about, self.timers = collections.Counter(), {}, {}
-        self.lost, self.waking_us, self.slices = False, tick.woke_us, []
+        self.why, self.waking_us, self.slices = "", tick.woke_us, []  # why: nothing can be known
 
     def charge(self, us, kind, name="", pid=0, timer="", **about):
         if us > 0:
@@ -42,7 +45,7 @@ class Reason:
     def answer(self):
         """What is printed and kept of it."""
         late_us, ranking = self.late_us, self.parts.most_common()
-        key = ranking[0][0] if ranking and ranking[0][1] >= MIN_PART * late_us and not self.lost else ("not known", "", 0)
+        key = ranking[0][0] if ranking and ranking[0][1] >= MIN_PART * late_us and not self.why else ("not known", "", 0)
         us = self.parts.get(key, 0.0)
         out = {"due_ns": round(self.tick.due_us * 1000), "wake_up_us": round(self.tick.woke_us - self.tick.due_us, 1),
                "late_us": round(late_us, 1), "skipped": self.tick.skipped, "kind": key[0],
@@ -52,8 +55,8 @@ class Reason:
             out["duration_us"] = round(self.episode_us(key), 1)
         if key in self.timers:
             out["timer"] = max(self.timers[key], key=self.timers[key].get)
-        if self.lost:
-            out["why"] = "events were lost: another tracer, or a buffer too small"
+        if self.why:
+            out["why"] = self.why
         out["others"] = [{"kind": kind, "name": KINDS[kind].format(name=name), "us": round(part_us, 1)}
                          for (kind, name, pid), part_us in ranking if (kind, name, pid) != key][:3]
         return out
@@ -70,24 +73,28 @@ def key_of(one):
     return one.kind, one.name, one.thread.pid if one.kind in ("softirq", "thread") else 0
 
 
-def explain(lines, tick, loop_pid, usual_us=0.0, evidence=Evidence(), latency_us=()):
+def explain(lines, tick, loop_pid, usual_us=0.0, evidence=Evidence(), latency_us=(), anywhere=()):
     """A Reason. `lines`: from a period before the deadline to the end of the tick, None where some were lost; `latency_us`:
-    of the CPU's sleep states."""
+    of the CPU's sleep states; `anywhere`: lines of other CPUs, as when they wake the loop."""
     reason, timeline, events = Reason(tick, usual_us), Timeline(), []
     for line in lines:
         event = parse(line) if line is not None else None
         if line is None:
-            reason.lost = True
+            reason.why = "events were lost: another tracer, or a buffer too small"
             timeline.lost()
         elif event is not None:
             events.append(event)
             if event.cpu == tick.cpu:
                 timeline.add(event)
     reason.slices = timeline.slices
-    wakings = [event.us for event in events if event.name == "sched_waking" and fields(event.text).get("pid") == str(loop_pid)]
-    reason.waking_us = next((us for us in wakings if tick.due_us - 1 <= us <= tick.woke_us), tick.woke_us)
-    charge_wake_up(reason, loop_pid, sleep_state(events, tick), latency_us)
-    charge_run(reason, events, loop_pid, wakings, evidence)
+    events = sorted(events + [event for event in map(parse, anywhere) if event], key=lambda event: event.us)
+    wakings = [event for event in events if event.name == "sched_waking" and fields(event.text).get("pid") == str(loop_pid)]
+    waking = next((event for event in wakings if tick.due_us - 1 <= event.us <= tick.woke_us), None)
+    reason.waking_us = waking.us if waking else tick.woke_us
+    if waking is None and tick.woke_us > tick.due_us + 1:
+        reason.why = reason.why or "the wake-up of the loop was not seen"  # was the interrupt late, or the loop after it?
+    charge_wake_up(reason, loop_pid, waking.cpu if waking else tick.cpu, sleep_state(events, tick), latency_us)
+    charge_run(reason, events, loop_pid, [event.us for event in wakings], evidence)
     return reason
 
 
@@ -105,7 +112,7 @@ def charge_slice(reason, one):
         reason.charge(one.end_us - one.start_us, one.kind, one.name, timer=one.detail)
 
 
-def charge_wake_up(reason, loop_pid, state, latency_us):
+def charge_wake_up(reason, loop_pid, timer_cpu, state, latency_us):
     """No thread can hold up the timer's interrupt, so what lies before it is another interrupt or no software."""
     tick = reason.tick
     silent_us, beside = 0.0, ""
@@ -121,7 +128,9 @@ def charge_wake_up(reason, loop_pid, state, latency_us):
             reason.charge(one.end_us - max(one.start_us, reason.waking_us), "own code")
         else:
             charge_slice(reason, one._replace(start_us=max(one.start_us, reason.waking_us)))
-    if state is not None and 0 <= state < len(latency_us) and silent_us <= 2 * latency_us[state] + 5:
+    if timer_cpu != tick.cpu:
+        reason.charge(silent_us, "another CPU", str(timer_cpu), meaning="the loop's timer was its own, and came late")
+    elif state is not None and 0 <= state < len(latency_us) and silent_us <= 2 * latency_us[state] + 5:
         reason.charge(silent_us, "sleep state", str(state), wakes_in_us=latency_us[state])
     else:
         reason.charge(silent_us, "no software", meaning="SMI, hypervisor, or interrupts held off", meanwhile=beside)
@@ -184,7 +193,8 @@ class LoopWatch:
         self.pid, self.threshold_us, self.late, self.period_ns = pid, threshold_us, late, period_ns
         self.before, self.lines, self.ticks = [], [], 0
         self.due_ns = self.next_ns = self.woke = self.armed = None  # the last two are Events
-        self.first, self.runs = [], collections.deque(maxlen=LEARNED)
+        self.newest, self.armings = collections.deque(maxlen=32), 0
+        self.runs, self.rate_ns = collections.deque(maxlen=LEARNED), period_ns
         self.usual_us = None
         self.comes, self.goes = f" next_pid={pid} ", f" prev_pid={pid} "
 
@@ -208,11 +218,12 @@ class LoopWatch:
         expires_ns = int(fields(event.text)["expires"]) if event and event.pid == self.pid else None
         if expires_ns is None:
             return
-        if self.due_ns is None:
-            self.first.append(expires_ns)
-            if len(self.first) == 32:
-                self.period_ns = self.period_ns or period_of(self.first)
-                self.due_ns = newest_of_grid(self.first, self.period_ns)
+        self.newest.append(expires_ns)
+        self.armings += 1
+        known = self.due_ns is not None
+        if not known or self.armings % LEARNED == 0:
+            self.learn()
+        if not known:
             return
         off_ns = (expires_ns - self.due_ns) % self.period_ns
         if min(off_ns, self.period_ns - off_ns) > 1000:  # of a call that waits, not of the grid
@@ -222,6 +233,14 @@ class LoopWatch:
             self.due_ns = self.next_ns
             self.woke = self.armed._replace(us=max(self.armed.us, self.due_ns // 1000))
         self.next_ns, self.armed = expires_ns, event
+
+    def learn(self):
+        """The grid, and again: where ticks were skipped all the time, its period seemed to be a multiple."""
+        if len(self.newest) < self.newest.maxlen:
+            return
+        period_ns = self.rate_ns or period_of(self.newest)
+        if self.due_ns is None or period_ns != self.period_ns:
+            self.period_ns, self.due_ns, self.next_ns, self.woke = period_ns, newest_of_grid(self.newest, period_ns), None, None
 
     def comes_back(self, line):
         event = parse(line)
@@ -252,10 +271,14 @@ class LoopWatch:
 
 
 def period_of(deadlines_ns):
-    """Of a grid with other timers in between: the most frequent distance of neighbours, or of those behind them."""
+    """Of a grid with gaps; with other timers in between the longest distance that occurs twice and on whose grid most lie."""
+    common = math.gcd(*(one - deadlines_ns[0] for one in deadlines_ns))
+    if common >= SHORTEST_NS:
+        return common
     distances = collections.Counter(
-        later - one for lag in (1, 2, 3) for one, later in zip(deadlines_ns, deadlines_ns[lag:]) if later > one)
-    return min(distances, key=lambda ns: (-distances[ns], ns)) if distances else 1
+        later - one for lag in (1, 2, 3) for one, later in zip(deadlines_ns, list(deadlines_ns)[lag:]) if later > one)
+    often = [ns for ns, times in distances.items() if times > 1] or [1]
+    return max(often, key=lambda ns: (max(collections.Counter(one % ns for one in deadlines_ns).values()), ns))
 
 
 def newest_of_grid(deadlines_ns, period_ns):

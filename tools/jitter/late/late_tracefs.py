@@ -14,9 +14,6 @@ TRACING = "sys/kernel/tracing"
 BUFFER_KB = 4096  # about a second of a busy CPU; it is read each 50 ms
 SMI_COUNT = 0x34  # Intel SDM volume 4
 NEEDED = ("sched/sched_switch", "timer/hrtimer_start")
-WANTED = ("sched/sched_waking", "timer/hrtimer_expire_entry", "timer/hrtimer_expire_exit", "irq/irq_handler_entry",
-          "irq/irq_handler_exit", "irq/softirq_entry", "irq/softirq_exit", "nmi/nmi_handler", "exceptions/page_fault_user",
-          "exceptions/page_fault_kernel", "power/cpu_frequency", "power/cpu_idle")
 Loop = collections.namedtuple("Loop", "process thread cpus program")
 
 
@@ -68,18 +65,18 @@ def mask_of(cpus):
 
 
 class Instance:
-    """A trace of its own, gone with `close`."""
+    """A trace of its own, of these CPUs or all, gone with `close`. `filters` {event: filter or ""}."""
 
-    def __init__(self, root, loop):
+    def __init__(self, root, name, filters, cpus=None):
         tracing = pathlib.Path(root, TRACING)
-        self.folder, self.pipe, self.part, self.missing = tracing / f"instances/tact-late-{os.getpid()}", None, "", []
-        self.remove_old(tracing)
+        self.folder, self.pipe, self.part, self.missing = tracing / f"instances/{name}-{os.getpid()}", None, "", []
+        self.remove_old(tracing, name)
         try:
             self.folder.mkdir()
         except OSError as error:
             raise Wrong(refusal(tracing, error)) from None
         try:
-            self.set_up(loop)
+            self.set_up(filters, cpus)
         except OSError as error:
             self.close()
             raise Wrong(refusal(pathlib.Path(error.filename or self.folder), error)) from None
@@ -87,37 +84,36 @@ class Instance:
             self.close()
             raise
 
-    def set_up(self, loop):
-        for name, value in (("tracing_on", "0"), ("trace_clock", "mono"), ("buffer_size_kb", str(BUFFER_KB)),
-                            ("tracing_cpumask", mask_of(loop.cpus))):
+    def set_up(self, filters, cpus):
+        for name, value in (("tracing_on", "0"), ("trace_clock", "mono"), ("buffer_size_kb", str(BUFFER_KB if cpus else 512))):
             self.write(name, value)
-        for event in (*NEEDED, *WANTED, *self.vectors()):
-            if not (self.folder / "events" / event).is_dir():
-                if event in NEEDED:
-                    raise Wrong(f"this kernel has no trace event {event}, which shows the loop's wake-up; take Debian's kernel")
+        if cpus:
+            self.write("tracing_cpumask", mask_of(cpus))
+            filters = {**filters, **self.vectors()}
+        for event, text in filters.items():
+            if (self.folder / "events" / event).is_dir():
+                if text:
+                    self.write(f"events/{event}/filter", text)
+                self.write(f"events/{event}/enable", "1")
+            elif event in NEEDED:
+                raise Wrong(f"this kernel has no trace event {event}, which shows the loop's wake-up; take Debian's kernel")
+            else:
                 self.missing.append(event)
-                continue
-            name = event.partition("/")[2]
-            if name == "hrtimer_start" or name.startswith("page_fault"):
-                self.write(f"events/{event}/filter", f"common_pid == {loop.thread}")
-            elif name == "sched_waking":
-                self.write(f"events/{event}/filter", f"pid == {loop.thread}")
-            self.write(f"events/{event}/enable", "1")
         self.pipe = os.open(self.folder / "trace_pipe", os.O_RDONLY | os.O_NONBLOCK)
         self.write("tracing_on", "1")
 
     def vectors(self):
         """Interrupts that are no device's: local timer, call from another CPU, ..."""
-        return sorted(f"irq_vectors/{one.name}" for one in (self.folder / "events/irq_vectors").glob("*_e[nx]*")
-                      if one.name.endswith(("_entry", "_exit")))
+        return {f"irq_vectors/{one.name}": "" for one in (self.folder / "events/irq_vectors").glob("*_e[nx]*")
+                if one.name.endswith(("_entry", "_exit"))}
 
     def write(self, name, value):
         (self.folder / name).write_text(value)
 
     @staticmethod
-    def remove_old(tracing):
+    def remove_old(tracing, name):
         """Of a run that was killed."""
-        for old in tracing.glob("instances/tact-late-*"):
+        for old in tracing.glob(f"instances/{name}-[0-9]*"):
             if not pathlib.Path("/proc", old.name.rpartition("-")[2]).exists():
                 try:
                     old.rmdir()
@@ -157,6 +153,24 @@ def refusal(path, error):
             return f"{path}: the kernel is locked down (Secure Boot), so no cause can be named; boot without Secure Boot"
         return f"{path}: {error.strerror}, so no cause can be named; run it by sudo, in a container on the host"
     return f"{path}: {error.strerror}; is tracefs mounted there, and its kernel one with ftrace?"
+
+
+def trace_loop(root, loop):
+    """(what any CPU does to the loop: its timer may be another's; all that runs on its own). In that order, so that each tick
+    has its wake-up."""
+    of_loop = f"common_pid == {loop.thread}"
+    here = {"sched/sched_switch": "", "timer/hrtimer_start": of_loop, "timer/hrtimer_expire_entry": "",
+            "timer/hrtimer_expire_exit": "", "irq/irq_handler_entry": "", "irq/irq_handler_exit": "", "irq/softirq_entry": "",
+            "irq/softirq_exit": "", "nmi/nmi_handler": "", "power/cpu_idle": "", "exceptions/page_fault_user": of_loop,
+            "exceptions/page_fault_kernel": of_loop}
+    anywhere = {"sched/sched_waking": f"pid == {loop.thread}",
+                "power/cpu_frequency": " || ".join(f"cpu_id == {cpu}" for cpu in sorted(loop.cpus))}
+    first = Instance(root, "tact-late-any", anywhere)
+    try:
+        return first, Instance(root, "tact-late", here, loop.cpus)
+    except Wrong:
+        first.close()
+        raise
 
 
 class Counters:
