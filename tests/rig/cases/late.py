@@ -54,7 +54,7 @@ def verdict(cause, answer):
 
 
 def named(run):
-    """At least 95 % right and none wrong; nobody is named where nothing was done."""
+    """At least 95 % right and none wrong; none is named where nothing was done."""
     if not run.late:
         return ["tact-jitter late left nothing: " + (run.text("late.log") + run.text("case.log"))[-600:].strip()]
     of_cause, innocent = counted(run)

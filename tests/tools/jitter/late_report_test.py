@@ -19,7 +19,7 @@ TRACES = pathlib.Path(__file__).with_name("late_traces.txt")
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(ROOT / "tools/jitter/late"))
 from late_oracle import random_tick  # noqa: E402
-from late_reason import LoopWatch, Tick, explain  # noqa: E402
+from late_reason import LoopMonitor, Tick, explain  # noqa: E402
 from late_report import Report, add_to_history, read_trace  # noqa: E402
 from late_tracefs import Wrong  # noqa: E402
 
@@ -43,7 +43,7 @@ class Kept(unittest.TestCase):
 
     def test_the_json_is_what_its_schema_says(self):
         schema = json.loads((ROOT / "tools/schema/tact-jitter-late.schema.json").read_text())
-        watching = LoopWatch(50, 50, None, 1_000_000)
+        watching = LoopMonitor(50, 50, None, 1_000_000)
         watching.period_ns, watching.ticks = 1_000_000, 900
         for thread, usual_us, about, lines in read_trace(TRACES):
             self.report.add(explain(lines, Tick(**about), thread, usual_us).answer(), Tick(**about), usual_us, lines)

@@ -18,7 +18,7 @@ TRACES = pathlib.Path(__file__).with_name("late_traces.txt")
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(LATE))
 from late_oracle import IDLE, LOOP, OTHERS, PERIOD_US, Trace, random_tick  # noqa: E402
-from late_reason import Evidence, LoopWatch, Tick, explain, period_of  # noqa: E402
+from late_reason import Evidence, LoopMonitor, Tick, explain, period_of  # noqa: E402
 from late_report import read_trace  # noqa: E402
 from late_trace import parse, priority_of, switch_of  # noqa: E402
 from late_tracefs import Counters, Wrong, cpus_of, find_loop, mask_of  # noqa: E402
@@ -43,12 +43,12 @@ class Parts(unittest.TestCase):
         said = run.stdout.splitlines()
         names = ("thread delay-thread (pid 424, real-time 90)", "interrupt local_timer (hrtimer_wakeup)",
                  "softirq HRTIMER (timerfd_tmrproc) in ktimers/0 (pid 15, real-time 95)", "page fault", "no software (SMI, ")
-        for name, sentence, (thread, usual_us, about, lines) in zip(names, said, read_trace(TRACES), strict=True):
-            self.assertIn(f" us late: {name}", sentence)
+        for name, message, (thread, usual_us, about, lines) in zip(names, said, read_trace(TRACES), strict=True):
+            self.assertIn(f" us late: {name}", message)
             tick = Tick(**about)
             self.assertGreater(explain(lines, tick, thread, usual_us).answer()["explains"], 0.9)
             found = []
-            watching = LoopWatch(thread, 50, lambda *late, to=found: to.append(late[1]), 1_000_000)
+            watching = LoopMonitor(thread, 50, lambda *late, to=found: to.append(late[1]), 1_000_000)
             watching.usual_us, watching.due_ns = usual_us, round(tick.due_us * 1000) - 1_000_000
             for line in lines:
                 watching.feed(line)
@@ -195,7 +195,7 @@ class Deadlines(unittest.TestCase):
                 due_us += ((trace.us - due_us) // PERIOD_US + 1) * PERIOD_US
             trace.say("hrtimer_start", f"hrtimer=1 function=hrtimer_wakeup expires={due_us}000 mode=ABS|HARD")
             trace.switch(IDLE)
-            watching = LoopWatch(50, 100, lambda lines, tick, usual_us: have.append(tick.due_us))
+            watching = LoopMonitor(50, 100, lambda lines, tick, usual_us: have.append(tick.due_us))
             for line in trace.lines:
                 watching.feed(line)
             self.assertEqual((watching.period_ns, have), (1_000_000, want), f"seed {seed}")
@@ -228,7 +228,7 @@ class Deadlines(unittest.TestCase):
             trace.switch(LOOP)
             trace.spend(40)
             due_us += 4000 if k < 70 else 1000
-        watching = LoopWatch(50, 100, lambda *late: self.fail("none is late"))
+        watching = LoopMonitor(50, 100, lambda *late: self.fail("none is late"))
         for line in trace.lines:
             watching.feed(line)
         self.assertEqual(watching.period_ns, 1_000_000)

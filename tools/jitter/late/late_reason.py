@@ -185,7 +185,7 @@ def sleeps(events, loop_pid, wakings):
             yield event.us, next((us for us in wakings if us >= event.us), float("inf"))
 
 
-class LoopWatch:
+class LoopMonitor:
     """Lines of a trace in; calls late(lines, tick, usual_us) for each tick that is late by more than the threshold, with None
     for lines that were lost. Keeps the lines of two ticks alone."""
 

@@ -35,7 +35,7 @@ class Report:
         row["explains_us"] = round(row["explains_us"] + answer["explains_us"], 1)
         self.new[answer["name"]] += 1
         if not self.quiet:
-            print(sentence(answer), flush=True)
+            print(message(answer), flush=True)
 
     def summary(self, ticks):
         yield f"{self.late} of {ticks} ticks were late"
@@ -53,7 +53,7 @@ class Report:
         for answer, tick, usual_us, lines in self.traced:
             head = json.dumps({"thread": thread, "usual_us": usual_us, **tick._asdict()})
             text = "".join(f"{'# lost' if line is None else line}\n" for line in lines)
-            yield f"{TRACE_HEAD}{head}\n# {sentence(answer)}\n{text}"
+            yield f"{TRACE_HEAD}{head}\n# {message(answer)}\n{text}"
 
 
 def read_trace(path):
@@ -85,7 +85,7 @@ def full_name(answer):
     return f"{name} ({answer['meaning']})" if "meaning" in answer else name
 
 
-def sentence(answer):
+def message(answer):
     out = f"{answer['due_ns'] / 1e9:.6f} s: {answer['late_us']:.0f} us late: {full_name(answer)}"
     if answer["kind"] != "not known":
         out += f", {answer.get('duration_us', answer['explains_us']):.0f} us, explains {100 * answer['explains']:.0f} %"

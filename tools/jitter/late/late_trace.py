@@ -7,7 +7,7 @@ CLOCK_MONOTONIC, us. Source: Documentation/trace/ftrace.rst and events.rst, incl
 import collections
 import re
 
-# comm is 16 columns wide and has 15 bytes at most: whatever bytes a thread's name has, the rest stays where it is.
+# comm is 16 columns wide and has 15 bytes at most: with any bytes in a name, the rest stays where it is.
 LINE = re.compile(r"(.{16})-(\d+) +\[(\d+)\] (?:\S+ +)?(\d+)\.(\d{6}): (\w+): ?(.*)")
 LOST = re.compile(r"CPU:\d+ \[LOST \d+ EVENTS\]")
 SWITCH = re.compile(r"prev_comm=(.*) prev_pid=(\d+) prev_prio=(-?\d+) prev_state=(\S+) ==> "

@@ -18,7 +18,7 @@ Loop = collections.namedtuple("Loop", "process thread cpus program")
 
 
 class Wrong(Exception):
-    """A sentence: what, where, the remedy."""
+    """A message: what, where, the remedy."""
 
 
 def loops(root, process=None):
