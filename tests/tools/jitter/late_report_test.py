@@ -41,6 +41,26 @@ class Kept(unittest.TestCase):
         self.assertEqual(again, list(self.report.ticks))
         self.assertEqual(again[7]["kind"], "not known")
 
+    def test_a_damaged_trace_is_refused_or_read(self):
+        """Never a traceback: what stands in a line of events is read as far as it goes."""
+        whole, chosen = TRACES.read_bytes(), random.Random(1)
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "late.trace")
+            for _ in range(300):
+                data = bytearray(whole)
+                for _ in range(chosen.randrange(1, 30)):
+                    data[chosen.randrange(len(data))] = chosen.randrange(256)
+                path.write_bytes(data[:chosen.randrange(len(data))])
+                try:
+                    for thread, usual_us, about, lines in read_trace(path):
+                        explain(lines, Tick(**about), thread, usual_us).answer()
+                        watching = LoopMonitor(thread, 50, lambda *_: None, 1_000_000)
+                        watching.due_ns = round(about["due_us"] * 1000) - 1_000_000
+                        for line in lines:
+                            watching.feed(line or "CPU:0 [LOST 3 EVENTS]")
+                except Wrong as wrong:
+                    self.assertIn("name a file that --trace wrote", str(wrong))
+
     def test_the_json_is_what_its_schema_says(self):
         schema = json.loads((ROOT / "tools/schema/tact-jitter-late.schema.json").read_text())
         watching = LoopMonitor(50, 50, None, 1_000_000)

@@ -7,7 +7,7 @@ the largest part is named, if it is half or more; else it is not known.
 import collections
 import math
 
-from late_trace import IDLE_ENDS, LOST, Timeline, fields, parse, priority_of, switch_of
+from late_trace import IDLE_ENDS, LOST, Timeline, fields, number_in, parse, priority_of, switch_of
 
 MOST_LINES = 50_000  # of one tick: what is more is not kept
 LEARNED = 64  # ticks that the usual duration is the median of
@@ -141,9 +141,8 @@ def sleep_state(events, tick):
     state = None
     for event in events:
         if event.name == "cpu_idle" and event.us <= tick.due_us:
-            found = fields(event.text)
-            if found.get("cpu_id") == str(tick.cpu):
-                state = int(found["state"])
+            if number_in(event.text, "cpu_id") == tick.cpu:
+                state = number_in(event.text, "state")
     return None if state == IDLE_ENDS else state
 
 
@@ -170,7 +169,7 @@ def charge_run(reason, events, loop_pid, wakings, evidence):
         return
     reason.charge(wait_us, "wait")
     if changes:
-        reason.charge(over_us, "frequency change", kHz=int(fields(changes[-1].text)["state"]))
+        reason.charge(over_us, "frequency change", kHz=number_in(changes[-1].text, "state"))
     elif evidence.smi or evidence.steal_ms:
         reason.charge(over_us, "no software", meaning=f"SMI {evidence.smi or 0}, hypervisor {evidence.steal_ms} ms, as counted")
     else:
@@ -215,7 +214,7 @@ class LoopMonitor:
 
     def arms(self, line):
         event = parse(line)
-        expires_ns = int(fields(event.text)["expires"]) if event and event.pid == self.pid else None
+        expires_ns = number_in(event.text, "expires") if event and event.pid == self.pid else None
         if expires_ns is None:
             return
         self.newest.append(expires_ns)
@@ -249,7 +248,8 @@ class LoopMonitor:
 
     def goes_to_sleep(self, line):
         event = parse(line)
-        if event is None or switch_of(event.text)[1].startswith("R"):  # another takes the CPU
+        switch = switch_of(event.text) if event else None
+        if switch is None or switch[1].startswith("R"):  # another takes the CPU
             return
         self.end_tick(event)
         self.due_ns, self.next_ns, self.woke = self.next_ns, None, None

@@ -6,6 +6,7 @@ import json
 import os
 import pathlib
 
+from late_reason import Tick
 from late_tracefs import Wrong
 
 MOST_KEPT = 1000  # late ticks; all are counted
@@ -13,6 +14,7 @@ MOST_NAMES = 200
 MOST_TRACED = 100  # late ticks with all lines of the trace
 MOST_DAYS, MOST_OF_A_DAY = 366, 8
 TRACE_HEAD = "# tact-jitter late 1 "
+HEAD_KEYS = {"thread", "usual_us", *Tick._fields}
 
 
 class Report:
@@ -63,9 +65,11 @@ def read_trace(path):
         for part in text.split(TRACE_HEAD)[1:]:
             head, *lines = part.removesuffix("\n").split("\n")
             about = json.loads(head)
+            if set(about) != HEAD_KEYS or not all(isinstance(value, (int, float)) for value in about.values()):
+                raise ValueError("a head is damaged")
             yield (about.pop("thread"), about.pop("usual_us"), about,
                    [None if line == "# lost" else line for line in lines if line == "# lost" or not line.startswith("#")])
-    except (OSError, ValueError, KeyError) as error:
+    except (OSError, ValueError) as error:
         raise Wrong(f"{path}: {getattr(error, 'strerror', None) or error}; name a file that --trace wrote") from None
 
 

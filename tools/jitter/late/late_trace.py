@@ -35,6 +35,12 @@ def fields(text):
     return dict(FIELD.findall(text))
 
 
+def number_in(text, key):
+    """None where it is garbled."""
+    value = fields(text).get(key, "")
+    return int(value) if value.isascii() and value.isdigit() else None
+
+
 def switch_of(text):
     """(the thread that leaves, its state, the one that comes) of a sched_switch; None if it is garbled."""
     found = SWITCH.match(text)
