@@ -118,10 +118,10 @@ def random_tick(chosen):
             trace.others(chosen.randrange(1, 30))
             trace.switch(LOOP, "R")
     trace.say("hrtimer_start", f"hrtimer=1 function=hrtimer_wakeup expires={(due_us + 1000) * 1000}")
-    tick = Tick(due_us, woke_us, trace.us, 0, 0)
+    tick = Tick(due_us, woke_us, trace.us, 0, 0, chosen.choice((0, 0, 50)))
     trace.switch(IDLE)
     usual_us = chosen.randrange(0, 120)
-    parts, own_us = collections.Counter(), 0
+    parts, own_us, wait_us = collections.Counter(), 0, 0
     for us in range(due_us, trace.us):
         owner = trace.owner[us]
         if us < woke_us:
@@ -134,8 +134,9 @@ def random_tick(chosen):
         elif owner == ("thread", "tact-loop", 50):
             own_us += 1
         elif any(start <= us < end for start, end in asleep) or owner[2] == 0 and owner[0] == "thread":
-            parts["wait", "", 0] += 1
+            wait_us += 1
         else:
             parts[owner] += 1
     parts["own code", "", 0] += max(0, own_us - usual_us)
+    parts["wait", "", 0] += max(0, wait_us - tick.usual_wait_us)
     return trace, tick, usual_us, +parts

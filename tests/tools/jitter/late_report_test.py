@@ -42,7 +42,7 @@ class Kept(unittest.TestCase):
         self.assertEqual(again[7]["kind"], "not known")
 
     def test_a_damaged_trace_is_refused_or_read(self):
-        """Never a traceback: what stands in a line of events is read as far as it goes."""
+        """Never a traceback: a line of events is read as far as it goes."""
         whole, chosen = TRACES.read_bytes(), random.Random(1)
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder, "late.trace")

@@ -61,17 +61,6 @@ class Parts(unittest.TestCase):
             reason = explain([*trace.lines[:at], None, *trace.lines[at:]], tick, 50, usual_us)
             self.assertEqual((reason.answer()["kind"], "lost" in reason.answer()["why"]), ("not known", True))
 
-    def test_any_torn_line_raises_nothing(self):
-        chosen = random.Random(2)
-        for seed in range(150):
-            trace, tick, usual_us, _ = random_tick(random.Random(seed))
-            lines = list(trace.lines)
-            for _ in range(5):
-                at = chosen.randrange(len(lines))
-                cut = chosen.randrange(len(lines[at]) + 1)
-                lines[at] = lines[at][:cut] + chosen.choice(("", "\x00", "pid=", lines[at][cut // 2:]))
-            explain(lines, tick, 50, usual_us).answer()
-
 
 class Kinds(unittest.TestCase):
     def tick(self, before="", inside="", spend_us=400, wake_us=5):
@@ -202,6 +191,30 @@ class Deadlines(unittest.TestCase):
             self.assertGreater(len(want), 20)
             self.assertLess(len(watching.lines) + len(watching.before), 40)
         self.assertGreater(unslept, 20)
+
+    def test_the_usual_waiting_of_a_device_is_not_late(self):
+        trace, due_us, have = Trace(random.Random(0)), 5_001_000, []
+        trace.thread = LOOP
+        for k in range(300):
+            trace.say("hrtimer_start", f"hrtimer=1 function=hrtimer_wakeup expires={due_us}000 mode=ABS|HARD")
+            trace.switch(IDLE)
+            trace.spend(due_us - trace.us)
+            trace.say("sched_waking", "comm=tact-loop pid=50 prio=19 target_cpu=000")
+            trace.switch(OTHERS[0])
+            trace.spend(150 if k == 200 else 3)
+            trace.switch(LOOP)
+            trace.spend(20)
+            trace.switch(IDLE)  # 200 us for a device, once 500
+            trace.spend(500 if k == 250 else 200)
+            trace.say("sched_waking", "comm=tact-loop pid=50 prio=19 target_cpu=000")
+            trace.switch(LOOP)
+            trace.spend(20)
+            due_us += PERIOD_US
+        watching = LoopMonitor(50, 100, lambda *late: have.append(explain(*late[:2], 50, late[2]).answer()))
+        for line in trace.lines:
+            watching.feed(line)
+        self.assertEqual([(one["due_ns"], one["kind"], one["explains_us"]) for one in have],
+                         [(5_201_000_000, "thread", 150), (5_251_000_000, "wait", 300)])
 
     def test_a_period_is_found_between_other_timers(self):
         chosen = random.Random(3)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Who made a tick late: the loop's deadlines found in its trace, and what ran between a deadline and the end of its tick.
 
-Late is: the wake-up after the deadline, what others took while the tick ran, and the own code beyond its usual time. Who has
-the largest part is named, if it is half or more; else it is not known.
+Late is: the wake-up after the deadline, what others took while the tick ran, and own code and own waiting beyond their usual
+time. Who has the largest part is named, if it is half or more; else it is not known.
 """
 import collections
 import math
@@ -13,7 +13,8 @@ MOST_LINES = 50_000  # of one tick: what is more is not kept
 LEARNED = 64  # ticks that the usual duration is the median of
 MIN_PART = 0.5
 SHORTEST_NS = 50_000  # period of a loop
-Tick = collections.namedtuple("Tick", "due_us woke_us end_us cpu skipped")
+# usual_wait_us: that its own calls wait for a device
+Tick = collections.namedtuple("Tick", "due_us woke_us end_us cpu skipped usual_wait_us", defaults=(0.0,))
 Evidence = collections.namedtuple("Evidence", "smi steal_ms", defaults=(None, 0))  # counted meanwhile; None: not readable
 KINDS = {"interrupt": "interrupt {name}", "nmi": "NMI {name}", "softirq": "softirq {name}", "thread": "thread {name}",
          "page fault": "page fault", "frequency change": "frequency change", "sleep state": "sleep state {name} of the CPU",
@@ -160,7 +161,7 @@ def charge_run(reason, events, loop_pid, wakings, evidence):
             waits_us = one.end_us - one.start_us
         wait_us += waits_us
         charge_slice(reason, one._replace(start_us=min(one.start_us + waits_us, one.end_us)))
-    over_us = max(0.0, own_us - reason.usual_us)
+    over_us, wait_us = max(0.0, own_us - reason.usual_us), max(0.0, wait_us - tick.usual_wait_us)
     faults = [event for event in in_run if event.name.startswith("page_fault_") and event.pid == loop_pid]
     changes = [event for event in events if event.name == "cpu_frequency" and fields(event.text).get("cpu_id") == str(tick.cpu)]
     if faults:
@@ -194,7 +195,8 @@ class LoopMonitor:
         self.due_ns = self.next_ns = self.woke = self.armed = None  # the last two are Events
         self.newest, self.armings = collections.deque(maxlen=32), 0
         self.runs, self.rate_ns = collections.deque(maxlen=LEARNED), period_ns
-        self.usual_us = None
+        self.usual_us, self.usual_wait_us = None, 0.0
+        self.left_us, self.away_us = None, 0.0  # in this tick, by itself
         self.comes, self.goes = f" next_pid={pid} ", f" prev_pid={pid} "
 
     def feed(self, line):
@@ -207,8 +209,8 @@ class LoopMonitor:
         if " sched_switch: " in line:
             if self.comes in line:
                 self.comes_back(line)
-            elif self.goes in line and self.next_ns is not None:
-                self.goes_to_sleep(line)
+            elif self.goes in line and (self.woke or self.next_ns) is not None:
+                self.leaves(line)
         elif " hrtimer_start: " in line and "function=hrtimer_wakeup" in line:
             self.arms(line)
 
@@ -243,31 +245,37 @@ class LoopMonitor:
 
     def comes_back(self, line):
         event = parse(line)
+        if event and self.left_us is not None:
+            self.away_us, self.left_us = self.away_us + event.us - self.left_us, None
         if self.woke is None and self.due_ns is not None and event and event.us * 1000 >= self.due_ns - 1000:
             self.woke = event
 
-    def goes_to_sleep(self, line):
+    def leaves(self, line):
         event = parse(line)
         switch = switch_of(event.text) if event else None
         if switch is None or switch[1].startswith("R"):  # another takes the CPU
             return
+        if self.next_ns is None:  # a call that waits
+            self.left_us = event.us
+            return
         self.end_tick(event)
         self.due_ns, self.next_ns, self.woke = self.next_ns, None, None
+        self.left_us, self.away_us = None, 0.0
         self.before, self.lines = self.lines, []
 
     def end_tick(self, event):
         if self.woke is None or self.next_ns <= self.due_ns:
             return
         skipped = round((self.next_ns - self.due_ns) / self.period_ns) - 1
-        tick = Tick(self.due_ns / 1000, self.woke.us, event.us, self.woke.cpu, skipped)
-        run_us = tick.end_us - tick.woke_us
+        run_us, away_us = event.us - self.woke.us, self.away_us
         usual_us = run_us if self.usual_us is None else self.usual_us
+        tick = Tick(self.due_ns / 1000, self.woke.us, event.us, self.woke.cpu, skipped, self.usual_wait_us)
         self.ticks += 1
-        if tick.woke_us - tick.due_us + max(0.0, run_us - usual_us) > self.threshold_us:
+        if tick.woke_us - tick.due_us + max(0.0, run_us - usual_us - self.usual_wait_us) > self.threshold_us:
             self.late(self.before + self.lines, tick, usual_us)
-        self.runs.append(run_us)
+        self.runs.append((run_us - away_us, away_us))
         if self.usual_us is None and len(self.runs) == LEARNED or self.ticks % LEARNED == 0:
-            self.usual_us = sorted(self.runs)[len(self.runs) // 2]
+            self.usual_us, self.usual_wait_us = (sorted(part)[len(self.runs) // 2] for part in zip(*self.runs))
 
 
 def period_of(deadlines_ns):
