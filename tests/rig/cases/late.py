@@ -15,7 +15,7 @@ CAUSES = {"thread": "thread", "interrupt": "interrupt", "softirq": "softirq", "f
 NAMES = {"thread": "thread delay-thread", "interrupt": "interrupt local_timer", "softirq": "softirq HRTIMER"}
 SCRIPT = f"""export PYTHONHOME=/tact/python
 late="/tact/python/bin/python3 -B /tact/late/tact-jitter-late"
-$late --hwlat 1 --threshold 50 >$RESULTS/hwlat.txt 2>&1
+$late --hwlat 0.2 --threshold 50 >$RESULTS/hwlat.txt 2>&1
 control $SECONDS_OF_RUN
 {{
   $late --threshold {THRESHOLD_US} --json $RESULTS/late.json --trace $RESULTS/late.trace \\
@@ -84,5 +84,6 @@ def as_logged(run):
 
 CASES = [
     Case("late-named", "who made a tick late is named: thread, interrupt, softirq, page fault, stall", SIM_DELTA, SCRIPT,
-         (checks.no_fault, named, as_logged, without_stalls), seconds=8, sweep=True, files=functools.partial(python_files, LATE)),
+         (checks.no_fault, named, as_logged, without_stalls), seconds=8, sweep=True, wall_limit_s=900,
+         files=functools.partial(python_files, LATE)),
 ]
