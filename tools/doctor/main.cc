@@ -16,6 +16,7 @@
 #include "model/io/json.h"
 #include "model/io/program/within.h"
 #include "tools/program/program.h"
+#include "tools/program/script.h"
 
 namespace {
 
@@ -25,6 +26,7 @@ using tact::model::Error;
 struct Options {
   std::string root;
   int core = -1;
+  int stalls_s = 0;
   bool as_json = false;
 };
 
@@ -34,6 +36,11 @@ void add_options(CLI::App& app, Options& o) {
       ->check(tact::model::io::within(0, CPU_SETSIZE - 1));
   app.add_option("--root", o.root,
                  "look below this folder instead, at a copy of another PC's proc/, sys/ and dev/");
+  app.add_option(
+         "--stalls", o.stalls_s,
+         "instead, as root and while no loop runs: does the hardware hold the CPU (SMI)? by "
+         "the kernel's tracer hwlat, for so long, s")
+      ->check(tact::model::io::within(1, 86400));
   app.add_flag("--json", o.as_json, "print one JSON document");
 }
 
@@ -73,6 +80,9 @@ int main(int argc, char** argv) {
   Options options;
   add_options(program.options(), options);
   if (const auto status = program.parse(argc, argv)) return *status;
+  if (options.stalls_s > 0)
+    return program.fail(tact::tools::program::become_script(
+        "tact-jitter-late", {"--hwlat", std::to_string(options.stalls_s)}, "tact-tools"));
   if (!options.root.empty() && !std::filesystem::is_directory(options.root + "/proc"))
     return program.fail(Error{options.root + ": has no proc/ below it; name a folder that has"});
   PcQuestion question{.files = PcFiles(options.root),

@@ -161,13 +161,13 @@ int main(int argc, char** argv) {
       "Is this PC good enough for the rate? Latency and jitter of the loop that a person runs: the "
       "scene's law\non its device, phase by phase; without SCENE an empty loop at 1 kHz. "
       "`tact-jitter compare A B`\nputs two results side by side, `tact-jitter history` shows days, "
-      "weeks and a year of tactd.",
+      "weeks and a year of tactd,\n`tact-jitter late` names who made a tick of tactd late.",
       "Times are us on screen and ns in files. \"largest\" is that of the run and bounds nothing.");
   Options options;
   CLI::App& app = program.options();
   add_run_options(app, options);
   // Scripts, beside this program or in share/tact.
-  for (const std::string name : {"compare", "history"})
+  for (const std::string name : {"compare", "history", "late"})
     if (argc > 1 && name == argv[1])
       execv(tact::model::io::data_file("tact-jitter-" + name).c_str(), argv + 1);
   if (const auto status = program.parse(argc, argv)) return *status;

@@ -49,6 +49,7 @@ class Case:
     timed: bool = False         # phases against the baseline, wake-ups against measure_peer's
     long_only: bool = False     # its like runs on another back end; both with --long
     variables: dict = dataclasses.field(default_factory=dict)  # for the script and the set-up
+    files: object = tuple       # a function without parameters: (host file, name below /tact) that this case alone needs
 
     @property
     def settings(self):
@@ -105,6 +106,11 @@ class Run:
     def jitter(self):
         """What tact-jitter measured; empty where it did not run."""
         return parse(self.text("jitter.json"))
+
+    @functools.cached_property
+    def late(self):
+        """What tact-jitter late named; empty where it did not run."""
+        return parse(self.text("late.json"))
 
     @functools.cached_property
     def threads(self):

@@ -79,11 +79,12 @@ class Machine:
                 raise RigError(f"QEMU wrote no snapshot: {(work / 'qemu').read_text()[-500:]}")
             (work / "state").rename(target)
 
-    def run(self, script, seed, limit_s):
-        """Runs the bash text `script` in the loaded guest; returns an Outcome."""
+    def run(self, script, seed, limit_s, files=()):
+        """Runs the bash text `script` in the loaded guest, with (host file, name in the guest) beside it; returns an
+        Outcome."""
         with tempfile.TemporaryDirectory() as scratch:
             work = pathlib.Path(scratch)
-            write_input(work, "GO", tar_of_case(script))
+            write_input(work, "GO", tar_of_case(script, files))
             start = time.monotonic()
             with (work / "said").open("wb") as said:
                 command = [*self.arguments(work, seed), "-incoming", f"exec:cat {self.loaded}",
@@ -128,9 +129,9 @@ def write_input(work, word, files):
     (work / "files").write_bytes(files or b"\0" * 1024)
 
 
-def tar_of_case(script):
-    buffer = io.BytesIO()
-    with tarfile.open(fileobj=buffer, mode="w") as tar:
+def tar_of_case(script, files=()):
+    buffer = io.BytesIO(make_tar(files) if files else b"")
+    with tarfile.open(fileobj=buffer, mode="a" if files else "w") as tar:
         entry = tarfile.TarInfo("case")
         data = script.encode()
         entry.size = len(data)

@@ -157,6 +157,18 @@ int report_story(const std::string& path, std::int64_t injected_ns) {
   return 0;
 }
 
+/// Deadline and wake-up of each tick that woke so much later than its deadline.
+int report_late(const std::string& path, double late_us) {
+  auto log = firmware::protocol::TickLog::open(path);
+  if (!log) return fmt::print(stderr, "tact-rig-ticks: {}\n", log.error().message), 2;
+  for (LoggedTick tick; log->next(tick);) {
+    const std::int64_t woke = woke_ns(tick);
+    if (static_cast<double>(woke - tick.due_ns) > 1e3 * late_us)
+      fmt::print("{} {}\n", tick.due_ns, woke);
+  }
+  return 0;
+}
+
 /// A deadline of a loop that still runs: all others lie whole periods from it.
 int report_grid(const std::string& path) {
   auto log = firmware::protocol::TickLog::open(path);
@@ -173,10 +185,12 @@ int main(int argc, char** argv) {
   std::string path;
   std::int64_t injected_ns = 0;
   bool clock_offset = false, grid = false;
+  double late_us = 0.0;
   app.add_option("LOG", path, "written by tactd --record");
   app.add_option("--at", injected_ns, "when the fault came, CLOCK_MONOTONIC, ns");
   app.add_flag("--clock-offset", clock_offset, "print CLOCK_MONOTONIC - CLOCK_REALTIME, ns");
   app.add_flag("--grid", grid, "print a deadline of the loop, CLOCK_MONOTONIC, ns");
+  app.add_option("--late", late_us, "print deadline and wake-up, ns, of each that woke later, us");
   CLI11_PARSE(app, argc, argv);
   if (clock_offset) {
     tact::rig::print_clock_offset();
@@ -187,5 +201,6 @@ int main(int argc, char** argv) {
     return 2;
   }
   if (grid) return tact::rig::report_grid(path);
+  if (late_us > 0.0) return tact::rig::report_late(path, late_us);
   return tact::rig::report_story(path, injected_ns);
 }

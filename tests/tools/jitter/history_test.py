@@ -54,6 +54,19 @@ class History(unittest.TestCase):
         self.assertEqual(lines[2].split(), ["2024-10-05", ">6554", "0.1", ">6554", "0", "0", "-"])
         self.assertEqual(len(self.said(self.path, "--days", "1").stdout.splitlines()), 2)
 
+    def test_says_who_made_ticks_late(self):
+        day = 20000 * 288
+        self.path.write_bytes(history({day: (45, 30, 60, 1, 2, 0, 0), day + 288: (40, 31, 59, 3, 0, 0, 0)}))
+        causes = self.path.with_name("late.json")
+        causes.write_text('{"2024-10-04": {"page fault": 2, "thread hog": 30}, "2024-10-09": {"x": 1}}')
+        lines = self.said(self.path).stdout.splitlines()
+        self.assertRegex(lines[1], "; late by thread hog 30, page fault 2$")
+        self.assertNotIn("late by", lines[2])
+        for text in ("[", "[1]", '{"2024-10-04": 3}', '{"2024-10-04": {"x": "y"}}'):
+            causes.write_text(text)
+            run = self.said(self.path)
+            self.assertEqual((run.returncode, "late.json: " in run.stderr), (2, True), text)
+
     def test_any_damaged_byte_loses_one_record_at_most(self):
         day = 20000 * 288
         whole = history({day + 288 * k: (45, 30, 60, 1, 2, 0, 0) for k in range(3)})
