@@ -47,7 +47,7 @@ class WaitNote {
  public:
   void set(const FaultCause& cause) RT_SAFE { cause_.store(cause, std::memory_order_relaxed); }
   void clear() RT_SAFE { set({}); }
-  /// Of kind 0: nothing is waited for.
+  /// The first cause; of kind 0 while there is none. Waits for nothing.
   FaultCause cause() const RT_SAFE { return cause_.load(std::memory_order_relaxed); }
 
  private:

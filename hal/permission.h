@@ -43,7 +43,7 @@ struct Refusal {
 
 /// The group of the udev rules; none where it does not exist.
 std::optional<gid_t> haptics_group();
-/// Of a node that was refused; `rule` is that of its device.
+/// The reason for a refused node; `rule` is that of its device.
 Refusal why_refused(const std::string& node, const char* rule,
                     std::optional<gid_t> group = haptics_group());
 
@@ -63,8 +63,8 @@ std::vector<std::filesystem::path> entries(const std::filesystem::path& folder);
 std::string usb_node(const std::filesystem::path& device, const SystemRoots& roots);
 /// Which of these the device is, by its folder in sysfs; null: none.
 const UsbPart* usb_part_of(const std::filesystem::path& device, std::span<const UsbPart> parts);
-/// Of the first of these USB devices whose node is refused; nothing where all may be opened, or
-/// none is there. For libraries that look for devices by themselves:
+/// Why the first of these USB devices cannot be opened; nothing where all may be opened, or none
+/// is there. For libraries that look for devices by themselves:
 /// ask before the library, which then finds what udev has given away, and report only when it
 /// fails, as it may open another device.
 std::optional<Refusal> refused_usb_device(std::span<const UsbPart> parts,

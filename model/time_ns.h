@@ -9,7 +9,7 @@ namespace tact::model {
 
 inline constexpr std::int64_t kMillisecond_ns = 1'000'000, kSecond_ns = 1'000'000'000;
 
-/// Of a loop or a bus, to the nearest nanosecond.
+/// The period of a loop or a bus, to the nearest nanosecond.
 inline std::int64_t period_ns(double rate_Hz) { return std::llround(1e9 / rate_Hz); }
 
 }  // namespace tact::model

@@ -64,7 +64,7 @@ class Haptics {
   /// All numbers that were set are in use.
   bool is_set() const { return !contacts_.is_pending(); }
 
-  /// Of the last tick, one for each sphere of the tool.
+  /// Contacts of the last tick, one for each sphere of the tool.
   std::span<const model::contact::SphereContact> contacts() const RT_SAFE {
     return controller_->contacts();
   }

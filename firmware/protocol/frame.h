@@ -44,7 +44,7 @@ struct FramePatch {
   static FieldTable fields();
 };
 
-/// Of all ticks whose records have reached telemetry, by a duration of the tick.
+/// Counts of all ticks whose records have reached telemetry, by a duration of the tick.
 struct FrameDurations {
   /// Upper bounds, us, of all buckets but the last; frame.cc has them as names of the components.
   static constexpr std::array kBound_us{1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 5000};
@@ -96,7 +96,7 @@ struct Frame {
   FrameContact contact[kMaxContacts] = {};
   FramePatch patch;
 
-  /// Of a run whose tool has that many spheres: files and frames hold those contacts alone.
+  /// Fields of a run whose tool has that many spheres: files and frames hold those contacts alone.
   static FieldTable fields(std::size_t spheres = kMaxContacts);
 };
 

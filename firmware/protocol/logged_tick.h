@@ -38,7 +38,7 @@ struct LoggedTick {
   LoggedContact contact[kMaxContacts] = {};
 
   static LoggedTick of(const loop::TickRecord& record, bool non_rt, const UtcOffset& utc = {});
-  /// Of a run whose tool has that many spheres.
+  /// Fields of a run whose tool has that many spheres.
   static FieldTable fields(std::size_t spheres = kMaxContacts);
 };
 

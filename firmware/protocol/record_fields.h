@@ -70,7 +70,7 @@ struct Field {
 inline constexpr std::array<const char*, 3> kXyz{"x", "y", "z"};
 inline constexpr std::array<const char*, 4> kWxyz{"w", "x", "y", "z"};
 
-/// Of a C++ type: its elements and how many there are.
+/// Element type of a C++ type and how many there are.
 template <typename T>
 struct ArrayTraits {
   using type = T;

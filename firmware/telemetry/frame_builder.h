@@ -44,7 +44,7 @@ class FrameBuilder {
   /// The tissue of the records from now on.
   void use(const model::contact::IndentationView& indentations) { indentations_ = &indentations; }
   void add(const loop::TickRecord& record);
-  /// Of the records from now on.
+  /// Applies to the records from now on.
   void set_utc(const protocol::UtcOffset& utc) { utc_ = utc; }
   LoggedTick log(const loop::TickRecord& record) const {
     return LoggedTick::of(record, non_rt_, utc_);

@@ -70,7 +70,7 @@ class Telemetry {
   /// must stay until variant() is a later one.
   void expect_variant(std::uint32_t variant, const std::vector<std::string>& set,
                       const model::contact::IndentationView& indentations);
-  /// Of the last record that was read.
+  /// The variant of the last record that was read.
   std::uint32_t variant() const { return variant_.load(std::memory_order_acquire); }
 
   Frame newest_frame() const;

@@ -40,7 +40,7 @@ struct CanBusCounts {
   std::uint64_t unreadable = 0;  // neither data nor error frame of ours
 };
 
-/// Of classic frames or of CAN FD frames.
+/// A bus of classic frames or of CAN FD frames.
 template <class Frame>
 class BasicCanBus {
  public:
@@ -65,7 +65,7 @@ class BasicCanBus {
   Fault fault() const RT_SAFE { return latch_.fault(); }
   FaultCause cause() const RT_SAFE { return latch_.cause(); }
   const CanBusCounts& counts() const RT_SAFE { return counts_; }
-  /// Of all error frames so far: why no drive answers at start.
+  /// All error frames so far: why no drive answers at start.
   const CanError& errors_seen() const RT_SAFE { return errors_seen_; }
   Socket& socket() { return *socket_; }
   const CanRate& rate() const { return socket_->rate(); }

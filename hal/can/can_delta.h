@@ -61,7 +61,7 @@ class CanDelta {
 
 /// "arm 2 (node 2 on can0)".
 std::string can_arm_name(std::size_t axis, const CanSettings& can);
-/// Of an arm whose positions on the jig differ.
+/// Remedy for an arm whose positions on the jig differ.
 inline constexpr const char* kMovesOnJig =
     "moves, or two drives have this node id: let the arms rest on the jig until tactd is ready, "
     "and "

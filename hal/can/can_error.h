@@ -42,10 +42,10 @@ enum class CanErrorClass : std::uint16_t {
   kRestarted = 0x100,
 };
 
-/// Of the controller, in data[1].
+/// States of the controller, in data[1].
 enum class CanControllerState : std::uint8_t { kRxPassive = 0x10, kTxPassive = 0x20 };
 
-/// Of one error frame, or of all so far.
+/// Content of one error frame, or of all so far.
 struct CanError {
   std::uint32_t classes = 0;    // bits of CanErrorClass
   std::uint8_t controller = 0;  // bits of CanControllerState; 0 without that class
@@ -65,7 +65,7 @@ struct CanError {
   const char* text() const;
 };
 
-/// Of the 16 bytes of a `struct can_frame`. Nothing if they are no error frame, are damaged (other
+/// Decodes a `struct can_frame`, 16 bytes. Nothing if they are no error frame, are damaged (other
 /// than 8 data bytes) or name no class at all.
 std::optional<CanError> decode_can_error(std::span<const std::uint8_t> bytes) RT_SAFE;
 

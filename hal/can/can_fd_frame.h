@@ -55,7 +55,7 @@ std::optional<CanFdFrameBytes> pack_can_frame(const CanFdFrame& frame) RT_SAFE;
 /// but 72. Data beyond the length is zeroed.
 std::optional<CanFdFrame> unpack_can_fd_frame(std::span<const std::uint8_t> bytes) RT_SAFE;
 
-/// Of all frames of a tick, at worst stuffing, intermission included.
+/// Worst-case number of bits of all frames in a tick, intermission included.
 struct CanFdBits {
   int slow = 0, fast = 0;
 };

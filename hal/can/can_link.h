@@ -27,7 +27,7 @@ namespace tact::hal::can {
 /// (ifinfomsg).
 inline constexpr std::size_t kNetlinkHeader_bytes = 16, kNetlinkLinkHeader_bytes = 16;
 
-/// Of the controller, in the kernel's order.
+/// States of the controller, in the kernel's order.
 enum class CanLinkState : std::uint32_t {
   kActive,
   kWarning,
@@ -52,7 +52,7 @@ struct CanLink {
   CanRate rate() const;
 };
 
-/// Of one netlink message; nothing if it is no link or is cut short.
+/// The link of one netlink message; nothing if it is no link or is cut short.
 std::optional<CanLink> decode_can_link(std::span<const std::uint8_t> message);
 
 /// Why the interface is refused, or none. `cycle_bits`: all frames of a tick, most stuff bits.

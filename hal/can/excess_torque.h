@@ -16,7 +16,7 @@
 
 namespace tact::hal::can {
 
-/// Of the largest torque of a motor; chosen: above friction and ripple, below what moves a hand.
+/// Share of a motor's largest torque; chosen: above friction and ripple, below what moves a hand.
 inline constexpr double kMaxExcess_ratio = 0.1;
 
 class ExcessTorque {

@@ -36,7 +36,7 @@ struct Cia402Start {
 
 /// What the device needs to hear.
 std::vector<std::uint32_t> cia402_ids(const can::CanSettings& can);
-/// Of SYNC, commands and samples of a tick at worst stuffing; heartbeats and SDO come on top.
+/// Worst-case bits of SYNC, commands and samples in a tick; heartbeats and SDO come on top.
 int cia402_cycle_bits();
 /// For one drive at this rate.
 CstConfiguration cst_settings(const Cia402Settings& settings, double rate_Hz);

@@ -37,7 +37,7 @@ class Cia402Network {
   bool start_all();
   /// Those that have not: the settings of the bus as after power-on, without old errors.
   void reset_idle();
-  /// Of the first that has not, and why, as far as it says.
+  /// Names the first that has not, and why, as far as it says.
   model::Error not_started();
 
  private:

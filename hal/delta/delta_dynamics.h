@@ -17,7 +17,7 @@
 
 namespace tact::hal::delta {
 
-/// Of a delta that lies on its side (hal/mounting.h).
+/// Gravity for a delta that lies on its side (hal/mounting.h).
 inline constexpr Vec3 kGravity_W_mps2{0.0, 0.0, -model::kGravity_mps2};
 
 struct DeltaMasses {

@@ -51,7 +51,7 @@ class FalconPipe {
   virtual bool submit(const FalconPacket& command) RT_SAFE = 0;
   /// The system call of submit, by number; none where it makes none.
   virtual std::span<const int> loop_calls() const { return {}; }
-  /// Of the open device, for USBDEVFS_BULK on the command endpoint; -1: it is not known.
+  /// The open device, for USBDEVFS_BULK on the command endpoint; -1: it is not known.
   virtual int descriptor() const { return -1; }
   /// The newest report, or false when there is none since the last call. Loop thread.
   virtual bool newest(FalconReply& reply) RT_SAFE = 0;

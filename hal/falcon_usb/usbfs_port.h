@@ -33,7 +33,7 @@ class UsbfsPort {
   virtual void discard(usbdevfs_urb& urb) = 0;
   /// Makes a stalled endpoint carry again; waits for the device. 0, or the errno of the kernel.
   virtual int clear_halt(unsigned endpoint) = 0;
-  /// Of the open node; -1: there is none.
+  /// The open node; -1: there is none.
   virtual int descriptor() const { return -1; }
   /// What transfers may use, kUsbfsBuffer_bytes of it.
   virtual std::span<std::uint8_t> buffer() RT_SAFE = 0;
@@ -45,7 +45,7 @@ class UsbfsNode final : public UsbfsPort {
  public:
   /// Opens the node, as /dev/bus/usb/001/004, and claims the interface; an error says what to do.
   static model::Result<std::unique_ptr<UsbfsNode>> open(const std::string& path, int interface);
-  /// Of an open descriptor, which it closes at the end. `mapped`: try to map the buffer.
+  /// Takes an open descriptor, which it closes at the end. `mapped`: try to map the buffer.
   UsbfsNode(int fd, int interface, bool mapped);
   ~UsbfsNode() override;
 

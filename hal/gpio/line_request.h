@@ -46,7 +46,7 @@ class LineRequest {
   /// One ioctl for all, on a chip that does not sleep. False: the chip does not answer.
   bool get(Levels& levels) RT_SAFE;
   bool set(const Levels& levels) RT_SAFE;
-  /// Of kEdges: waits at most so long for an edge, and returns all that are there, in order.
+  /// With kEdges: waits at most so long for an edge, and returns all that are there, in order.
   std::vector<Edge> edges(std::chrono::milliseconds longest);
 
  private:

@@ -75,7 +75,7 @@ class SafetyLogic {
   /// Outputs of this tick, after evaluate().
   SafetyOutputs drive(const LinesTick& tick) RT_SAFE;
 
-  /// Of the last evaluate(); nothing where none is wired.
+  /// The grip of the last evaluate(); nothing where none is wired.
   std::optional<bool> grip() const RT_SAFE {
     return wiring_.grip ? std::optional(grip_.pressed()) : std::nullopt;
   }

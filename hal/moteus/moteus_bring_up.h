@@ -28,7 +28,7 @@ struct MoteusStart {
 
 /// What the device needs to hear.
 std::vector<std::uint32_t> moteus_ids(const can::CanSettings& can);
-/// Of all frames of a tick at worst stuffing.
+/// Worst-case number of bits of all frames in a tick.
 can::CanFdBits moteus_cycle_bits(const can::CanSettings& can);
 /// What a reply lacks of what moteus_torque asks for, by name; nullptr: nothing.
 const char* lacking_in(const MoteusReply& reply) RT_SAFE;

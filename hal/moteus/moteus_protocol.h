@@ -57,7 +57,7 @@ struct MoteusAddress {
   int source, destination;
 };
 MoteusAddress moteus_address(const can::CanFdFrame& frame) RT_SAFE;
-/// Of what the drive says to the host.
+/// Identifier of the frames from drive to host.
 std::uint32_t moteus_reply_id(int node) RT_SAFE;
 
 // --- To the drive. Nothing if node or number is outside its range. ---

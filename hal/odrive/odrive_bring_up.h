@@ -36,7 +36,7 @@ struct OdriveStart {
 
 /// What the device needs to hear.
 std::vector<std::uint32_t> odrive_ids(const can::CanSettings& can);
-/// Of all frames of a tick at worst stuffing.
+/// Worst-case number of bits of all frames in a tick.
 int odrive_cycle_bits(const OdriveSettings& settings);
 
 model::Result<OdriveStart> bring_up_odrives(can::CanBus& bus, const model::DeviceSettings& settings,

@@ -34,7 +34,7 @@ const OdriveErrorText* first_odrive_error_05(std::uint32_t axis_error) RT_SAFE;
 /// Which parts report an error in a heartbeat of 0.5: 1 motor, 2 encoder, 4 controller.
 std::uint32_t odrive_parts_05(const OdriveHeartbeat05& heartbeat) RT_SAFE;
 
-/// Of the first error of a heartbeat's word, else of its parts; empty for none.
+/// The text of the first error of a heartbeat's word, else of its parts; empty for none.
 std::string odrive_error_message(OdriveGeneration generation, std::uint32_t axis_error,
                                  std::uint32_t parts);
 

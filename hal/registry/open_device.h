@@ -33,7 +33,7 @@ model::Result<model::scene::Scene> load_scene(const std::string& path,
 
 /// What device.kind may be.
 std::vector<std::string> device_kinds();
-/// Of all devices that are on USB, for hal/list.
+/// The USB parts of all devices, for hal/list.
 std::vector<UsbPart> usb_parts();
 
 /// Opens what scene.device names. Set-up only; may take as long as the hardware needs.

@@ -17,7 +17,7 @@
 
 namespace tact::hal::vendor_sdk {
 
-/// Of every such device, for `DeviceInfo::caution`.
+/// The caution of every such device, for `DeviceInfo::caution`.
 inline constexpr const char* kNoGuardian =
     "if tactd is killed or the library hangs, nothing zeroes this device, because its vendor's "
     "library shares no handle: put its supply on a relay";

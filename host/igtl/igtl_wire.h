@@ -41,8 +41,8 @@ struct Content {
 /// Error: the sizes of the parts exceed the body.
 model::Result<Content> content_of(const MessageHead& head, std::string_view body);
 
-/// Of a TRANSFORM or a POSITION with its orientation. Error: another size, a number that is not
-/// finite, or no rotation.
+/// The pose of a TRANSFORM or a POSITION with its orientation. Error: another size, a number that
+/// is not finite, or no rotation.
 model::Result<pose::Pose> pose_of(std::string_view type, std::string_view content);
 
 /// Complete messages, version 1. `time_s` UTC.

@@ -17,7 +17,7 @@
 
 namespace tact::host::record {
 
-/// Of a number from a file, which may be no BodyState.
+/// The name of a number from a file, which may be no BodyState.
 const char* body_state(std::uint64_t number);
 
 struct BodyRecord {

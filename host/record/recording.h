@@ -34,7 +34,7 @@ struct Recording {
   const figure::FigurePose* figure_at(std::size_t frame) const {
     return frame < figures.size() && figures[frame] ? &*figures[frame] : nullptr;
   }
-  /// Of the first figure in the recording.
+  /// Height of the first figure in the recording.
   std::optional<double> body_height_m() const;
   double length_s() const;
 };
@@ -88,7 +88,7 @@ struct Snapshot {
   std::vector<std::shared_ptr<const KeptFrame>> frames;
 };
 
-/// Of a whole recording.
+/// The snapshot of a whole recording.
 Snapshot snapshot_of(Recording recording);
 
 /// The newest frames, oldest first, of a limited time span, with the operator if tracked.

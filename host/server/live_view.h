@@ -56,13 +56,13 @@ class LiveView {
   /// `tracked`: the operator at this frame, null without a tracker; `shown`: as in OverlaySource.
   void add(const record::Frame& frame, const tracking::TrackedOperator* tracked = nullptr,
            const figure::FigurePose* shown = nullptr);
-  /// Of a replay: recent() then gives these, the whole file, independent of what was shown.
+  /// In a replay: recent() then gives these, the whole file, independent of what was shown.
   void keep(std::vector<std::shared_ptr<const record::KeptFrame>> frames) {
     file_ = std::move(frames);
   }
-  /// Of a replay: the status's "replay".
+  /// Sets the status's "replay" of a replay.
   void report_replay(const nlohmann::json& replay);
-  /// Of a session with scenes to choose: the status's "picker"; null: none.
+  /// Sets the status's "picker" of a session with scenes to choose; null: none.
   void report_picker(const nlohmann::json& picker);
   /// Called once, at the first subscription.
   void when_watched(std::function<void()> then);

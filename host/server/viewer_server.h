@@ -35,7 +35,7 @@ class ViewerServer {
 
   /// Loads the page and listens. The error states the cause and the remedy.
   std::optional<model::Error> open(const ViewerOptions& options);
-  /// Of a replay: takes the requests of pages. Call before start.
+  /// In a replay: takes the requests of pages. Call before start.
   void let_steer(Steer steer) { site_.steer = std::move(steer); }
   /// Takes the digits that a person types at a page. Call before start.
   void let_answer(TakeDigit take) { site_.take_digit = std::move(take); }

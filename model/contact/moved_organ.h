@@ -73,7 +73,7 @@ struct OrganSphere {
   Rotation rotation;
   Vec3 residual_m;  // c less ML-5
   Vec3 force_N;     // P
-  // Of this tick (moved_contact.h)
+  // Motion in this tick (moved_contact.h)
   Vec3 moved_m;              // dc
   double may_slide_m = 0.0;  // remaining motion of the surface point
   double may_slip_m = 0.0;   // remaining slip of a sphere that sticks

@@ -47,7 +47,7 @@ struct alignas(64) VertexCompliance {
   float slope_step_times_E_per_m2 = 0.0F;
   std::array<std::array<std::int16_t, 3>, 6> slope_steps{};  // of each along the surface
 
-  /// Of the k-th component.
+  /// Slope of the k-th component.
   Vec3 slope_times_E_per_m2(std::size_t k) const RT_SAFE {
     const std::array<std::int16_t, 3>& steps = slope_steps[k];
     return static_cast<double>(slope_step_times_E_per_m2) * Vec3{static_cast<double>(steps[0]),

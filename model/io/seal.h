@@ -42,7 +42,7 @@ class Seal {
   std::uint64_t count_ = 0;
 };
 
-/// Of these bytes: 64 hex digits in lower case.
+/// The digest of these bytes: 64 hex digits in lower case.
 std::string sha256_of(std::string_view bytes);
 
 /// A file that grows (FileWriter::create) and is sealed at its end.

@@ -78,7 +78,7 @@ inline LawResponse beyond_limit(const LawResponse& at, double inside_m, double d
           .status = LawStatus::kSaturated};
 }
 
-/// Of a law that only presses: `inside` answers depths in [0, end_m].
+/// The response of a law that only presses: `inside` answers depths in [0, end_m].
 template <typename Inside>
 LawResponse press_response(double depth_m, double end_m, const Inside& inside) RT_SAFE {
   if (!std::isfinite(depth_m)) return {.status = LawStatus::kInvalid};

@@ -4,7 +4,7 @@
 // A scene is described by functions that visit its keys through Keys. The same visit serves twice:
 // reading, it takes values from a document and notes every problem; describing, it has no document
 // and notes one row of the reference per key. What a visit of a section did not name is unknown.
-// Of all problems one is reported: wrong values before missing keys before keys that contradict
+// One problem is reported: wrong values before missing keys before keys that contradict
 // each other, in the order of the file, overrides first. Set-up code only.
 #pragma once
 

@@ -18,7 +18,7 @@
 
 namespace tact::model::scene {
 
-/// Of one law against a reference.
+/// How far one law is off a reference.
 struct Accuracy {
   std::string law;                       // its name in a scene
   std::string law_hash;                  // hash_of_linear_forces()
@@ -30,11 +30,11 @@ struct Accuracy {
   std::vector<double> depth_m;           // rising
   std::vector<double> own_worst_ratio;   // of the same place and depth, at each depth
 };
-/// Of the own force, at the depth where it is farthest off: an index of depth_m.
+/// The index of depth_m at which the local force is farthest off.
 std::size_t worst_depth(const Accuracy& accuracy);
 bool keeps(const Accuracy& accuracy, const ToleranceSettings& tolerance);
 
-/// Of what the law answers at places and depths spread over the organ, of how they couple, and of
+/// A hash of the law's answers at places and depths over the organ, of how they couple, and of
 /// the tool's spheres: 16 hex digits. As a linear reference evaluates it: compliance.large_strain
 /// off.
 Result<std::string> hash_of_linear_forces(const Scene& scene, std::string_view law_name);
@@ -46,7 +46,7 @@ std::string accuracy_path(const Scene& scene);
 Result<Accuracy> read_accuracy(const Scene& scene);
 /// The largest of its errors, the RMS of the peak or an own force.
 double worst_error_ratio(const Accuracy& accuracy);
-/// Of all laws of the scene with a figure, the one with the least worst error; of equal ones the
+/// The law of the scene with a figure and the least worst error; of equal ones the
 /// last, as a net of springs may be felt as `compliance` and costs more. None: no figure counts.
 std::optional<Accuracy> nearest_law(const Scene& scene);
 

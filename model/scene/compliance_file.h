@@ -28,7 +28,7 @@ Result<tissue::ComplianceMap> read_compliance_map(const std::string& path);
 /// The checksum that the file ends with, 8 bytes as they stand there; empty where there is none.
 std::string compliance_checksum(const std::string& path);
 
-/// Of [[elastic.inclusion]], their moduli as ratios to that of the organ; 0: there is none.
+/// A hash of [[elastic.inclusion]], their moduli as ratios to the organ's; 0: there is none.
 std::uint32_t inclusions_hash(const ElasticSettings& elastic);
 
 /// Same shape, same hash, for any position of the surface: triangles, and vertices relative to the

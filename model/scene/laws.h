@@ -44,7 +44,7 @@ struct LawRow {
   std::string_view name, meaning;            // in a scene, where its section is [name]
   void (*visit)(ParameterVisitor&, Scene&);  // the keys of its section
   Result<Curve> (*curve)(const Scene&) = nullptr;
-  /// Of a law that has no curve, as it differs from place to place.
+  /// Builds a law that has no curve, as it differs from place to place.
   std::optional<Error> (TissueLawBuilder::*build)() = nullptr;
   /// Numbers to which, all together, its force is proportional; none where that is the modulus of
   /// [elastic]. And one to which its damping is.

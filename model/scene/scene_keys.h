@@ -38,7 +38,7 @@ struct SceneText {
 /// Reads every key into `out`, or describes them all.
 void visit_scene(reader::Keys& root, DeviceKeys device_keys, SceneText& out);
 
-// Of that, in scene_laws.cc. `law` and the sections of all laws; the chosen one must be there.
+// Parts of it, in scene_laws.cc: `law` and the sections of all laws; the chosen one must be there.
 void visit_laws(reader::Keys& root, Scene& scene);
 /// [pull] and [relaxation], of any law.
 void visit_law_options(reader::Keys& root, Scene& scene);

@@ -4,7 +4,7 @@
 
 namespace tact::tools::report {
 
-/// Of the force, 2.5 to 10 N: X. Pang, H. Tan, N. Durlach 1991 (model/SOURCES.md).
+/// Share of the force, 2.5 to 10 N: X. Pang, H. Tan, N. Durlach 1991 (model/SOURCES.md).
 inline constexpr double kJustNoticeable_ratio = 0.07;
 
 }  // namespace tact::tools::report

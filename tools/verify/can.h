@@ -53,11 +53,11 @@ nlohmann::json decoded(const hal::can::CanFrame& frame, int node, Decode decode,
   return value ? to_json(*value) : nlohmann::json::object();
 }
 
-/// Of can_cia402.cc.
+/// In can_cia402.cc.
 void verify_cia402(const nlohmann::json& file, Report& report);
-/// Of can_moteus.cc.
+/// In can_moteus.cc.
 void verify_moteus(const nlohmann::json& file, Report& report);
-/// Of falcon_boot.cc: the requests and words that wake a Falcon, each of the order is a case.
+/// In falcon_boot.cc: the requests and words that wake a Falcon, each of the order is a case.
 void verify_falcon_boot(const nlohmann::json& ftdi, Report& report);
 
 }  // namespace tact::tools::verify

@@ -75,7 +75,7 @@ model::Result<std::vector<Measured>> measure_chart(const model::scene::Scene& sc
 model::Result<std::vector<Measured>> measure_tool(const model::scene::Scene& scene,
                                                   const ChartOptions& options);
 
-/// Of chart.json; read_chart() takes this one alone, as an older chart has other columns.
+/// Version of chart.json; read_chart() takes this one alone, as an older chart has other columns.
 inline constexpr int kChartVersion = 4;
 /// The rows of a chart.json. What they lack, chart.py reports.
 model::Result<nlohmann::json> read_chart(const std::string& path);

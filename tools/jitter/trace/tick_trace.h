@@ -13,7 +13,7 @@ namespace tact::tools::jitter {
 /// had no tick, and the wake-up latency as a curve. `offset_ns`: CLOCK_BOOTTIME - CLOCK_MONOTONIC.
 std::string make_tick_trace(const std::vector<TickTimes>& ticks, std::int64_t offset_ns);
 
-/// Of this PC, now.
+/// Offset of this PC, now.
 std::int64_t boottime_offset_ns();
 
 }  // namespace tact::tools::jitter

@@ -52,10 +52,10 @@ struct LimitsReport {
   std::vector<std::pair<std::string, std::string>> left_out_by_why() const;
 };
 
-/// Of cases.csv, and the numbers of limits.json.
+/// A row of cases.csv, and the numbers of limits.json.
 report::Row case_row(const CaseVerdict& v);
 nlohmann::json to_json(const LimitsReport& report);
-/// Of it: the hazards, their requirements, what shows these, and what this run has shown.
+/// Part of it: the hazards, their requirements, what shows these, and what this run has shown.
 nlohmann::json hazards_json(const LimitsReport& report);
 /// A line for each case, on a terminal.
 std::string to_text(const LimitsReport& report);

@@ -18,7 +18,7 @@ struct StabilityOptions {
 };
 
 struct MapsRun {
-  /// Of each table on disk: map, rows with every digit, files, facts.
+  /// Each table on disk: map, rows with every digit, files, facts.
   nlohmann::json maps = nlohmann::json::array();
   std::optional<model::Error> error;  // what ended the run early; interruption() after Ctrl-C
 };
