@@ -48,7 +48,8 @@ std::vector<std::string> merged(std::vector<std::string> set, std::span<const st
 std::vector<LawNumber> law_numbers(Scene& scene) {
   std::vector<LawNumber> out;
   const auto add = [&out](std::string_view section, const Parameter& p) {
-    if (p.number != nullptr || p.count != nullptr)
+    // Below its range an optional number is one that the law does not use.
+    if ((p.number != nullptr && *p.number >= p.range.low) || p.count != nullptr)
       out.push_back({fmt::format("{}.{}", section, p.key), p});
   };
   if (const LawRow* law = find_law(scene.law))

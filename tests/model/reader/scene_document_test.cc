@@ -128,7 +128,7 @@ TEST(Override, MalformedOverrideIsQuotedAsTyped) {
 TEST(Override, UnknownSectionIsRefusedWithTheKnownOnes) {
   EXPECT_TRUE(complaint({"a.b.c=1"})
                   .starts_with("--set a.b.c=1: a is no key here; allowed here: name, rate_Hz, "
-                               "table_knots, varies_by_place, "
+                               "table_knots, varies_by_place, exact_tip, "
                                "law, rhombus, "));
 }
 

@@ -76,7 +76,10 @@ class Plot(RecordedRun):
         self.assertEqual(names, [name for name in self.rows[0] if not name.endswith("_name")])
         for name, _, _, values in module().Run(self.log).columns():
             text = self.rows[-1][name]
-            self.assertEqual(values[-1], text == "1" if values.dtype == bool else values.dtype.type(text), name)
+            if text != "nan":
+                self.assertEqual(values[-1], text == "1" if values.dtype == bool else values.dtype.type(text), name)
+            else:
+                self.assertTrue(np.isnan(values[-1]), name)
 
     def test_a_figure_is_written_in_the_form_of_its_ending_and_with_the_same_bytes(self):
         for ending, magic in (("pdf", b"%PDF"), ("svg", b"<?xml"), ("png", b"\x89PNG")):
