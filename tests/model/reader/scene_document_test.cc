@@ -108,7 +108,7 @@ TEST(Override, MalformedOverrideIsQuotedAsTyped) {
        "limits.thermal_time_s = 10 is too short to come from force_N = 8 to continuous_force_N = "
        "0.5 within the slew; allowed: 33.171 or more"},
       {"limits.slew_N_per_s=700",
-       "limits.slew_N_per_s = 700 is too slow for force_N = 8: a lost device must fade to zero in "
+       "limits.slew_N_per_s = 700 is too slow for force_N = 8: a lost device must ramp down in "
        "10 ms; allowed: 816 or more"},
       {"contact.grip_open_ratio=0.9",
        "contact.grip_open_ratio = 0.9 must be below grip_close_ratio = 0.7; lower it or raise "
