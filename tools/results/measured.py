@@ -135,7 +135,7 @@ def tool():
 
 # Which solved presses evaluate which scene: the same organ, held alike, and the same spheres.
 SCENE_REFERENCES = {"liver": "liver", "liver_twist": "liver", "liver_source": "liver_source",
-                    "heart": "heart", "skin": "skin", "gum": "gum", "maintenance": "maintenance"}
+                    "grasper": "grasper", "heart": "heart", "skin": "skin", "gum": "gum", "maintenance": "maintenance"}
 LIGHT_TOUCH_M = 0.001  # shallower presses are solved, and not evaluated
 
 
