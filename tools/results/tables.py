@@ -68,7 +68,7 @@ SCENE_GOAL_PERCENT = {"rms": 3.0, "own": 7.0}  # of the law that a scene ships
 REASONS = {
     "liver": "[rim](tools/chart/README.md)",
     "liver_source": "published: 530 N/m",
-    "grasper": "[ten spheres that overlap](tools/chart/README.md)",
+    "grasper": "spheres overlap",
     "gum": "a hollow, computed as flat",
 }
 SAME_PRESSES = {"liver_twist": "liver"}  # in the row of the other, if its values are the same
