@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kHair = 1.0 + 1e-12;  // for the rounding of a difference or a product
 constexpr double kRounding_J = 1e-8;   // for the sum of all energies since arming
-constexpr double kRampDown_s = 0.010;      // of the force, from the second missed sample on
+constexpr double kRampDown_s = 0.010;  // of the force, from the second missed sample on
 
 /// Small turns: twice the vector part of now * conjugate(before). Written out, as the operators of
 /// Quat are the gate's, too.

@@ -40,8 +40,8 @@ struct ComplianceSettings {
   std::string map_path;            // absolute; written by tact-lab condense
   double layer_thickness_m = 0.0;  // in place of a map: a wide layer on a support
   double working_depth_m = 0.0;    // press and pull
-  std::size_t curves = 17;       // of the family, soft to stiff
-  bool large_strain = true;      // organ and tip; false: small strain, as a linear reference
+  std::size_t curves = 17;         // of the family, soft to stiff
+  bool large_strain = true;        // organ and tip; false: small strain, as a linear reference
 };
 
 /// What the scene accepts, for tact-lab plan and for tactd's start.

@@ -138,7 +138,8 @@ def unbounded_loops(path, text):
         start = found.end() - 1
         for loop in LOOP.finditer(code, start, body_end(code, start)):
             number = code.count("\n", 0, loop.start())
-            if not HEAD_BOUND.search(loop.group(1)) and not any("bound:" in line for line in lines[max(0, number - 2):number + 2]):
+            near = lines[max(0, number - 2):number + 2]
+            if not HEAD_BOUND.search(loop.group(1)) and not any("bound:" in line for line in near):
                 yield f"{path}:{number + 1}: a loop of an RT_SAFE function without a bound in its head: write // bound: ..."
 
 

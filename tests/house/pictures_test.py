@@ -18,7 +18,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 DIGESTS = ROOT / "tools/pictures.json"
 PAGE = ["host/web/index.html", "host/web/package-lock.json", "host/web/src/"]
 SCENE = "model/scenes/"
-ACCURACY = [f"{SCENE}{name}.accuracy" for name in ("grasper", "gum", "heart", "liver", "liver_source", "liver_twist", "maintenance", "skin")]
+ACCURACY = [f"{SCENE}{name}.accuracy" for name in ("grasper", "gum", "heart", "liver", "liver_source", "liver_twist",
+                                                   "maintenance", "skin")]
 # A folder is all of its tracked files. Of a scene its meshes are part.
 SHOWN = {
     "host/page.png": [*PAGE, SCENE + "liver.toml"],

@@ -202,7 +202,7 @@ class ContactRules {
     const double jump_N = norm(now.sphere_contact.force_N - before_->sphere_contact.force_N);
     // Once begun, it goes on until there is no force.
     is_ending_ = (is_ending_ && before_->is_saturated) ||
-               ((now.is_saturated || before_->is_saturated) && (is_outside_ || was_outside_));
+                 ((now.is_saturated || before_->is_saturated) && (is_outside_ || was_outside_));
     const bool is_lag = now.is_unsettled || before_->is_unsettled;
     const double fade_s = is_ending_ ? kEnding_s : 5.0 * kEnding_s;
     const double fade_m =

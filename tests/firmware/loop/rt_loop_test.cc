@@ -109,7 +109,8 @@ TEST_F(RtLoopTest, LetsGoWhenTheDeviceIsLost) {
   press();
   device.silent = true;
   run_ticks(12);
-  EXPECT_NEAR(norm(device.last.force_N), 0.0, 1e-9) << "ramped down within 10 ms of the second miss";
+  EXPECT_NEAR(norm(device.last.force_N), 0.0, 1e-9)
+      << "ramped down within 10 ms of the second miss";
   EXPECT_EQ(newest().output.state, State::kArmed);
   run_ticks(8);
   EXPECT_EQ(newest().output.fault, Fault::kDeviceLost);

@@ -205,7 +205,8 @@ TEST(RecordingCsv, ReportsASphereInsideAndLossesOfContact) {
   append_csv_row(row, frame, test::make_header(3, 1, 3, 1));
   EXPECT_NE(row.find(",inside,"), std::string::npos) << row;
   EXPECT_NE(row.find(",0,21,"), std::string::npos) << row;
-  EXPECT_NE(csv_header({}).find(",non_rt,contact_losses,temperature_C,cut_triangles,"), std::string::npos);
+  EXPECT_NE(csv_header({}).find(",non_rt,contact_losses,temperature_C,cut_triangles,"),
+            std::string::npos);
 }
 
 TEST(RecordingCsv, ReportsCutsAndTheLargestDisplacementOfAPatch) {

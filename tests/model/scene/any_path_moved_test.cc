@@ -24,7 +24,7 @@ namespace tact::model::scene::any_path_moved_test {
 constexpr double kPeriod_s = 1e-3;
 constexpr double kSlope_N_per_m = 125.0;           // of the tip's law, the steepest
 constexpr double kRange_m = 18_mm;                 // of the tip's law
-constexpr double kFar_m = 40_mm, kEnding_s = 0.2;   // beyond, after this time, there is no force
+constexpr double kFar_m = 40_mm, kEnding_s = 0.2;  // beyond, after this time, there is no force
 constexpr double kFree_J = 2.5e-7, kMade = 0.025;  // ML-9: of one contact, and of the stored energy
 
 /// What must hold of one sphere, tick by tick.
