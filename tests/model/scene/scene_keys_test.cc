@@ -50,7 +50,7 @@ void collect(const toml::table& table, const std::string& path, std::set<std::st
 /// The liver's, with the keys that no shipped scene has.
 std::string liver_with_the_rest() {
   std::ostringstream text;
-  text << "exact_tip = false\n"
+  text << "exact_tip=false\n"
        << std::ifstream(kLiver).rdbuf() << R"(
 [[live]]
 key = "elastic.youngs_modulus_Pa"
