@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-#include "model/law/laws_in_series.h"
+#include "model/law/series_law.h"
 #include "model/law/tabulated_law.h"
 #include "model/scene/tissue_law_builder.h"
 #include "model/scene/tissue_map.h"
@@ -136,7 +136,7 @@ Result<const law::Law*> TissueLawBuilder::on_organ(const law::Law& organ) {
        .ring_m_per_N = std::array{0.0},
        .table_knots = law::kMaxKnots});
   if (!tip) return blame(tip.error());
-  auto pair = make_laws_in_series(keep(std::move(*tip)), organ);
+  auto pair = make_series_law(keep(std::move(*tip)), organ);
   if (!pair) return blame(pair.error());
   law_->title_ += ", under an exact tip";
   draws_tissue_ = false;

@@ -14,6 +14,9 @@ namespace tact::model::scene::shipped_law {
 
 using Overrides = std::vector<std::string>;
 
+/// The organ stays where it was drawn.
+inline const std::string kLinear = "compliance.large_strain=false";
+
 inline Scene shipped(const std::string& name, const Overrides& overrides = {}) {
   auto scene = load_scene(TACT_SOURCE_DIR "/model/scenes/" + name + ".toml", overrides);
   EXPECT_TRUE(scene) << scene.error().message;

@@ -19,12 +19,11 @@
 
 namespace tact::model::scene::tissue_law_test {
 
+using shipped_law::kLinear;
 using shipped_law::made;
 using shipped_law::Overrides;
 using shipped_law::refusal;
 using shipped_law::shipped;
-
-const std::string kLinear = "compliance.large_strain=false";  // the organ stays where it was drawn
 
 TEST(TissueLaw, SeesAStiffPullThatTearsWithinOneSample) {
   // 10 000 N/m reach the tear force of 0.6 N at 0.06 mm of 12 mm

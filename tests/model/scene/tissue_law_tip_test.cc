@@ -10,12 +10,11 @@
 
 namespace tact::model::scene::tissue_law_tip_test {
 
+using shipped_law::kLinear;
 using shipped_law::made;
 using shipped_law::Overrides;
 using shipped_law::refusal;
 using shipped_law::shipped;
-
-const std::string kLinear = "compliance.large_strain=false";  // the organ stays where it was drawn
 
 // The pull of a small tip is so soft that it would saturate below the force that tears.
 TEST(TissueLawTip, ComplianceTearsInEveryShippedOrganThatBends) {

@@ -75,7 +75,7 @@ TEST(Measured, NoLinearStackFollowsSiliconeTo60PercentStrain) {
   }
 }
 
-// Finite elements at one place of the liver: one spring is too stiff at light touch, unless the
+// Finite elements at one place of the liver: one spring is too stiff at small depths, unless the
 // tip's own indentation is in series with it.
 TEST(Measured, OneSpringUnderAnExactTipFollowsAPlaceOfTheLiver) {
   FitData place{.sites = {{.name = "1725",

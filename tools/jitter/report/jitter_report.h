@@ -52,7 +52,7 @@ struct Outcome {
 Outcome outcome_of(const JitterResult& result);
 /// Is this PC good enough for the rate, and why?
 Outcome answer_of(const JitterResult& result);
-/// For main(): 0 good, 1 a fault or a gate that fails, 2 a gate that could not be judged.
+/// For main(): 0 good, 1 a fault or a gate that fails, 2 a gate that could not be evaluated.
 int exit_status(const JitterResult& result);
 
 /// One message about the run: what, how long, where, how many late.

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "model/law/laws_in_series.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
@@ -12,7 +10,7 @@
 #include "model/units.h"
 #include "tests/model/law/law_contract.h"
 
-namespace tact::model::law::laws_in_series_test {
+namespace tact::model::law::series_organ_test {
 
 indent::ComplianceCurve tip(double youngs_modulus_Pa = 5000.0) {
   auto curve = indent::make_compliance_curve(
@@ -43,23 +41,23 @@ class Spring final : public Law {
   LawRange range_;
 };
 
-TEST(LawsInSeries, KeepTheLawContract) {
+TEST(SeriesOrgan, KeepTheLawContract) {
   const indent::ComplianceCurve ball = tip();
   for (const double pull_m : {-20_mm, 0.0}) {
     const Spring organ(40.0, {pull_m, 20_mm});
-    tests::check_law_contract(*make_laws_in_series(ball, organ));
+    tests::check_law_contract(*make_series_law(ball, organ));
   }
 }
 
 // A spring of 1/r under the tip is the organ of SL-1: another implementation, of one law and r.
-TEST(LawsInSeries, ASpringIsTheComplianceOfItsPlace) {
+TEST(SeriesOrgan, ASpringIsTheComplianceOfItsPlace) {
   const indent::ComplianceCurve ball = tip();
   std::mt19937 random(1);
   std::uniform_real_distribution<double> share(0.0, 1.0);
   for (int i = 0; i < 50; ++i) {
     const double r_m_per_N = 0.002 + 0.05 * share(random);
     const Spring organ(1.0 / r_m_per_N, {-1.0, 1.0});
-    const LawsInSeries pair = *make_laws_in_series(ball, organ);
+    const SeriesLaw pair = *make_series_law(ball, organ);
     const SeriesLaw place = *make_series_law(ball, r_m_per_N, ball);
     const LawRange range = place.range();
     for (int j = 0; j < 40; ++j) {
@@ -72,11 +70,11 @@ TEST(LawsInSeries, ASpringIsTheComplianceOfItsPlace) {
   }
 }
 
-TEST(LawsInSeries, EndWhereTheWeakerEnds) {
+TEST(SeriesOrgan, EndWhereTheWeakerEnds) {
   const indent::ComplianceCurve ball = tip();
   const Spring weak(10.0, {-5_mm, 5_mm}), strong(1000.0, {-100_mm, 100_mm});
-  const LawsInSeries on_weak = *make_laws_in_series(ball, weak),
-                     on_strong = *make_laws_in_series(ball, strong);
+  const SeriesLaw on_weak = *make_series_law(ball, weak),
+                  on_strong = *make_series_law(ball, strong);
   EXPECT_NEAR(on_weak.respond(1.0).force_N, 0.05, 1e-9);
   EXPECT_EQ(on_weak.respond(1.0).status, LawStatus::kSaturated);
   const double most_N = ball.respond(8_mm).force_N;
@@ -86,11 +84,11 @@ TEST(LawsInSeries, EndWhereTheWeakerEnds) {
 }
 
 // Each damper sees the speed of its own share, so the pair loses what both lose.
-TEST(LawsInSeries, LoseWhatBothLose) {
+TEST(SeriesOrgan, LoseWhatBothLose) {
   const indent::ComplianceCurve ball = tip();
   const indent::HuntCrossley organ = *indent::make_hunt_crossley(
       {.force_N = 0.5, .working_depth_m = 12_mm, .exponent = 1.4, .dissipation_s_per_m = 5.0});
-  const LawsInSeries pair = *make_laws_in_series(ball, organ);
+  const SeriesLaw pair = *make_series_law(ball, organ);
   const double step_m = 1e-7;
   for (const double d : {1_mm, 3_mm, 6_mm}) {
     // y of both depths from the force alone, by the organ's own curve
@@ -110,7 +108,7 @@ TEST(LawsInSeries, LoseWhatBothLose) {
   }
 }
 
-TEST(LawsInSeries, AForceThatFallsIsRefused) {
+TEST(SeriesOrgan, AForceThatFallsIsRefused) {
   class Falls final : public Law {
    public:
     LawResponse respond(double d) const RT_SAFE override { return {d * (8_mm - d)}; }
@@ -120,9 +118,9 @@ TEST(LawsInSeries, AForceThatFallsIsRefused) {
   };
   const indent::ComplianceCurve ball = tip();
   const Falls organ;
-  const auto pair = make_laws_in_series(ball, organ);
+  const auto pair = make_series_law(ball, organ);
   ASSERT_FALSE(pair);
   EXPECT_NE(pair.error().message.find("its force falls"), std::string::npos);
 }
 
-}  // namespace tact::model::law::laws_in_series_test
+}  // namespace tact::model::law::series_organ_test
